@@ -1,7 +1,7 @@
-"""FRETish text → `Sentence`; the only module that knows the parser library.
+"""Parse FRETish text into a `Sentence`.
 
-The grammar is `grammar.lark`, one LALR(1) pass with a lexer that reserves every key word.
-All of the input is read, and every operator of it reaches the tree.
+The grammar is `grammar.lark`: one LALR(1) pass with a lexer that reserves every key word. The whole
+input is parsed, and every operator is in the tree.
 """
 
 from __future__ import annotations
@@ -42,27 +42,27 @@ _UNITS: dict[str, s.TimeUnit] = {
 
 
 def parse_value(text: Span) -> e.Expression | Diagnostic:
-    """Read one expression, all of it: what a variable stands for.
+    """Parse the whole text as one expression: the value of a variable.
 
     Args:
-        text: the expression, somewhere in a source; spans of the tree point into that source.
+        text: the span of the expression; spans of the tree refer to the same source.
     """
     words = _divided(text, "value")
     if isinstance(words, Diagnostic):
         return words
-    with _places_in(text):  # no callback of an expression has a mistake to tell
+    with _places_in(text):  # Callbacks of an expression raise no error.
         value = cast(e.Expression, _Build().transform(words))
     return next(check_value(value, text), value)
 
 
 def parse(text: Span) -> s.Sentence | Diagnostic:
-    """Read one sentence, all of it.
+    """Parse the whole text as one sentence.
 
     Args:
-        text: the sentence, somewhere in a source; spans of the tree point into that source.
+        text: the span of the sentence; spans of the tree refer to the same source.
 
     Returns:
-        The tree, or the first thing that keeps the text from being a sentence.
+        The tree, or the diagnostic of the first error.
     """
     tree = _tree(text)
     if isinstance(tree, Diagnostic):
@@ -71,16 +71,17 @@ def parse(text: Span) -> s.Sentence | Diagnostic:
 
 
 MISTAKES = 10
-"""Of one sentence that are named at once."""
+"""The largest number of errors that are reported for one sentence."""
 _LONG = 10_000
-"""Characters; of a longer text only the first mistake is named: each is a reading of its own."""
+"""Characters; in a longer text only the first error is reported, because each needs a parse."""
 
 
 def mistakes(text: Span) -> tuple[Diagnostic, ...]:
-    """What keeps a text from being a sentence, in the order of the text.
+    """All errors of a sentence, in the order of the text.
 
-    Behind a mistake of the grammar reading goes on where it is sure how: with the text that its
-    fix gives, or with the sentence that begins there. A fix that leads no further is not safe.
+    After a syntax error with a safe fix, the fixed text is parsed again to find further errors. If
+    a second sentence begins at the error, it is parsed, too. A fix after which parsing stops at the
+    same point is not safe.
     """
     found: list[Diagnostic] = []
     read = FixedText(text)
@@ -101,20 +102,20 @@ def mistakes(text: Span) -> tuple[Diagnostic, ...]:
 
 
 def _tree(text: Span) -> s.Sentence | Diagnostic:
-    """What the grammar makes of a text."""
+    """The tree of a text, or its first syntax error."""
     words = _words(text)
     return words if isinstance(words, Diagnostic) else _built(words, text)
 
 
 def _words(text: Span) -> ParseTree | Diagnostic:
-    """The text as the grammar divides it."""
+    """The parse tree of a sentence, or a syntax error."""
     if not text.text.strip():
         return no_sentence(text)
     return _divided(text, "start")
 
 
 def _divided(text: Span, start: str) -> ParseTree | Diagnostic:
-    """The text as a rule of the grammar divides it."""
+    """The parse tree of a text for one start rule of the grammar, or a syntax error."""
     try:
         return _lark().parse(text.text, start=start)
     except UnexpectedToken as error:
@@ -134,7 +135,7 @@ def _built(words: ParseTree, text: Span) -> s.Sentence | Diagnostic:
 
 
 def _against(sentence: s.Sentence) -> Iterator[Diagnostic]:
-    """What is wrong with a sentence that the grammar has."""
+    """The errors of a sentence that is syntactically correct."""
     deep = check_depth(sentence)
     if deep is not None:
         yield deep
@@ -144,7 +145,7 @@ def _against(sentence: s.Sentence) -> Iterator[Diagnostic]:
 
 
 def _around(wrong: Diagnostic, text: Span) -> list[Diagnostic]:
-    """A mistake of the grammar; with those around it, where a second sentence begins there."""
+    """A syntax error; if a second sentence begins there, also the errors of both sentences."""
     if wrong.code is not Code.SEVERAL_SENTENCES or len(text.text) > _LONG:
         return [wrong]
     first, second = text.part(0, _at(wrong)), text.part(_at(wrong), text.end)
@@ -154,7 +155,7 @@ def _around(wrong: Diagnostic, text: Span) -> list[Diagnostic]:
 
 
 def _moved(wrong: Diagnostic, read: FixedText) -> Diagnostic:
-    """A diagnostic of the fixed text, with its places in the original one."""
+    """A diagnostic of the fixed text, with its spans in the original text."""
     assert wrong.span is not None
     fix = wrong.fix and replace(wrong.fix, span=read.place(wrong.fix.span))
     return replace(wrong, span=read.place(wrong.span), fix=fix)
@@ -211,7 +212,7 @@ _QUANTITY = (
     r"/(?:0|[1-9][0-9]{0,59})(?:\.[0-9]{1,60})?(?:[eE][+-]?[0-9]{1,3}(?![0-9.]))?/"
     rf" WHITE_SPACE? /{_POWERED}(?:[*\/]{_POWERED})*/"
 )
-"""A number and its unit: all units are known to the lexer, so no name is taken for one."""
+"""A number and its unit. The lexer has a list of all units, so a name is never read as a unit."""
 _OPTIONS = {
     "start": ["start", "value"],
     "lexer": "basic",
@@ -226,7 +227,7 @@ def _meta_span(meta: Any) -> Span:
 
 
 def _parts(children: list[Any]) -> list[Any]:
-    """The trees among the children: key words have done their work."""
+    """The children that are trees; tokens of key words are dropped."""
     return [child for child in children if not isinstance(child, Token)]
 
 
@@ -246,20 +247,20 @@ def _timed(kind: Callable[..., s.Timing]) -> Callable[..., _Timed]:
 
 
 class _Timed(tuple[s.Timing, Span]):
-    """A timing with its place, on the way to the sentence."""
+    """A timing and its span, until the sentence is built."""
 
     __slots__ = ()
 
 
 class _Component(tuple[str, Span, bool]):
-    """The component's name, its place, and whether `the` precedes it; for the sentence."""
+    """The component's name, its span, and whether `the` precedes it."""
 
     __slots__ = ()
 
 
 @v_args(meta=True)
 class _Build(Transformer_NonRecursive[Token, Any]):
-    """Parse tree → `Sentence`, without recursion: a sentence may nest as deep as it likes."""
+    """Builds a `Sentence` from a parse tree, without recursion, so that any depth is possible."""
 
     # Names and operands
 
@@ -367,14 +368,17 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         return (children[0] != children[-1] and children[0].type == "OR", children[-1])
 
     def condition(self, meta: Any, children: list[Any]) -> s.Condition:
-        """`and` and `or` associate to the left with equal rank; one trigger makes all a trigger."""
+        """Join condition items: `and` and `or` are left-associative with equal precedence.
+
+        One item that is a trigger makes the whole condition a trigger.
+        """
         first, *rest = _parts(children)
         expression, kind, word = first.expression, first.kind, first.word
         for disjoined, item in rest:
             join = e.either if disjoined else e.both
             expression = join(expression, item.expression)
             if kind is s.ConditionKind.HOLDING:
-                kind, word = item.kind, item.word  # the word that makes it a trigger, if any
+                kind, word = item.kind, item.word
         return s.Condition(kind, expression, word, _meta_span(meta))
 
     def component(self, meta: Any, children: list[Any]) -> _Component:
@@ -423,14 +427,14 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
 
 def _number(digits: str) -> Fraction | None:
-    """None where it has more digits than anybody means."""
+    """The exact number; None if it has too many digits."""
     try:
         return number(digits)
     except ValueError:
         return None
 
 
-# What went wrong ---------------------------------------------------------------------------
+# Syntax errors ---------------------------------------------------------------------------
 
 
 def _unexpected(error: UnexpectedToken, text: Span) -> Diagnostic:
@@ -454,7 +458,7 @@ def _unexpected(error: UnexpectedToken, text: Span) -> Diagnostic:
 
 
 def _duration(token: Token, text: Span) -> Unexpected:
-    """A duration in one of our units, `within 5 s`: FRETish has words of its own."""
+    """The error of a duration in an SI unit, `within 5 s`: FRETish requires `seconds`."""
     digits, unit = split_quantity(str(token))
     start, end = token.start_pos, token.end_pos
     assert start is not None
@@ -468,7 +472,7 @@ def _duration(token: Token, text: Span) -> Unexpected:
 
 
 def _word_before(token: Token, text: Span) -> Token | None:
-    """The parser stopped at `token`, so all words before it are known to the lexer."""
+    """The token before the one at which the parser stopped."""
     before = None
     for word in _lark().lex(text.text):
         if token.type != "$END" and word.start_pos == token.start_pos:

@@ -1,6 +1,7 @@
-"""What keeps a text from being FRETish, and what to write instead, in the words of FRETish.
+"""Explain syntax errors of FRETish, and propose a fix.
 
-Each rule looks at the first word that does not fit, the word before it, and what would have fitted.
+Each rule looks at the first unexpected word, the word before it, and the words that the grammar
+expects.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ _GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
     ("`)`", frozenset({"RPAR"})),
     ("the end of the sentence", frozenset({"$END"})),
 )
-"""What the grammar may expect, in the words of a reader, in the order of a sentence."""
+"""Description of what the grammar may expect → its terminals, in the order of a sentence."""
 
 _UNITS = ("TICK", "MICROSECOND", "MILLISECOND", "SECOND", "MINUTE", "HOUR")
 _UNIT_NAMES = {
@@ -62,10 +63,10 @@ _UNIT_NAMES = {
     "s": "seconds", "min": "minutes", "mins": "minutes", "h": "hours", "hr": "hours",
 }  # fmt: skip
 _TICK_NAMES = frozenset({"step", "steps", "cycle", "cycles", "timepoint", "timepoints"})
-"""Of other tools: whether such a step is a tick, only the author knows."""
+"""Words of other tools for a step; fretc cannot decide whether it is a tick."""
 _SHALL = ("should", "must", "will", "shal")
 _WEAKER = ("can", "may", "might", "could", "would", "has", "needs")
-"""What stands where `shall` does, and may say something else."""
+"""Words in the position of `shall` that may have another meaning."""
 _TWO_WORDS = re.compile(
     r"(?!(?:if|not|at)\b)[a-z]\w*\s+(?!(?:and|or|xor|mod|implies|iff|is)\b)[a-z]", re.IGNORECASE
 )
@@ -73,7 +74,7 @@ _MICROSECONDS = {
     "microseconds": 1, "milliseconds": 10**3, "seconds": 10**6, "minutes": 60 * 10**6,
     "hours": 3600 * 10**6,
 }  # fmt: skip
-"""In each unit of time."""
+"""Unit of time → its length in microseconds."""
 
 
 def explain(unexpected: Unexpected) -> Diagnostic:
@@ -86,7 +87,7 @@ def explain(unexpected: Unexpected) -> Diagnostic:
 
 
 def no_sentence(text: Span) -> Diagnostic:
-    """F106."""
+    """F106 for an empty text."""
     return Diagnostic(
         Code.NO_SENTENCE,
         "there is no sentence here",
@@ -96,32 +97,32 @@ def no_sentence(text: Span) -> Diagnostic:
 
 
 def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
-    """F108 for a number that is negative, broken or in scientific notation.
+    """F108 for a number that is negative, fractional or in scientific notation.
 
     Args:
-        span: the number.
-        unit: as FRETish writes it, in the plural.
-        whole: the number and its unit.
+        span: the span of the number.
+        unit: FRETish's name of the unit, in the plural.
+        whole: the span of the number and its unit.
     """
     if span.text.startswith("-"):
         return Diagnostic(
             Code.BAD_DURATION,
             "a duration cannot be negative",
             span,
-            help="count from the trigger on: 0 is the trigger itself",
+            help="count from the trigger: 0 is the trigger itself",
         )
     if span.text.isdigit():
         return Diagnostic(
             Code.BAD_DURATION,
             "a duration has at most 15 digits",
             span,
-            help="count a larger unit",
+            help="use a larger unit",
         )
     fix = _whole(span.text, unit, whole)
-    words = "count a smaller unit, in whole numbers: 500 milliseconds, not 0.5 seconds"
+    words = "use a smaller unit, so that the number is whole: 500 milliseconds, not 0.5 seconds"
     return Diagnostic(
         Code.BAD_DURATION,
-        f"a duration counts whole units, and `{span.text}` is no whole number",
+        f"a duration must be a whole number, and `{span.text}` is not",
         span,
         help=fix.help if fix is not None else words,
         fix=fix,
@@ -129,7 +130,7 @@ def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
 
 
 def _whole(digits: str, unit: str, whole: Span) -> Fix | None:
-    """The same duration in the largest unit of which it is a whole number; None: there is none."""
+    """The fix with the largest unit in which the duration is a whole number, or None."""
     size = _MICROSECONDS.get(unit)
     try:
         length = (number(digits) or Fraction(1, 3)) * (size or Fraction(1, 3))
@@ -143,7 +144,7 @@ def _whole(digits: str, unit: str, whole: Span) -> Fix | None:
 
 
 def bad_probability(span: Span) -> Diagnostic:
-    """F110."""
+    """F110 for a probability out of range."""
     return Diagnostic(
         Code.BAD_PROBABILITY,
         f"no run can have the probability `{span.text}`",
@@ -164,7 +165,7 @@ def _unit(u: Unexpected) -> Diagnostic | None:
     fix = _unit_fix(u.lexeme.span)
     return Diagnostic(
         Code.BAD_DURATION,
-        f"a duration needs a unit, and `{u.lexeme.word}` is none",
+        f"a duration needs a unit, and `{u.lexeme.word}` is not one",
         u.lexeme.span,
         help=fix.help if fix is not None else words,
         fix=fix,
@@ -172,7 +173,7 @@ def _unit(u: Unexpected) -> Diagnostic | None:
 
 
 def _measured(u: Unexpected) -> Diagnostic | None:
-    """A name behind a number stands where a unit may stand."""
+    """A name after a number, in the position of a unit."""
     if u.before is None or u.before.kind != "NUMBER" or u.lexeme.kind != "ID":
         return None
     if unit(u.lexeme.word) is not None:
@@ -190,25 +191,25 @@ def _unit_fix(span: Span) -> Fix | None:
 
 
 def _number(u: Unexpected) -> Diagnostic | None:
-    """A duration is a literal."""
+    """F108 for a duration that does not begin with a number."""
     if u.before is None or u.before.kind not in ("WITHIN", "FOR", "AFTER"):
         return None
     if not u.accepts <= {"NUMBER", "MINUS"}:
         return None
     return Diagnostic(
         Code.BAD_DURATION,
-        "a duration begins with a number in digits",
+        "a duration must begin with a number in digits",
         u.lexeme.span,
-        help=f"write such as `{u.before.word} N seconds`",
+        help=f"write, for example, `{u.before.word} N seconds`",
     )
 
 
 def _superfluous(u: Unexpected) -> Diagnostic | None:
-    """Words that English has here and FRETish has not."""
+    """Superfluous English words: `then`, `the`, `mode`."""
     reasons = {
         "THEN": "FRETish has no `then` after the condition",
-        "THE": "a mode has no article",
-        "MODE": "after `while` stands an expression, not a mode",
+        "THE": "a mode cannot contain `the`",
+        "MODE": "`while` needs an expression, not a mode",
     }
     fits = {
         "THEN": u.wants("SHALL", "WHENEVER"),
@@ -232,7 +233,7 @@ def _globally(u: Unexpected) -> Diagnostic | None:
         f"FRETish has no word for the scope `{u.before.word}`",
         u.before.span,
         left_out(u.before.span.to(u.lexeme.span) if comma else u.before.span, is_safe=True),
-        "leave it out: without a scope a requirement is enforced everywhere",
+        "remove it: without a scope a requirement applies to the whole run",
     )
 
 
@@ -243,9 +244,9 @@ def _mode(u: Unexpected) -> Diagnostic | None:
     if not u.wants("MODE") or u.wants("NUMBER"):
         return None
     return not_fretish(
-        "a mode is one name",
+        "a mode must be one name",
         u.lexeme.span,
-        "for an expression write `while p & q` in place of `in`",
+        "for an expression, write `while p & q` instead of `in`",
     )
 
 
@@ -256,7 +257,7 @@ def _shall(u: Unexpected) -> Diagnostic | None:
     fix = Fix(u.lexeme.span, "shall", is_safe=word in _SHALL)
     return Diagnostic(
         Code.MISSPELT,
-        f"a requirement says `shall`, not `{u.lexeme.word}`",
+        f"a requirement uses `shall`, not `{u.lexeme.word}`",
         u.lexeme.span,
         help=fix.help,
         fix=fix,
@@ -287,11 +288,11 @@ def _component(u: Unexpected) -> Diagnostic | None:
         return None
     both = u.before.span.to(u.lexeme.span)
     fix = Fix(both, f"{u.before.word}_{u.lexeme.word}")
-    return not_fretish("a component is one name", both, fix)
+    return not_fretish("a component must be one name", both, fix)
 
 
 def _misspelt(u: Unexpected) -> Diagnostic | None:
-    """A name stands where only a key word fits, and one key word is near."""
+    """F107 for a name that is similar to a key word, where only a key word is allowed."""
     suspects = [u.lexeme] if not u.wants("ID") else []
     if u.before is not None and u.wants("SHALL"):
         suspects.append(u.before)
@@ -301,7 +302,7 @@ def _misspelt(u: Unexpected) -> Diagnostic | None:
             fix = Fix(suspect.span, near)
             return Diagnostic(
                 Code.MISSPELT,
-                f"`{suspect.word}` is no word of FRETish here",
+                f"FRETish does not allow the word `{suspect.word}` here",
                 suspect.span,
                 help=fix.help,
                 fix=fix,

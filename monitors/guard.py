@@ -222,9 +222,12 @@ def status_of(state: State, fault: str, *, violated: bool = False) -> Status:
     elif fault:
         level, message = STALE, fault
     elif state.owed is not False:
-        level, message = WARN, "a demand is open" if state.owed else "unknown what is owed"
+        level, message = (
+            WARN,
+            "an obligation is open" if state.owed else "unknown whether an obligation is open",
+        )
     else:
-        level, message = OK, "nothing is owed"
+        level, message = OK, "no obligation is open"
     return status(level, state.requirement, message, values)
 
 

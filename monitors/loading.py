@@ -23,7 +23,7 @@ def load(name: str, text: str) -> Monitor:
     module = executed(text, name)
     monitor = getattr(module, "MONITOR", None)
     if not isinstance(monitor, type):
-        raise ValueError(f"{name} is no generated monitor")
+        raise ValueError(f"{name} is not a generated monitor")
     return cast(Monitor, monitor())
 
 

@@ -1,7 +1,7 @@
-"""Variables that stand for something else: constants, and what FRET calls assignments.
+"""Replace variables that have a `value`: constants, and FRET's assignments.
 
-`[variable.limit] value = "1.5 m/s"`: in a sentence `limit` is 1.5 m/s. What is put in has the place
-of the name, so that every place of a sentence is in its own text.
+With `[variable.limit] value = "1.5 m/s"`, a sentence with `limit` means 1.5 m/s. The value gets the
+span of the name, so that every span of a sentence is in its own text.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from fretish.reading.recursion import MOST, with_recursion_limit
 from fretish.syntax import Sentence
 
 Definitions = Mapping[str, e.Expression]
-"""What names stand for; none by way of itself."""
+"""Name → the expression that replaces it, without cycles."""
 
 MOST_PARTS = 10_000
-"""Of a sentence with everything put in: a hundred definitions that each double would be endless."""
+"""Largest size of an expanded sentence: 100 definitions could each double it."""
 
 
 def circle(definitions: Definitions) -> tuple[str, ...]:
-    """Names that stand for one another, from the first one back to it; empty where none do."""
+    """The names of a cyclic definition, the first repeated at the end; empty if there is none."""
     done: set[str] = set()
     for name in definitions:
         path = _circle_from(name, definitions, done)
@@ -36,7 +36,7 @@ def circle(definitions: Definitions) -> tuple[str, ...]:
 
 
 def _circle_from(start: str, definitions: Definitions, done: set[str]) -> tuple[str, ...]:
-    """A circle that can be reached; adds to `done` what leads to none."""
+    """A cycle that `start` leads to; adds to `done` the names that lead to none."""
     path = {start: None}
     waiting = [_needs(start, definitions)]
     while waiting:
@@ -54,7 +54,7 @@ def _circle_from(start: str, definitions: Definitions, done: set[str]) -> tuple[
 
 
 def _needs(name: str, definitions: Definitions) -> Iterator[str]:
-    """The names that it stands for directly, as far as they stand for something themselves."""
+    """The defined names in the definition of a name."""
     if name in definitions:
         yield from dict.fromkeys(
             each.id for each in e.names(definitions[name]) if each.id in definitions
@@ -62,7 +62,7 @@ def _needs(name: str, definitions: Definitions) -> Iterator[str]:
 
 
 def used(sentence: Sentence, definitions: Definitions) -> Definitions:
-    """Those that the sentence needs, each after what it needs itself."""
+    """The definitions that the sentence needs, each after the definitions it depends on."""
     found: dict[str, e.Expression] = {}
     for expression in conditions(sentence):
         for name in e.names(expression):
@@ -72,7 +72,7 @@ def used(sentence: Sentence, definitions: Definitions) -> Definitions:
 
 
 def _order(start: str, definitions: Definitions, done: Mapping[str, object]) -> list[str]:
-    """The name and all that it needs, from the inside out."""
+    """The name and the names it depends on, dependencies first."""
     found: dict[str, None] = {}
     path = [(start, _needs(start, definitions))] if start in definitions else []
     while path:
@@ -88,11 +88,11 @@ def _order(start: str, definitions: Definitions, done: Mapping[str, object]) -> 
 
 
 def expanded(sentence: Sentence, needed: Definitions) -> Sentence | Diagnostic:
-    """The sentence with what its names stand for; F115 or F670 where that is too much.
+    """The sentence with its variables replaced by their values; F115 or F670 if it is too large.
 
     Args:
         sentence: as written.
-        needed: what it uses, in the order of `used`.
+        needed: the result of `used`.
     """
     if not needed:
         return sentence
@@ -124,14 +124,14 @@ def _depth(tree: e.Expression, depths: Mapping[str, int]) -> int:
 
 @with_recursion_limit
 def _put_in(tree: e.Expression, values: Definitions) -> e.Expression:
-    """The expression with the values of its names, and of the names in these."""
+    """The expression with all defined names replaced, also within their values."""
     if isinstance(tree, e.Name):
         return _placed(tree, tree.span, values) if tree.id in values else tree
     return e.with_children(tree, [_put_in(part, values) for part in e.children(tree)])
 
 
 def _placed(tree: e.Expression, span: Span | None, values: Definitions) -> e.Expression:
-    """The expression as if it stood there, from the outside in: each part is made once."""
+    """The expanded expression with `span` as the span of each part; each part is built once."""
     while isinstance(tree, e.Name) and tree.id in values:
         tree = values[tree.id]
     placed = e.with_children(tree, [_placed(part, span, values) for part in e.children(tree)])
@@ -147,7 +147,7 @@ def _placed(tree: e.Expression, span: Span | None, values: Definitions) -> e.Exp
 def _too_large(place: Span | None) -> Diagnostic:
     return Diagnostic(
         Code.TOO_LARGE,
-        f"with what its names stand for the sentence has more than {MOST_PARTS} parts",
+        f"with the values of its variables the sentence has more than {MOST_PARTS} parts",
         place,
-        help="let names stand for less, or bind some of them by a proposition",
+        help="shorten the values of variables, or bind some of them as propositions",
     )

@@ -1,8 +1,8 @@
-"""Which names of an expression are words: values of the enumerated signals opposite them.
+"""Resolve the words in an expression: names that are values of an enumerated signal.
 
-`mode = docking` names a signal and a word, whether the word stands in quotes or not. An enumerated
-signal is compared by `=` and `!=` only, with one of its words or with a signal of the same values.
-A plain number may stand for a truth value, `docking` or `docking = true`: 1 is true, 0 is false.
+`mode = docking` compares a signal with a word, which may be in quotes. An enumerated signal can be
+compared only by `=` and `!=`, with one of its words or with a signal of the same values. A plain
+number may be used as a truth value, as `docking` or `docking = true`: 1 is true, 0 is false.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ from fretish.diagnostics.source import Span
 from fretish.reading.recursion import with_recursion_limit
 
 _MOST = 12
-"""Words that a message lists."""
+"""The largest number of words in a message."""
 
 
 @with_recursion_limit
 def words(
     expression: e.Expression, signals: Mapping[str, Signal], place: Span | None = None
 ) -> e.Expression | Diagnostic:
-    """The same expression with a `Word` wherever a name is one, and no comparison with a truth.
+    """The expression with each word as a `Word`, and without comparisons with `true` or `false`.
 
     `docking = true` becomes `docking`, and `docking = false` becomes `!docking`.
 
     Args:
-        expression: a truth value, of the bindings or of a sentence.
-        signals: by their names; other names are passed by.
-        place: where to point when a part has no place of its own.
+        expression: a Boolean expression of bindings or of a sentence.
+        signals: name → signal; other names are not checked.
+        place: the span of a diagnostic about a part without a span.
 
     Returns:
-        Or what is wrong: a word that its signal does not have, an order of words, arithmetic with
-        them, a signal with a unit that stands for a truth value.
+        The expression, or a diagnostic: a word that is not a value of its signal, an order or
+        arithmetic of words, or a signal with a unit that is used as a truth value.
     """
     try:
         return _Reading(signals, place).truth(expression)
@@ -56,7 +56,7 @@ class _Reading:
     place: Span | None
 
     def truth(self, tree: e.Expression) -> e.Expression:
-        """A part that is a truth value."""
+        """Resolve a part that must be a truth value."""
         match tree:
             case e.Name(id, span):
                 if id in self.signals:
@@ -91,7 +91,7 @@ class _Reading:
                 return self.number(tree)
 
     def number(self, tree: e.Expression) -> e.Expression:
-        """A part that is a number."""
+        """Resolve a part that must be a number."""
         match tree:
             case e.Name(id, span):
                 signal = self.signals.get(id)
@@ -148,7 +148,7 @@ class _Reading:
         return signal if signal is not None and signal.values else None
 
     def _word(self, tree: e.Expression, signal: Signal) -> e.Word:
-        """What stands opposite an enumerated signal, as one of its words."""
+        """The other side of a comparison with an enumerated signal, as one of its words."""
         match tree:
             case e.Word(text, span):
                 pass
@@ -168,7 +168,7 @@ class _Reading:
     def _check_same(
         self, first: Signal, second: Signal, left: e.Expression, right: e.Expression
     ) -> None:
-        """Two enumerated signals, neither of which may be meant for a word of the other."""
+        """Check a comparison of two enumerated signals: equal values, and no ambiguous name."""
         for signal, other, part in ((first, second, right), (second, first, left)):
             if other.name in signal.values:
                 raise self._ambiguous(other.name, signal, getattr(part, "span", None))
@@ -182,21 +182,24 @@ class _Reading:
             )
 
     def _check_words(self, left: e.Expression, right: e.Expression) -> None:
-        """A word opposite what is no enumerated signal; a name that is not known is passed by."""
+        """Check a word that is compared with something other than an enumerated signal.
+
+        Unknown names are ignored.
+        """
         word, other = (left, right) if isinstance(left, e.Word) else (right, left)
         assert isinstance(word, e.Word)
         if isinstance(other, e.Name) and other.id not in self.signals:
             return
-        named = f"`{other.id}` has no `values`" if isinstance(other, e.Name) else "it has none"
+        side = f"`{other.id}`" if isinstance(other, e.Name) else "the other side"
         raise self._mistake(
             Code.BAD_EXPRESSION,
-            f'`"{word.text}"` is a word, and what it is compared with is none: {named}',
+            f'`"{word.text}"` is a word, and {side} has no `values`',
             word.span,
-            f'a signal of words declares them: `values = ["{word.text}"]`',
+            f'declare the words of the signal: `values = ["{word.text}"]`',
         )
 
     def _check_truth(self, signal: Signal, span: Span | None) -> None:
-        """F308 where the signal cannot stand for a truth value."""
+        """F308 if the signal cannot be used as a truth value."""
         name = signal.name
         if signal.values:
             raise self._mistake(
@@ -225,7 +228,7 @@ class _Reading:
             Code.BAD_EXPRESSION,
             f"{what} is a word, and a number is needed",
             span,
-            f'a word can be compared by `=` and `!=` only: `{name} = "{word}"`',
+            f'a word can be compared only by `=` and `!=`: `{name} = "{word}"`',
         )
 
     def _no_order(
@@ -244,29 +247,29 @@ class _Reading:
             Code.BAD_EXPRESSION,
             f"`{signal.name}` is a word, and {what}: they cannot be compared",
             span,
-            f"it may be {listed(signal.values)}",
+            f"its values are {listed(signal.values)}",
         )
 
     def _ambiguous(self, text: str, signal: Signal, span: Span | None) -> _MistakeError:
         return self._mistake(
             Code.AMBIGUOUS_WORD,
-            f"`{text}` may be the signal, or the word that `{signal.name}` may be",
+            f"`{text}` is ambiguous: a signal, or a value of `{signal.name}`",
             span,
-            f"give the signal another name; in `expr` the word in quotes is meant: `'{text}'`",
+            f"rename the signal; in `expr`, write the value in quotes: `'{text}'`",
         )
 
     def _unknown_word(self, text: str, signal: Signal, span: Span | None) -> _MistakeError:
         near = suggestion(text, signal.values)
         return self._mistake(
             Code.UNKNOWN_WORD,
-            f"`{signal.name}` is never `{text}`",
+            f"`{text}` is not a value of `{signal.name}`",
             span,
-            f"{f'did you mean `{near}`? ' if near else ''}it may be {listed(signal.values)}",
+            f"{f'did you mean `{near}`? ' if near else ''}its values are {listed(signal.values)}",
         )
 
 
 def listed(values: tuple[str, ...]) -> str:
-    """The first of the words, in a message."""
+    """The first words of a list, for a message."""
     return ", ".join(f"`{word}`" for word in values[:_MOST]) + (
         ", ..." if len(values) > _MOST else ""
     )

@@ -24,9 +24,7 @@ class Fix:
         """The fix in words: an order where it is safe, a question where it is not."""
         text, replaced = _plain(self.text), _plain(self.span.text)
         if not text:
-            return (
-                f"leave `{replaced}` out" if self.is_safe else f"should `{replaced}` be left out?"
-            )
+            return f"remove `{replaced}`" if self.is_safe else f"should `{replaced}` be removed?"
         return f"write `{text}`" if self.is_safe else f"did you mean `{text}`?"
 
     @property
@@ -34,8 +32,8 @@ class Fix:
         """What it does, for the user who applied it."""
         text, replaced = _plain(self.text), _plain(self.span.text)
         if not replaced:
-            return f"put `{text}` in"
-        return f"wrote `{text}` for `{replaced}`" if text else f"left `{replaced}` out"
+            return f"inserted `{text}`"
+        return f"replaced `{replaced}` by `{text}`" if text else f"removed `{replaced}`"
 
 
 def _plain(text: str) -> str:

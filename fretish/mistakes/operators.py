@@ -28,7 +28,7 @@ _SIGNS = {
 _HELP = {
     "[": 'quote a name with brackets: `"a[3]"`',
     "_": "a name begins with a letter",
-    '"': "close the quotes, or leave them out",
+    '"': "close the quotes, or remove them",
     "\u201c": 'use straight quotes: `"`',
     "\u201d": 'use straight quotes: `"`',
     "'": 'use double quotes: `"`',
@@ -49,7 +49,7 @@ def unknown_character(text: Span, at: int) -> Diagnostic:
         fix = Fix(Span(text.source, quoted.start(), quoted.end()), f'"{name}"', is_safe=True)
     elif span.text == ";" and not text.text[at + 1 :].strip(" \t\r\n.;"):
         fix = left_out(span, is_safe=True)
-    return not_fretish(f"`{span.text}` is no character of FRETish", span, fix)
+    return not_fretish(f"FRETish does not use the character `{span.text}`", span, fix)
 
 
 def other_language(u: Unexpected) -> Diagnostic | None:
@@ -97,17 +97,23 @@ def _join(u: Unexpected, lexeme: Lexeme) -> Diagnostic | None:
     if word in _JOINS:
         return _instead(lexeme.span, _JOINS[word], is_safe=one_way(u.text, lexeme.span, word))
     if word in _NEGATED:
-        words = f"say it by the operators of FRETish: `{_NEGATED[word]}`"
+        words = f"use the operators of FRETish: `{_NEGATED[word]}`"
         return not_fretish(f"FRETish has no `{lexeme.word}`", lexeme.span, words)
     if lexeme.kind == "_COMMA":
-        return not_fretish("`,` joins nothing", lexeme.span, "join the parts by `&` or by `|`")
+        return not_fretish(
+            "`,` cannot join expressions", lexeme.span, "join the parts by `&` or by `|`"
+        )
     if lexeme.kind == "IS":
-        return not_fretish("`is` compares nothing here", lexeme.span, "compare by a sign: `p < 3`")
+        return not_fretish(
+            "`is` cannot compare here", lexeme.span, "use a comparison operator: `p < 3`"
+        )
     return None
 
 
 def _instead(span: Span, spelt: str, *, is_safe: bool = True) -> Diagnostic:
-    return not_fretish(f"`{span.text}` is no operator of FRETish", span, Fix(span, spelt, is_safe))
+    return not_fretish(
+        f"`{span.text}` is not an operator of FRETish", span, Fix(span, spelt, is_safe)
+    )
 
 
 _UPWARD, _DOWNWARD = ("<", "<="), (">", ">=")
@@ -118,7 +124,7 @@ def chain(u: Unexpected) -> Diagnostic | None:
     """`3 < x < 5`."""
     if u.lexeme.kind not in COMPARISONS or not u.wants("_AMPERSAND"):
         return None
-    message, words = "comparisons do not chain", "write each by itself, and join them by `&`"
+    message, words = "comparisons cannot be chained", "write two comparisons, and join them by `&`"
     middle = _MIDDLE.search(u.read.text)
     same = middle is not None and any(
         {middle["op"], u.lexeme.word} <= {*way} for way in (_UPWARD, _DOWNWARD)
@@ -137,14 +143,14 @@ def number_form(u: Unexpected) -> Diagnostic | None:
         words = "write a 0 before the point"
         fix = Fix(u.lexeme.span.part(0, 0), "0", is_safe=True)
         number = u.rest.text[1:2].isdigit()
-        message = "a number begins with a digit"
+        message = "a number must begin with a digit"
         return not_fretish(message, u.lexeme.span, fix if number else words, words)
     if u.lexeme.kind != "NUMBER" or u.before is None or u.before.kind != "NUMBER":
         return None
     return not_fretish(
-        "a number does not begin with 0",
+        "a number must not begin with 0",
         u.before.span.to(u.lexeme.span),
-        "leave the leading zeros out",
+        "remove the leading zeros",
     )
 
 
@@ -152,7 +158,7 @@ def parenthesis(u: Unexpected) -> Diagnostic | None:
     """One that is missing, or one too many; which of them is meant, only the author knows."""
     if u.lexeme.kind == "RPAR" and u.wants("$END", "SATISFY", "SHALL"):
         fix = left_out(u.lexeme.span)
-        words = "leave it out, or write the `(` that it closes"
+        words = "remove it, or write the `(` that it closes"
         return not_fretish("there is no `(` for this `)`", u.lexeme.span, fix, words)
     if not u.lexeme.at_end or not u.wants("RPAR"):
         return None
@@ -160,5 +166,5 @@ def parenthesis(u: Unexpected) -> Diagnostic | None:
     missing = signs.count("(") - signs.count(")")
     fix = Fix(u.lexeme.span, ")" * missing)
     message = f"{missing} `(` {'is' if missing == 1 else 'are'} not closed"
-    words = f"write `{fix.text}` here, or where the part ends that is meant"
+    words = f"write `{fix.text}` here, or where the part in parentheses must end"
     return not_fretish(message, u.lexeme.span, fix, words)

@@ -44,7 +44,7 @@ def _another(u: Unexpected) -> Diagnostic:
         Code.SEVERAL_SENTENCES,
         "a second sentence begins here",
         u.lexeme.span,
-        help="give each a header, with an `id` between two lines `+++`, or a file of its own",
+        help="give each sentence a header with an `id` between two lines `+++`, or its own file",
     )
 
 
@@ -63,14 +63,14 @@ def behind(u: Unexpected) -> Diagnostic | None:
     if u.lexeme.kind not in _CONDITIONS | _SCOPES:
         return None
     part = "condition" if u.lexeme.kind in _CONDITIONS else "scope"
-    words = f"put it in front: `{_shown(u.rest)} the COMPONENT shall ...`"
+    words = f"move it to the front: `{_shown(u.rest)} the COMPONENT shall ...`"
     if u.lexeme.kind == "UNLESS":
         words += "; or, for an exception, write `p | q` as the response"
-    return not_fretish(f"the {part} stands before the component", u.lexeme.span, words)
+    return not_fretish(f"the {part} must stand before the component", u.lexeme.span, words)
 
 
 def _timing_behind(u: Unexpected, satisfy: re.Match[str]) -> Diagnostic:
-    message = "the timing stands before `satisfy`"
+    message = "the timing must stand before `satisfy`"
     if _has_timing(u.read.text[: satisfy.start()]):
         return not_fretish(message, u.lexeme.span, _ONE)
     response = u.read.text[satisfy.end() :].strip()
@@ -78,7 +78,7 @@ def _timing_behind(u: Unexpected, satisfy: re.Match[str]) -> Diagnostic:
     return not_fretish(message, u.lexeme.span, Fix(moved, f"{u.rest.text} satisfy {response}"))
 
 
-_ONE = "a sentence has one timing: write a requirement for each"
+_ONE = "a sentence has only one timing: write a requirement for each timing"
 
 
 def _has_timing(before_satisfy: str) -> bool:
@@ -95,7 +95,7 @@ def out_of_order(u: Unexpected) -> Diagnostic | None:
         return _timing_after_satisfy(u)
     if u.lexeme.kind == "WITH" and u.wants("SHALL", "WHENEVER"):
         words = "write it there: `shall with probability ... satisfy ...`"
-        return not_fretish("the probability stands after `shall`", u.lexeme.span, words)
+        return not_fretish("the probability must stand after `shall`", u.lexeme.span, words)
     if u.lexeme.kind == "PROBABILITY":
         fix = Fix(u.lexeme.span.part(0, 0), "with ", is_safe=u.wants("WITH"))
         words = "write `with probability ...`"
@@ -111,7 +111,7 @@ def _timing_after_satisfy(u: Unexpected) -> Diagnostic:
     """`satisfy eventually p`."""
     assert u.before is not None
     word = f"{u.lexeme.word}{_AMOUNT.get(u.lexeme.kind, '')}"
-    message, words = "the timing stands before `satisfy`", f"write `{word} satisfy ...`"
+    message, words = "the timing must stand before `satisfy`", f"write `{word} satisfy ...`"
     start = u.before.span.start
     found = _TIMING.match(u.rest.text)
     if found is None or (found[0] == u.lexeme.word) != (u.lexeme.kind in _SIMPLE_TIMINGS):
@@ -141,7 +141,7 @@ def timing(u: Unexpected) -> Diagnostic | None:
 
 def _not(u: Unexpected) -> Diagnostic:
     """`shall not satisfy p`, `shall never not satisfy p`."""
-    message = "`not` does not stand before `satisfy`"
+    message = "`not` cannot stand before `satisfy`"
     if u.before is not None and u.follows("ALWAYS", "NEVER"):
         fix = Fix(u.before.span.to(u.lexeme.span), "never" if u.follows("ALWAYS") else "always")
         return not_fretish(message, u.lexeme.span, fix)
@@ -167,7 +167,7 @@ def missing_part(u: Unexpected) -> Diagnostic | None:
     word, kind = u.before.word, u.before.kind
     if u.lexeme.word.lower() == word.lower() and word.isalpha():
         leave = left_out(u.lexeme.span, is_safe=True)
-        return not_fretish(f"`{word}` stands twice", u.lexeme.span, leave)
+        return not_fretish(f"`{word}` is written twice", u.lexeme.span, leave)
     part = next((part for part, kinds in _PARTS.items() if kind in kinds), "")
     begins = u.lexeme.kind in ("SATISFY", "SHALL") or _is_component(u.rest.text)
     if not part or not (u.lexeme.at_end or begins):
@@ -194,7 +194,7 @@ def article(u: Unexpected) -> Diagnostic | None:
     """`the` before a name that is no component's."""
     if u.lexeme.kind != "THE" or not u.wants("ID") or u.wants("SHALL"):
         return None
-    message, words = "an expression has no article", _words(u)
+    message, words = "an expression cannot contain `the`", _words(u)
     if len(words) == 1:
         return not_fretish(message, u.lexeme.span, left_out(u.lexeme.span, is_safe=True))
     name = "_".join(word for word in words if word.lower() not in _SMALL)

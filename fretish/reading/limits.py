@@ -115,9 +115,9 @@ def exceeded(error: ExceededError, place: Span | None = None) -> Diagnostic:
     """F930."""
     return Diagnostic(
         Code.TOO_COSTLY,
-        f"it would take {error}: far more than anything of its size needs",
+        f"reading it takes {error}, far more than input of its size needs",
         place,
-        help="it was written to be costly, or is damaged; divide it if it is not",
+        help="the input is malicious or damaged; if it is sound, split it",
     )
 
 

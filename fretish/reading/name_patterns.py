@@ -65,11 +65,11 @@ def _parts(pattern: str) -> tuple[_Part, ...] | str:
     for written in pattern.split("/"):
         tokens = [_token(found) for found in _TOKEN.finditer(written)]
         if not tokens or sum(len(found[0]) for found in _TOKEN.finditer(written)) < len(written):
-            return "between slashes there are texts, `*` and `{name}`, and nothing else"
+            return "between slashes only text, `*` and `{name}` are allowed"
         parts.append(tuple(tokens))
     named = [token.text for part in parts for token in part if token.least == 1]
     twice = next((name for name in named if named.count(name) > 1), None)
-    return f"`{{{twice}}}` stands twice in it" if twice else tuple(parts)
+    return f"`{{{twice}}}` is there twice" if twice else tuple(parts)
 
 
 def _token(found: re.Match[str]) -> _Token:

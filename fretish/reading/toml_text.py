@@ -133,7 +133,7 @@ def _read(text: Span, code: Code, name: str) -> Tables | Diagnostic:
             code,
             f"{name} is not TOML: {reason[:1].lower()}{reason[1:]}",
             text.part(at, min(at + 1, len(text.text))),
-            help='write `key = "value"`, one a line',
+            help='write `key = "value"`, one per line',
         )
 
 
@@ -154,7 +154,7 @@ def unknown_key(code: Code, key: str, allowed: Iterable[str], span: Span, where:
     near = suggestion(key, names)
     return Diagnostic(
         code,
-        f"`{key}` is no field of {where}",
+        f"unknown field `{key}` in {where}",
         span,
-        help=f"did you mean `{near}`?" if near else f"it may have {', '.join(names)}",
+        help=f"did you mean `{near}`?" if near else f"the fields are {', '.join(names)}",
     )

@@ -28,7 +28,7 @@ def loaded(text: str) -> Any:
         _count(yaml, text, loader)
         return yaml.load(text, Loader=loader)
     except (yaml.YAMLError, RecursionError, TypeError, AttributeError) as error:
-        raise ValueError("it is no YAML") from error  # TypeError: a key that cannot be one
+        raise ValueError("it is not YAML") from error  # TypeError: a key that cannot be one
 
 
 def _count(yaml: Any, text: str, loader: Any) -> None:
@@ -46,7 +46,7 @@ def _count(yaml: Any, text: str, loader: Any) -> None:
         if isinstance(event, yaml.CollectionStartEvent):
             open_.append((event.anchor, size))
             if len(open_) > _MOST_LEVELS:
-                raise ValueError(f"more than {_MOST_LEVELS} levels are within each other")
+                raise ValueError(f"more than {_MOST_LEVELS} nested levels")
         elif isinstance(event, yaml.CollectionEndEvent):
             anchor, before = open_.pop()
             if anchor is not None:
@@ -55,7 +55,7 @@ def _count(yaml: Any, text: str, loader: Any) -> None:
             sizes[event.anchor] = 1
         size += sizes.get(event.anchor, 1) if isinstance(event, yaml.AliasEvent) else 1
         if size > max(_MOST_NODES, _MOST_TIMES * length):
-            raise ValueError("its aliases stand for far more than is written")
+            raise ValueError("its aliases expand to too many nodes")
 
 
 class _Keys:

@@ -1,4 +1,4 @@
-"""The table `[map]` of `bindings.toml`: where the robot is."""
+"""The table `[map]` of `bindings.toml`: the robot's coordinates."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ _MAP = ("x", "y")
 
 
 class MapTable(Fields):
-    """Reads it."""
+    """Reader of the table `[map]`."""
 
     def __init__(self, tables: Tables, notes: Notes, signals: Mapping[str, Signal]) -> None:
-        """`signals`: every one that has a unit."""
+        """`signals`: all signals with a known unit."""
         super().__init__(tables, notes)
         self._signals = signals
 
     def map(self) -> Map | None:
-        """`[map]`; None where it is absent, or has mistakes, which become diagnostics."""
+        """The map; None if the table is absent or has errors, which become diagnostics."""
         table = self.tables.data.get("map")
         if table is None:
             return None
@@ -41,7 +41,7 @@ class MapTable(Fields):
         return Map(x, y) if x is not None and y is not None else None
 
     def _coordinate(self, table: Mapping[str, Any], key: str) -> Signal | None:
-        """A coordinate of the map: as the signal of the same path reads it, else in metres."""
+        """A coordinate, in the unit of the signal with the same path, else in metres."""
         text = table.get(key)
         where = path(text) if isinstance(text, str) else None
         if where is None or where.each:

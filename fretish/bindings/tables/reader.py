@@ -1,4 +1,4 @@
-"""Read `bindings.toml`: every field is checked, every mistake has its place."""
+"""Read `bindings.toml`: check every field, and report each error with its span."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic
     """Read the text of a `bindings.toml`.
 
     Returns:
-        The declarations, and all that there is to say. A mistake in the table of a signal or a
-        proposition, or in a shared table, is among the `mistakes` of the declarations; with any
-        other error there are none.
+        The declarations, and all diagnostics. An error in the table of a signal or a proposition,
+        or in a shared table, is also in `Declarations.mistakes`. After any other error the
+        declarations are None.
     """
     found = with_budget(len(source.text), source.span(0, 0), lambda: _read(source))
     return (None, (found,)) if isinstance(found, Diagnostic) else found
@@ -47,7 +47,7 @@ def _read(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
 
 
 class _Reader(Fields):
-    """One walk over the tables, which collects every mistake."""
+    """Reads all tables, and collects all diagnostics."""
 
     def __init__(self, tables: Tables) -> None:
         super().__init__(tables, Notes())
@@ -55,7 +55,7 @@ class _Reader(Fields):
 
     @property
     def is_usable(self) -> bool:
-        """Whether every error is in the table of a signal or a proposition, or a shared one."""
+        """Whether every error belongs to a signal, a proposition or a shared table."""
         return sum(each.is_error for each in self.notes.diagnostics) == self.errors_of_parts
 
     def declarations(self) -> Declarations:
@@ -84,20 +84,20 @@ class _Reader(Fields):
         )
 
     def _shared(self, kind: str, read: Callable[[], S]) -> S:
-        """A shared table; `mistakes` holds its own, and then nothing may rest on it."""
+        """Read a shared table, and record its errors under its name."""
         before = len(self.notes.diagnostics)
         table = read()
         self._keep((kind, ""), before)
         return table
 
     def _keep(self, part: Part, before: int) -> None:
-        """The errors among the diagnostics since `before` are those of a part."""
+        """Record the errors since index `before` as errors of a part."""
         own = [each for each in self.notes.diagnostics[before:] if each.is_error]
         self.errors_of_parts += len(own)
         self.notes.keep(part, own)
 
     def _parts(self, kind: str, read: Callable[[str, Mapping[str, Any]], T | None]) -> dict[str, T]:
-        """The parts without a mistake; `mistakes` holds those of the others."""
+        """Read the tables of one kind; those with errors are only in `mistakes`."""
         parts = {}
         for name, table in self._tables(kind).items():
             before = len(self.notes.diagnostics)
@@ -109,7 +109,7 @@ class _Reader(Fields):
         return parts
 
     def _assumed(self, loop: Loop) -> Assumed | None:
-        """`[assume]`; None, too, where the proposition that it names has a mistake."""
+        """`[assume]`; None also if the proposition that it names has errors."""
         assumption = loop.assumed(tuple(self._tables("proposition")))
         broken = (
             assumption is not None and ("proposition", assumption.stands) in self.notes.mistakes

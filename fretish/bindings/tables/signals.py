@@ -31,7 +31,7 @@ _SIGNAL = (
     "values", "role", "agg",
 )  # fmt: skip
 _OF_NUMBERS = ("unit", "valid", "invalid", "reduce", "footprint", "sensor")
-"""Fields of a signal that mean nothing beside `values`."""
+"""Fields of a signal that cannot be combined with `values`."""
 _NOWHERE = Path("", ())
 _INVALID = {
     "nan": "nan",
@@ -42,15 +42,15 @@ _INVALID = {
 
 
 class SignalTables(Fields):
-    """Reads one after the other."""
+    """Reader of the tables `[signal.NAME]`."""
 
     def __init__(self, tables: Tables, notes: Notes) -> None:
         super().__init__(tables, notes)
         self.known: dict[str, Signal] = {}
-        """Every signal that has a unit, or words, even where it has other mistakes."""
+        """All signals with a known unit or with words, even if they have other errors."""
 
     def signal(self, name: str, table: Mapping[str, Any]) -> Signal | None:
-        """The signal; None with mistakes that leave nothing of it."""
+        """The signal; None if it has errors that make it unusable."""
         at = ("signal", name)
         self._check_keys(table, _SIGNAL, f"[signal.{name}]", *at)
         where = self._path(table, (*at, "path"))
@@ -90,20 +90,20 @@ class SignalTables(Fields):
         return signal if where is not None else None
 
     def _enumerated(self, name: str, table: Mapping[str, Any], where: Path | None) -> Signal | None:
-        """A signal of words."""
+        """An enumerated signal."""
         at = ("signal", name)
         for key in _OF_NUMBERS:
             if key in table:
                 self._say(
                     Code.BAD_BINDING_FIELD,
-                    f"a signal with `values` has no `{key}`: it is a word, and no number",
+                    f"a signal with `values` cannot have `{key}`: it is a word, not a number",
                     self.tables.place(*at, key),
                     "take it out",
                 )
         if where is not None and where.each:
             self._say(
                 Code.BAD_BINDING_FIELD,
-                "a signal with `values` is one word, and `[:]` is many",
+                "a signal with `values` is one word, and `[:]` selects many",
                 self.tables.value(*at, "path"),
                 "name one element: `[0]`",
             )
@@ -128,7 +128,7 @@ class SignalTables(Fields):
         return signal if where is not None and values else None
 
     def _role(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Role | None:
-        """Of a signal; None where nothing says it."""
+        """The declared role; None if there is none."""
         if "role" not in table:
             return None
         return self._choice(table, (*at, "role"), Role, Role.INTERNAL)
@@ -140,7 +140,7 @@ class SignalTables(Fields):
         if binding.ticks_back(valid):
             self._say(
                 Code.BAD_EXPRESSION,
-                "`pre` is of ticks, and a message has none",
+                "`pre` counts ticks, and `valid` is evaluated per message",
                 self.tables.value(*at),
                 "compare the reading with fields of its message",
             )

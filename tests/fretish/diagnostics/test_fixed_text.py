@@ -47,11 +47,11 @@ def test_a_fix_in_words() -> None:
     span = SOURCE.span(0, 3)
     assert Fix(span, "a", is_safe=True).help == "write `a`"
     assert Fix(span, "a").help == "did you mean `a`?"
-    assert Fix(span, "", is_safe=True).help == "leave `012` out"
-    assert Fix(span, "").help == "should `012` be left out?"
-    assert Fix(span, "a").change == "wrote `a` for `012`"
-    assert Fix(span, "").change == "left `012` out"
-    assert Fix(span.part(0, 0), "a ").change == "put `a` in"
+    assert Fix(span, "", is_safe=True).help == "remove `012`"
+    assert Fix(span, "").help == "should `012` be removed?"
+    assert Fix(span, "a").change == "replaced `012` by `a`"
+    assert Fix(span, "").change == "removed `012`"
+    assert Fix(span.part(0, 0), "a ").change == "inserted `a`"
 
 
 @given(st.integers(0, 10**6), st.integers(0, 10**6))
