@@ -19,4 +19,5 @@ RESERVED = frozenset(
     ]
 )
 """All reserved words in lower case; they are reserved in any case. Words that only a target's
-language reserves are not among them: the target renames them (`compiler.logic.spelling.reserved_words`)."""
+language reserves are not among them: the target renames these
+(`compiler.logic.spelling.reserved_words`)."""

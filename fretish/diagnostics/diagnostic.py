@@ -1,7 +1,7 @@
-"""Everything fretc can say about its input: a code, a place, a way out.
+"""Diagnostics: code, message, span and help; and the table of all codes.
 
-A user's mistake is a `Diagnostic`, returned. One function per message lives beside the check
-that needs it; the codes live here, because a number is for life: never moved, never reused.
+A user's mistake is returned as a `Diagnostic`. The function that makes it is beside the check that
+needs it. The numbers of codes are permanent: never moved, never reused.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Severity(StrEnum):
 
 
 class Code(Enum):
-    """Every message that fretc can give: its stable number and what it is about.
+    """Every code of a message: its permanent number and its summary.
 
     F1 syntax, F2 meaning, F3 bindings, units and clock, F4 logs, F5 traceability,
     F6 targets, F9 use of the command.
@@ -257,18 +257,18 @@ class Code(Enum):
 
     @property
     def number(self) -> str:
-        """`F104`: stable for life."""
+        """The permanent number: `F104`."""
         return str(self.value[0])
 
     @property
     def summary(self) -> str:
-        """What the code is about, in one phrase."""
+        """A phrase that summarizes the code."""
         return str(self.value[1])
 
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One mistake or warning: what is wrong, where, and what to do."""
+    """An error, warning or note: what is wrong, where, and how to fix it."""
 
     code: Code
     message: str
@@ -276,41 +276,42 @@ class Diagnostic:
     help: str | None = None
     severity: Severity = Severity.ERROR
     paste: str = ""
-    """Lines to put into a file as they are, which `help` speaks of."""
+    """Lines that `help` says to paste into a file."""
     subject: str = ""
-    """The topic or the hazard that a warning is about, by which it can be accepted."""
+    """The topic or hazard of a warning, by which it can be accepted."""
     accepted: str = ""
-    """The reason for which the project accepts a warning; it stays one, and is shown."""
+    """The reason why the project accepts a warning, which is displayed nevertheless."""
     fix: Fix | None = None
-    """What `help` says, where that is another text in the place of a span."""
+    """The fix in `help` as a value, if it replaces a span by a text."""
 
     @property
     def is_error(self) -> bool:
-        """Whether it stops the command."""
+        """Whether the diagnostic is an error, which stops the command."""
         return self.severity is Severity.ERROR
 
     @property
     def is_open(self) -> bool:
-        """Whether it is a warning that nobody has accepted."""
+        """Whether the diagnostic is a warning that was not accepted."""
         return self.severity is Severity.WARNING and not self.accepted
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
-    """Whether any of them is an error."""
+    """Whether any diagnostic is an error."""
     return any(diagnostic.is_error for diagnostic in diagnostics)
 
 
 def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """The known word that is nearest to a misspelt one, if one is near.
+    """The known word that is most similar to a misspelt one, or None.
 
-    It has the same numbers and operators: `battery < 10` is another claim than `battery < 20`.
+    Only words with the same numbers and operators are suggested: `battery < 10` and `battery < 20`
+    are different claims.
 
     Args:
-        word: what was written.
-        known: what may be written.
-        cutoff: how near, from 0 (anything) to 1 (equal), as `difflib` measures it.
+        word: the misspelt word.
+        known: the correct words.
+        cutoff: the least similarity, from 0 (any) to 1 (equal), as `difflib` measures it.
     """
-    from difflib import get_close_matches  # where something is misspelt
+    from difflib import get_close_matches  # Imported here to make the start faster.
 
     by_folded = {name.casefold(): name for name in known if _claim(name) == _claim(word)}
     near = get_close_matches(word.casefold(), by_folded, n=1, cutoff=cutoff)
@@ -318,6 +319,6 @@ def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | No
 
 
 def _claim(word: str) -> list[str]:
-    """The numbers and operators of a word, in its order."""
+    """The numbers and operators in a word, in order."""
     found: list[str] = re.findall(r"\d+|[<>=!&|]+", word)
     return [part.lstrip("0") if part.isdigit() else part for part in found]

@@ -1,6 +1,6 @@
-"""The signs of all outcomes, of verdicts and proofs as of logs and reviews: one table.
+"""The status symbols of verdicts, proofs, logs and reviews, in one table.
 
-An outcome has its own word, and one of these signs; its colour is never all that tells it.
+A status is always displayed with its own word, too, so that it never depends on colour alone.
 """
 
 from __future__ import annotations
@@ -10,15 +10,15 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Sign:
-    """How an outcome looks."""
+    """How a status is displayed."""
 
     glyph: str
     letter: str
-    """In its place, where a terminal cannot write it."""
+    """The replacement for `glyph` on an ASCII terminal."""
     kind: str
-    """Its class in the report's style sheet."""
+    """The CSS class in the report."""
     colour: str
-    """In a terminal."""
+    """The colour in a terminal."""
 
 
 GOOD = Sign("✔", "+", "satisfied", "green")

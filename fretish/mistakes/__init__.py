@@ -1,4 +1,4 @@
-"""Recognition of common FRETish mistakes: wrong operators, misplaced parts, wrong precedence.
+"""Rules for common errors in FRETish: wrong operators, misplaced parts, unclear precedence.
 
-Input is a text that the parser refused. Output is a diagnostic, with a fix where one is known.
+Input is a text that the parser refused. Output is a diagnostic, with a fix if there is one.
 """

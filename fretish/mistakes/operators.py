@@ -1,4 +1,4 @@
-"""Operators, numbers and characters as other languages spell them."""
+"""Errors in operators, numbers and characters, which other languages write differently."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ COMPARISONS = ("LESS", "AT_MOST", "GREATER", "AT_LEAST", "EQUAL", "UNEQUAL")
 _WORDS = {"not": "!", "true": "true", "false": "false"}
 _JOINS = {"and": "&", "or": "|", "implies": "->", "iff": "<->"}
 _PAIRS = {"&&": "&", "||": "|", "==": "=", "=<": "<=", "<>": "!="}
-"""Two signs that stand next to each other, or with a space between."""
+"""Two adjacent operator characters, with or without a space between them."""
 _NEGATED = {"nand": "!(p & q)", "nor": "!(p | q)", "xnor": "p <-> q"}
 _SIGNS = {
     "\u2264": "<=",
@@ -37,7 +37,7 @@ _QUOTES = re.compile(r"\u201c([^\"\n\u201c\u201d]+)\u201d|'([^\"\n']+)'")
 
 
 def unknown_character(text: Span, at: int) -> Diagnostic:
-    """F101 for a character that no word of FRETish has."""
+    """F101 for a character that FRETish does not use."""
     span = text.part(at, at + 1)
     sign = _SIGNS.get(span.text)
     fix: Fix | str = _HELP.get(span.text, "names are letters, digits, `_`, `.` and `%`")
@@ -53,7 +53,7 @@ def unknown_character(text: Span, at: int) -> Diagnostic:
 
 
 def other_language(u: Unexpected) -> Diagnostic | None:
-    """Operators as other languages spell them."""
+    """F101 for an operator of another language."""
     word = u.lexeme.word.lower()
     if u.before is not None and u.before.word + u.lexeme.word in _PAIRS:
         span = u.before.span.to(u.lexeme.span)
@@ -74,15 +74,16 @@ JOIN = re.compile(r"[&|]|[-=]>|\b(?:and|or|xor|implies|iff)\b", re.IGNORECASE)
 
 
 def _more(rest: Span) -> bool:
-    """Whether the `not` may be meant for more than its first part, as in `not p and q`."""
+    """Whether `not` may apply to more than its first operand, as in `not p and q`."""
     part = _PART.match(rest.text)
     return part is None or (not part["bracket"] and JOIN.search(part["rest"]) is not None)
 
 
 def join_of_expressions(u: Unexpected) -> Diagnostic | None:
-    """`whenever p and q`: the word joins conditions, each of which has a word of its own.
+    """F101 for `and` between expressions: `whenever p and q`.
 
-    `whenever p implies q`: the word is read as the component.
+    FRETish reads `and` as a join of conditions that each have a key word. In `whenever p implies q`
+    it reads `implies` as the component.
     """
     joined = u.follows("AND", "OR") and u.wants("WHENEVER")
     named = u.follows("ID") and u.wants("SHALL")
@@ -92,7 +93,7 @@ def join_of_expressions(u: Unexpected) -> Diagnostic | None:
 
 
 def _join(u: Unexpected, lexeme: Lexeme) -> Diagnostic | None:
-    """What joins two expressions in other languages, and in English."""
+    """F101 for a word that joins two expressions in other languages or in English."""
     word = lexeme.word.lower()
     if word in _JOINS:
         return _instead(lexeme.span, _JOINS[word], is_safe=one_way(u.text, lexeme.span, word))
@@ -121,7 +122,7 @@ _MIDDLE = re.compile(r"(?P<op><=|>=|<|>)\s*(?P<middle>[A-Za-z][\w.%]*|\"[^\"\n]+
 
 
 def chain(u: Unexpected) -> Diagnostic | None:
-    """`3 < x < 5`."""
+    """F101 for chained comparisons: `3 < x < 5`."""
     if u.lexeme.kind not in COMPARISONS or not u.wants("_AMPERSAND"):
         return None
     message, words = "comparisons cannot be chained", "write two comparisons, and join them by `&`"
@@ -132,13 +133,13 @@ def chain(u: Unexpected) -> Diagnostic | None:
     if middle is None or not same:
         return not_fretish(message, u.lexeme.span, words)
     here = u.lexeme.span.part(0, 0)
-    fix = Fix(here, f"& {middle['middle']} ")  # not safe: a `!` before it is of the first alone
+    fix = Fix(here, f"& {middle['middle']} ")  # Not safe: a `!` before it negates only one part.
     shown = f"{middle['op']} {middle['middle']} & {middle['middle']} {u.lexeme.word}"
     return not_fretish(message, u.lexeme.span, fix, f"{words}: `... {shown} ...`")
 
 
 def number_form(u: Unexpected) -> Diagnostic | None:
-    """`.5` and `007`."""
+    """F101 for numbers such as `.5` and `007`."""
     if u.lexeme.kind == "_DOT" and u.wants("NUMBER"):
         words = "write a 0 before the point"
         fix = Fix(u.lexeme.span.part(0, 0), "0", is_safe=True)
@@ -155,7 +156,7 @@ def number_form(u: Unexpected) -> Diagnostic | None:
 
 
 def parenthesis(u: Unexpected) -> Diagnostic | None:
-    """One that is missing, or one too many; which of them is meant, only the author knows."""
+    """F101 for a missing or superfluous parenthesis; no fix is safe."""
     if u.lexeme.kind == "RPAR" and u.wants("$END", "SATISFY", "SHALL"):
         fix = left_out(u.lexeme.span)
         words = "remove it, or write the `(` that it closes"

@@ -1,4 +1,4 @@
-"""Parts of a sentence that stand at a wrong place, are missing, or are there twice."""
+"""Errors in the order of a sentence's parts: misplaced, missing or repeated parts."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _SATISFY = re.compile(r"\bsatisfy\b", re.IGNORECASE)
 
 
 def second_sentence(u: Unexpected) -> Diagnostic | None:
-    """F117: the text before the word is a sentence, and another one begins with it."""
+    """F117 if the text before the word is a sentence, and another sentence begins with the word."""
     if not u.wants("$END") or u.lexeme.kind not in _BEGINNINGS:
         return None
     if u.follows("_DOT") and u.lexeme.kind not in ("ID", "QUOTED"):
@@ -55,7 +55,7 @@ def _gap(u: Unexpected) -> str:
 
 
 def behind(u: Unexpected) -> Diagnostic | None:
-    """What English says after the response, and FRETish before it."""
+    """F101 for a timing, condition or scope after the response."""
     if not u.wants("$END") or (found := _SATISFY.search(u.read.text)) is None:
         return None
     if u.lexeme.kind in TIMINGS:
@@ -90,7 +90,7 @@ def _shown(span: Span) -> str:
 
 
 def out_of_order(u: Unexpected) -> Diagnostic | None:
-    """The parts of a sentence have a fixed order."""
+    """F101 for a misplaced timing or probability."""
     if u.lexeme.kind in _SIMPLE_TIMINGS | _DURATIONS and u.follows("SATISFY"):
         return _timing_after_satisfy(u)
     if u.lexeme.kind == "WITH" and u.wants("SHALL", "WHENEVER"):
@@ -108,7 +108,7 @@ _TIMING = re.compile(r"(?:within|for)\s+\d+\s+\w+|[a-z]+", re.IGNORECASE)
 
 
 def _timing_after_satisfy(u: Unexpected) -> Diagnostic:
-    """`satisfy eventually p`."""
+    """F101 for a timing after `satisfy`: `satisfy eventually p`."""
     assert u.before is not None
     word = f"{u.lexeme.word}{_AMOUNT.get(u.lexeme.kind, '')}"
     message, words = "the timing must stand before `satisfy`", f"write `{word} satisfy ...`"
@@ -119,13 +119,13 @@ def _timing_after_satisfy(u: Unexpected) -> Diagnostic:
     if _has_timing(u.text.source.text[u.text.start : start]):
         return not_fretish(message, u.lexeme.span, _ONE)
     end = u.lexeme.span.start + found.end()
-    is_safe = JOIN.search(u.rest.text) is None  # or the timing may be that of the first part alone
+    is_safe = JOIN.search(u.rest.text) is None  # Else it may apply to one part.
     fix = Fix(Span(u.text.source, start, end), f"{found[0]} {u.before.word}", is_safe)
     return not_fretish(message, u.lexeme.span, fix, f"write `{found[0]} satisfy ...`")
 
 
 def timing(u: Unexpected) -> Diagnostic | None:
-    """Two timings, and `not` where a timing stands."""
+    """F101 for a second timing, or for `not` in the position of the timing."""
     if not u.wants("SATISFY"):
         return None
     if u.lexeme.kind == "NOT":
@@ -140,7 +140,7 @@ def timing(u: Unexpected) -> Diagnostic | None:
 
 
 def _not(u: Unexpected) -> Diagnostic:
-    """`shall not satisfy p`, `shall never not satisfy p`."""
+    """F101 for `shall not satisfy p` or `shall never not satisfy p`."""
     message = "`not` cannot stand before `satisfy`"
     if u.before is not None and u.follows("ALWAYS", "NEVER"):
         fix = Fix(u.before.span.to(u.lexeme.span), "never" if u.follows("ALWAYS") else "always")
@@ -161,7 +161,7 @@ _PARTS = {
 
 
 def missing_part(u: Unexpected) -> Diagnostic | None:
-    """A word that something must follow, with the next part in its place."""
+    """F101 for a key word without the part that must follow it, or written twice."""
     if u.before is None or not u.wants("ID"):
         return None
     word, kind = u.before.word, u.before.kind
@@ -173,7 +173,7 @@ def missing_part(u: Unexpected) -> Diagnostic | None:
     if not part or not (u.lexeme.at_end or begins):
         return None
     if part == "stop condition" and not _SHALL.search(u.read.text):
-        part = "mode"  # of a scope
+        part = "mode"  # `before` without `shall` before it begins a scope.
     return not_fretish(
         f"the {part} is missing after `{word}`",
         u.lexeme.span,
@@ -191,7 +191,7 @@ _SMALL = frozenset({"the", "a", "an", "is", "are", "of", "has", "have", "been"})
 
 
 def article(u: Unexpected) -> Diagnostic | None:
-    """`the` before a name that is no component's."""
+    """F101 for `the` before a name that is not the component."""
     if u.lexeme.kind != "THE" or not u.wants("ID") or u.wants("SHALL"):
         return None
     message, words = "an expression cannot contain `the`", _words(u)
@@ -209,7 +209,7 @@ def _words(u: Unexpected) -> list[str]:
     prose = _PROSE.match(u.rest.text)
     words = _JOINED.split(prose["words"])[0].split() if prose is not None else []
     lower = [word.lower() for word in words]
-    if "shall" in lower:  # the component and its article stand before it
+    if "shall" in lower:  # The words before it are the component and its article.
         at = max(lower.index("shall") - 1, 0)
         words = words[: at - 1 if at and lower[at - 1] == "the" else at]
     elif "satisfy" in lower:

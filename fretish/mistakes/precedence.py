@@ -1,6 +1,7 @@
-"""Whether an operator of another language binds here as the one of FRETish in its place would.
+"""Whether replacing an operator of another language by the FRETish one can change the meaning.
 
-Elsewhere `&&` and words bind looser than `|`, and what `p and q or r` means differs by reader.
+In other languages `&&` and `and` may have another precedence relative to `|`, and readers disagree
+about `p and q or r`.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ _RIVALS = {
     "implies": {"->", "=>", "<->", "<=>"} | _WORDS,
     "iff": {"<->", "<=>"} | _WORDS - {"iff"},
 }
-"""What an operator may stand beside only within parentheses, or it could be read in two ways."""
+"""Operator → operators beside which its precedence is unclear without parentheses."""
 _OPERATOR = re.compile(
     rf"<->|<=>|->|=>|\|\||&&|\||&|\b(?:{'|'.join(sorted(_WORDS))})\b", re.IGNORECASE
 )
@@ -31,19 +32,19 @@ _QUOTED = re.compile(r'"[^"\n]*"')
 
 
 def one_way(text: Span, at: Span, operator: str) -> bool:
-    """Whether no operator beside it leaves open which of both binds first.
+    """Whether the precedence of an operator is clear relative to the operators beside it.
 
     Args:
         text: the sentence.
-        at: the operator in it.
-        operator: in lower case, without white space.
+        at: the span of the operator.
+        operator: the operator in lower case, without white space.
     """
     beside = {found.lower() for found in _OPERATOR.findall(_level(text, at))}
     return beside.isdisjoint(_RIVALS.get(operator, frozenset()))
 
 
 def _level(text: Span, at: Span) -> str:
-    """What stands around a place within the same parentheses and the same part of the sentence."""
+    """The text around a span, within the same parentheses and the same part of the sentence."""
     source = text.source.text
     left = _outer(reversed(_QUOTED.sub("x", source[text.start : at.start])), ")", "(")[::-1]
     right = _outer(_QUOTED.sub("x", source[at.end : text.end]), "(", ")")
@@ -51,7 +52,7 @@ def _level(text: Span, at: Span) -> str:
 
 
 def _outer(characters: Iterable[str], opening: str, closing: str) -> str:
-    """What is not within parentheses, up to the one that closes those around it all."""
+    """The characters outside of inner parentheses, up to the end of the enclosing ones."""
     depth = 0
     kept = []
     for character in characters:

@@ -1,7 +1,7 @@
-"""Patterns of names: `{scenario}-{seed}.mcap` against the end of a path.
+"""Match the end of a path with a pattern such as `{scenario}-{seed}.mcap`.
 
-`{name}` stands for one character or more, `*` for any number, neither for a slash. Each takes as
-much as it can, from left to right. The time is that of pattern times name, whatever both are.
+`{name}` matches one or more characters, `*` any number, neither a slash. From left to right, each
+matches as much as possible. The time is proportional to the length of the pattern times the path.
 """
 
 from __future__ import annotations
@@ -13,22 +13,22 @@ from functools import lru_cache
 
 _TOKEN = re.compile(r"\{(?P<name>[A-Za-z][A-Za-z0-9_-]*)\}|(?P<star>\*)|(?P<text>[^{}*]+)")
 _LONGEST, _LONGEST_PART = 200, 1000
-"""Characters of a pattern, and of a part of a path that it is compared with."""
+"""The largest number of characters of a pattern, and of a part of a path."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Token:
     text: str
-    """What stands there exactly; of a place the name, nothing of `*`."""
+    """The literal text; the name of a `{name}`; empty for `*`."""
     least: int | None = None
-    """Of a place the least number of characters; None of a text."""
+    """The least number of matched characters; None for a literal text."""
 
 
 _Part = tuple[_Token, ...]
 
 
 def names(pattern: str) -> tuple[str, ...] | str:
-    """The names in a pattern, or what is wrong with it."""
+    """The names in a pattern, or the reason why it is wrong."""
     parts = _parts(pattern)
     if isinstance(parts, str):
         return parts
@@ -36,11 +36,11 @@ def names(pattern: str) -> tuple[str, ...] | str:
 
 
 def match(pattern: str, path: str) -> Mapping[str, str] | None:
-    """What each name of a pattern stands for in a path; None where the path does not match.
+    """Name in the pattern → the text it matches in a path; None if the path does not match.
 
     Args:
-        pattern: a sound one; it is compared with as many parts of the path as it has itself.
-        path: with slashes.
+        pattern: a correct pattern; it is matched with as many last parts of the path as it has.
+        path: a path with slashes.
     """
     parts = _parts(pattern)
     assert not isinstance(parts, str), parts
@@ -58,7 +58,7 @@ def match(pattern: str, path: str) -> Mapping[str, str] | None:
 
 @lru_cache(maxsize=64)
 def _parts(pattern: str) -> tuple[_Part, ...] | str:
-    """The parts between slashes, or what is wrong."""
+    """The parts between slashes, or the reason why the pattern is wrong."""
     if not 0 < len(pattern) <= _LONGEST:
         return f"a pattern has 1 to {_LONGEST} characters"
     parts = []
@@ -95,7 +95,7 @@ def _match(part: _Part, text: str) -> dict[str, str] | None:
 
 
 def _fits(part: _Part, text: str) -> list[list[bool]]:
-    """Row i, column k: whether the tokens from i on match all of the text from k on."""
+    """Row i, column k: whether the tokens from i on match the whole text from k on."""
     size = len(text)
     rows = [[False] * size + [True]]
     for token in reversed(part):
