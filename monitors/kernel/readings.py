@@ -1,4 +1,4 @@
-"""Numbers of one tick: variables as they are given, constants as they are written.
+"""Arithmetic of one tick: variables as given, constants as written.
 
 A constant is a fraction until it meets a number that was given; there it becomes the nearest number
 of its kind: of 32-bit floats or of 64-bit floats. Beside whole numbers from 2^53 on it stays what
@@ -38,7 +38,7 @@ class Single(float):
 
 
 class Wide(float):
-    """A float that was chosen beside an `int`: constants are to it what they are to that."""
+    """A float chosen by `min` or `max` beside an `int`; constants treat both alike."""
 
     __slots__ = ()
 

@@ -12,7 +12,7 @@
 import sys
 
 if __name__ == "__main__" and not getattr(sys.flags, "safe_path", False):
-    del sys.path[0]  # what stands beside this file is no library
+    del sys.path[0]  # files beside this one are not libraries
 
 import argparse
 import csv
@@ -43,10 +43,10 @@ Truth = bool | None
 
 
 def boolean(value: object, name: str = "") -> bool:
-    """A truth value that is not unknown, as Python has it: NumPy's Boolean, too.
+    """A Python `bool` from a `bool` or a NumPy Boolean.
 
     Raises:
-        TypeError: it is something else.
+        TypeError: the value is neither.
     """
     if type(value).__name__ in ("bool", "bool_"):
         return bool(value)
@@ -82,48 +82,48 @@ T = TypeVar("T")
 
 class _Signals(NamedTuple):
     trigger: Any
-    """A demand begins here."""
+    """An obligation begins at this tick."""
     breach: Any
-    """A demand is broken here: nothing that follows can repair it."""
+    """An obligation is violated at this tick, for every continuation."""
     doom: Any
-    """Demands are open here that no endless trace meets, though none of them is broken yet."""
+    """No infinite continuation meets the open obligations, though none is violated yet."""
     owed: Any
-    """A demand is open after this tick (where none has been broken before)."""
+    """An obligation is open after this tick (if none was violated before)."""
     fails: Any
-    """The trace would violate the requirement if it ended here, though nothing is broken yet."""
+    """The trace would violate the requirement if it ended here, though nothing is violated yet."""
     settled: Any
-    """Nothing that follows can break a demand any more."""
+    """No continuation can violate the requirement."""
     answer: Any
-    """The response comes here, where a demand waits for one."""
+    """The response to a pending obligation is true at this tick."""
 
 
 class Signals(_Signals, Generic[T]):
-    """A monitor's signals of one requirement: a truth value a tick, or whole columns of them.
+    """A monitor's signals of one requirement: truth values at a tick, or columns of them.
 
-    Each is a `T`; in Python 3.10 no NamedTuple can say so itself.
+    Each field is a `T`; a NamedTuple cannot be generic in Python 3.10.
     """
 
     __slots__ = ()
 
 
 class Requirement(NamedTuple):
-    """Which requirement a monitor watches."""
+    """A requirement of a monitor."""
 
     id: str
     sentence: str
     fingerprint: str
     """SHA-256 of the canonical sentence."""
     horizon: int | None
-    """Ticks from a trigger to its deadline; None where there is no deadline."""
+    """Ticks from a trigger to its deadline; None if there is no deadline."""
 
 
 def truth(must: bool, may: bool) -> Truth:
-    """What holds for certain and what may hold, as one truth value."""
+    """The three-valued truth value of a certain (`must`) and a possible (`may`) value."""
     return must if must == may else None
 
 
 def at_end(broken: Truth, owed: Truth, triggered: Truth) -> Verdict:
-    """The verdict of a trace that ends here."""
+    """The verdict on a trace that ends at this tick."""
     if broken is not False:
         return VIOLATED if broken else NO_DATA
     if owed is not False:
@@ -496,20 +496,20 @@ A = TypeVar("A")
 
 
 class Marks(NamedTuple):
-    """Ticks that a rail remembers of one requirement; -1: none."""
+    """Ticks that a rail stores for one requirement; -1: none."""
 
     broken: int
-    """The first tick at which a demand was broken."""
+    """The first tick at which an obligation was violated."""
     doomed: int
-    """The first tick at which demands were open that nothing can meet."""
+    """The first tick at which open obligations became impossible to meet."""
     last: int
     """The last trigger."""
     open: int
-    """The trigger of the oldest demand that is open; of the latest where a new one replaces it."""
+    """The trigger of the oldest open obligation; of the latest if a new one replaces it."""
 
     @property
     def violated(self) -> int:
-        """The tick at which the violation is certain; -1: it is not."""
+        """The tick at which the violation is certain; -1: not violated."""
         ticks = [tick for tick in (self.broken, self.doomed) if tick >= 0]
         return min(ticks, default=-1)
 
@@ -519,21 +519,21 @@ class Rail(Protocol):
 
     __slots__: tuple[str, ...]
     CELLS: ClassVar[tuple[str, ...]]
-    """The slots that what follows depends on; the others only remember."""
+    """The slots on which later signals depend; the others only store ticks."""
     doubt: bool
     tick: int
 
     def __init__(self, doubt: bool = False) -> None:
-        """Before the first tick."""
+        """Start before the first tick; unknowns count as `doubt`."""
 
     def advance(self, rows: Iterable[Sequence[Any]]) -> bool:
-        """Step every row; whether all was known in them."""
+        """Step over all rows; whether all their values were known."""
 
     def signals(self) -> tuple[Signals[bool], ...]:
         """The signals of the last tick, for each requirement."""
 
     def marks(self) -> tuple[Marks, ...]:
-        """What is remembered, for each requirement."""
+        """The stored ticks of each requirement."""
 
 
 class _Run:
@@ -608,18 +608,18 @@ class Window:
         self.first = self._after(oldest)
         if self.first is None:
             self.last = None
-        if oldest is self.turn:  # it leads to all runs of the other window
+        if oldest is self.turn:  # The other window needs the runs after it.
             self.turn = self.branch = None
 
     def copy(self) -> "Window":
-        """As it is now; only one of both can go on."""
+        """A copy in the same state; only one of both can be stepped further."""
         other = Window(self.lo, self.hi)
         for name in self.__slots__:
             setattr(other, name, getattr(self, name))
         return other
 
     def fork(self) -> "Window":
-        """As it is now; both can go on. A fork has none of its own."""
+        """A copy in the same state; both can be stepped further. A fork cannot be forked."""
         assert self.turn is None
         other = self.copy()
         other.turn = self.last
@@ -639,7 +639,7 @@ class Window:
         return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self._runs())
 
     def is_like(self, other: "Window") -> bool:
-        """Both have one state; their clocks agree. What a fork shares is not looked at again."""
+        """Whether two windows with equal clocks have equal states; shared runs are skipped."""
         mine, theirs, shared = self.first, other.first, other.turn
         youngest = (self.start, self.end), (other.start, other.end)
         if mine is None or theirs is None:
@@ -654,12 +654,12 @@ class Window:
         return mine is theirs is None and youngest[0] == youngest[1]
 
     def _same(self, one: tuple[int, int], other: tuple[int, int]) -> bool:
-        """Both are one run, as far as the window reaches."""
+        """Whether two runs are equal within the window."""
         reach = self.now - self.hi
         return one[1] == other[1] and max(one[0], reach) == max(other[0], reach)
 
     def restore(self, state: Sequence[Sequence[int]]) -> None:
-        """Go back to a state."""
+        """Restore a state."""
         self._clear()
         self.now = self.hi
         for oldest, youngest in state:
@@ -673,7 +673,7 @@ _NONE = -2
 
 
 class Standing(NamedTuple):
-    """The verdict on a requirement if the trace ended now, and what it rests on."""
+    """The verdict on a requirement if the trace ended now, and its reasons."""
 
     requirement: str
     verdict: Verdict
@@ -681,13 +681,13 @@ class Standing(NamedTuple):
     """FRET's verdict on the finite trace up to here."""
     first_violation: int | None
     open: int | None
-    """The trigger of the demand that is open for certain: of the oldest, or of the latest where a
+    """The trigger of the obligation that is certainly open: of the oldest, or of the latest if a
     new one replaces it (`for`, `next`)."""
     deadline: int | None
-    """The last tick at which that can be decided; None where there is no deadline."""
+    """The last tick at which this obligation can be decided; None if it has no deadline."""
     owed: Truth
-    """Whether a demand begins at this tick or is open after it: a driver stops unless it is False.
-    None before the first tick, and where an unknown value decides it."""
+    """Whether an obligation begins at this tick or is open after it. The robot must stop unless it
+    is False. None before the first tick, and if it depends on an unknown value."""
 
 
 _PIECE, _FEW, _SOON = 4096, 64, 64
@@ -769,7 +769,7 @@ class Monitor:
         return tuple(map(_standing, self.REQUIREMENTS, *zip(*readings, strict=True)))
 
     def standings_after(self, rows: Iterable[Row | Mapping[str, Truth]]) -> tuple[Standing, ...]:
-        """The standings if these rows came, too; the monitor stays where it is.
+        """The standings after further rows, without stepping the monitor.
 
         Raises:
             KeyError, TypeError, ValueError: as `advance` does.
@@ -777,7 +777,7 @@ class Monitor:
         return self._after(rows, self.standings)
 
     def owed_after(self, rows: Iterable[Row | Mapping[str, Truth]]) -> tuple[Truth, ...]:
-        """The `owed` of each of these standings, for less.
+        """The `owed` of each of `standings_after(rows)`, but cheaper.
 
         Raises:
             KeyError, TypeError, ValueError: as `advance` does.
@@ -799,7 +799,7 @@ class Monitor:
             vars(self).update(kept)
 
     def _fork(self) -> None:
-        """From now on what may hold differs from what holds for certain."""
+        """Make a separate rail for possible values."""
         if self.may is self.must:
             self._part(_forked(self.must))
 
@@ -819,7 +819,7 @@ class Monitor:
         self._due = self.tick + _SOON
 
     def _meet(self) -> None:
-        """One rail again if both remember the same; looked at ever less often: it may take long."""
+        """Use one rail again if both have equal states; checked less and less often."""
         tick = self.tick
         if tick < self._due:
             return
@@ -828,7 +828,7 @@ class Monitor:
         self._due = tick + max(_SOON, tick - self._apart)
 
     def _is_one(self) -> bool:
-        """Both rails remember the same; windows, which may be long, are looked at last."""
+        """Whether both rails have equal states; windows are compared last."""
         if self.may is self.must:
             return True
         windows = []
@@ -856,7 +856,7 @@ class Monitor:
             before = (self.must, self.may) if len(block) == 1 else self._copies()
             try:
                 self._advance(block)
-            except BaseException:  # whatever it was, both rails stay at one tick
+            except BaseException:  # Both rails must stay at the same tick.
                 self.must, self.may = before
                 raise
 
@@ -980,7 +980,7 @@ def _owed(certain: Signals[bool], possible: Signals[bool]) -> Truth:
 
 
 def finite_verdict(broken: Truth, fails: Truth) -> Truth:
-    """FRET's verdict on a finite trace: nothing was broken, and it may end here."""
+    """FRET's verdict on the finite trace: not violated, and it may end here."""
     if broken or fails:
         return False
     return True if broken is False and fails is False else None
@@ -999,12 +999,12 @@ def literals_of(
 
 
 def _copied(rail: Rail) -> Rail:
-    """A rail in the same state; only one of both can go on."""
+    """A rail in the same state; only one of both can be stepped further."""
     return _with_windows(rail, rail.doubt, Window.copy)
 
 
 def _forked(rail: Rail) -> Rail:
-    """A rail in the same state, on which an unknown counts as true; both can go on."""
+    """A rail in the same state, on which an unknown counts as true; both can be stepped."""
     return _with_windows(rail, True, Window.fork)
 
 
@@ -1058,17 +1058,17 @@ class Outcome:
     """FRET's verdict on the finite trace."""
     first_violation: int | None
     violations: Sequence[tuple[int, int]]
-    """Runs of ticks at which a demand was broken, or was overdue and still unanswered."""
+    """Intervals of ticks at which an obligation was violated, or was overdue without response."""
     unknown: Sequence[tuple[int, int]]
-    """Runs of ticks at which it cannot be known whether a demand was broken."""
+    """Intervals of ticks at which it is unknown whether an obligation was violated."""
     triggers: Sequence[int]
     answers: Sequence[tuple[int, int]]
-    """Trigger and first answer to it, where a demand waits for one and it came."""
+    """Trigger and first response of each obligation that was met."""
     open: Sequence[tuple[int, int | None]]
-    """Trigger and deadline (None: there is none) of each demand that is open at the end."""
+    """Trigger and deadline (None: no deadline) of each obligation that is open at the end."""
     uncertain: Sequence[int] = ()
-    """Triggers whose answer, or whose open demand, may be another where propositions are unknown;
-    of all others it is the same whatever the unknown values were."""
+    """Triggers whose response or open obligation depends on unknown values; all others do not
+    depend on them."""
 
     def as_json(self) -> dict[str, Any]:
         """Plain values, in a fixed order of keys."""
@@ -1212,7 +1212,7 @@ def _at(column: int, tick: int) -> bool:
 
 @dataclass(frozen=True)
 class _Demands:
-    """What becomes of each demand: columns with a bit at its trigger.
+    """The result of each obligation: columns with a bit at its trigger.
 
     A demand waits as long as one may be open, up to the first answer that is certain.
     """
@@ -1227,18 +1227,18 @@ class _Demands:
 
     @cached_property
     def answered(self) -> int:
-        """It waits for an answer, which comes in time."""
+        """The obligations that were met in time."""
         return self.triggers & until(self._waits, self.must_answer, self._most)
 
     @cached_property
     def open(self) -> int:
-        """It waits at the end, and its deadline has not passed."""
+        """The obligations that are open at the end, before their deadline."""
         first = max(_last_run(self._waits, self.ticks), self.ticks - self._most)
         return self.triggers >> first << first
 
     @cached_property
     def uncertain(self) -> int:
-        """It is answered or open, and does not wait up to there for certain."""
+        """The met or open obligations that were possibly not pending until then."""
         waits = self.must_owed ^ self.must_owed & self.may_answer
         first = _last_run(waits, self.ticks)
         certain = until(waits, self.must_answer, self._most) & self.answered
@@ -1246,16 +1246,16 @@ class _Demands:
 
     @property
     def _waits(self) -> int:
-        """The ticks at which a demand may be open, and no answer is certain."""
+        """The ticks at which an obligation may be open, and no response is certain."""
         return self.may_owed ^ self.may_owed & self.must_answer
 
     @property
     def _most(self) -> int:
-        """How many ticks it can wait within the trace."""
+        """How many ticks an obligation can be pending within the trace."""
         return self.ticks if self.horizon is None else min(self.horizon, self.ticks)
 
     def answers(self) -> Iterator[tuple[int, int]]:
-        """Trigger and answer: that is the first one from the trigger on."""
+        """Trigger and response, which is the first one from the trigger on."""
         answers, answer = ticks_of(self.must_answer), -1
         for trigger in ticks_of(self.answered):
             while answer < trigger:
@@ -1263,13 +1263,13 @@ class _Demands:
             yield trigger, answer
 
     def deadlines(self) -> Iterator[tuple[int, int | None]]:
-        """Trigger and deadline of each demand that is open."""
+        """Trigger and deadline of each open obligation."""
         for trigger in ticks_of(self.open):
             yield trigger, None if self.horizon is None else trigger + self.horizon
 
 
 def _last_run(column: int, ticks: int) -> int:
-    """The first tick from which on it is true up to the end; `ticks` where it is not."""
+    """The first tick from which the column is true up to the end; `ticks` if there is none."""
     return (column ^ (1 << ticks) - 1).bit_length()
 
 
@@ -1603,7 +1603,7 @@ def judge(
 
 
 _CLOSED_PIPE = 141
-"""What a shell makes of SIGPIPE, which ends other programs there."""
+"""The exit status after SIGPIPE, as a shell reports it."""
 _FAULTS = (
     ArithmeticError,
     AttributeError,
@@ -1713,7 +1713,7 @@ def _in_words(runs: Sequence[tuple[int, int]]) -> str:
 
 
 def _why_no_data(outcome: Outcome) -> str:
-    """Why nothing is shown, though no demand can have been broken."""
+    """The reason why nothing is shown, although no obligation can have been violated."""
     if not outcome.ticks:
         return "the trace has no tick"
     return "unknown whether there was a trigger, or whether a demand is open at the end"
