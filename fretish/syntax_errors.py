@@ -12,10 +12,9 @@ from fractions import Fraction
 
 from fretish.checking import key_word_as_name
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
-from fretish.diagnostics.fixes import Fix, left_out
+from fretish.diagnostics.fixes import Fix, removal
 from fretish.diagnostics.source import Span
-from fretish.keywords import KEYWORDS
-from fretish.mistakes.operators import (
+from fretish.error_rules.operators import (
     COMPARISONS,
     chain,
     join_of_expressions,
@@ -23,7 +22,7 @@ from fretish.mistakes.operators import (
     other_language,
     parenthesis,
 )
-from fretish.mistakes.order import (
+from fretish.error_rules.order import (
     TIMINGS,
     article,
     behind,
@@ -32,7 +31,8 @@ from fretish.mistakes.order import (
     second_sentence,
     timing,
 )
-from fretish.mistakes.unexpected import STARTS_EXPRESSION, Unexpected, not_fretish
+from fretish.error_rules.unexpected import STARTS_EXPRESSION, Unexpected, not_fretish
+from fretish.keywords import KEYWORDS
 from fretish.units import number, too_long, unit, unknown_unit
 
 _GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
@@ -220,7 +220,7 @@ def _superfluous(u: Unexpected) -> Diagnostic | None:
         return None
     if u.lexeme.kind == "MODE" and not re.search(r"\bwhile\b", u.read.text, re.IGNORECASE):
         return None
-    return not_fretish(reasons[u.lexeme.kind], u.lexeme.span, left_out(u.lexeme.span, is_safe=True))
+    return not_fretish(reasons[u.lexeme.kind], u.lexeme.span, removal(u.lexeme.span, is_safe=True))
 
 
 def _globally(u: Unexpected) -> Diagnostic | None:
@@ -232,7 +232,7 @@ def _globally(u: Unexpected) -> Diagnostic | None:
     return not_fretish(
         f"FRETish has no word for the scope `{u.before.word}`",
         u.before.span,
-        left_out(u.before.span.to(u.lexeme.span) if comma else u.before.span, is_safe=True),
+        removal(u.before.span.to(u.lexeme.span) if comma else u.before.span, is_safe=True),
         "remove it: without a scope a requirement applies to the whole run",
     )
 

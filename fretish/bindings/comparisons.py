@@ -37,7 +37,7 @@ FUNCTIONS = {
 """Function in a sentence → the same function in bindings."""
 
 
-class _MistakeError(Exception):
+class _ComparisonError(Exception):
     """Carries a diagnostic out of the recursion."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
@@ -78,13 +78,13 @@ def _is_computable(part: e.Expression) -> bool:
     match part:
         case e.Arithmetic("^", base, exponent):
             return is_base(base) and _exponent(exponent) is not None
-        case e.Call(name, args) if FUNCTIONS.get(name) in _COUNTS:
-            return len(args) == _COUNTS[FUNCTIONS[name]]
+        case e.Call(name, args) if FUNCTIONS.get(name) in _ARITY:
+            return len(args) == _ARITY[FUNCTIONS[name]]
         case _:
             return True
 
 
-_COUNTS = {"abs": 1, "pre": 2}
+_ARITY = {"abs": 1, "pre": 2}
 """Function → number of its arguments."""
 
 
@@ -118,12 +118,12 @@ def bound(
     comparison: e.Comparison, signals: Mapping[str, Signal], place: Span
 ) -> e.Comparison | Diagnostic:
     """The comparison as an expression of bindings, in which each number has its unit."""
-    found = _Writer(signals, place, bare=False).comparison(comparison)
-    if isinstance(found, Diagnostic):
-        return found
+    rewritten = _Writer(signals, place, bare=False).comparison(comparison)
+    if isinstance(rewritten, Diagnostic):
+        return rewritten
     kinds = {name: signal.unit.dimension for name, signal in signals.items()}
-    wrong = binding.dimension(found, kinds, comparison.span or place)
-    return wrong if isinstance(wrong, Diagnostic) else found
+    dimension = binding.dimension(rewritten, kinds, comparison.span or place)
+    return dimension if isinstance(dimension, Diagnostic) else rewritten
 
 
 def is_mixed(comparison: e.Comparison, signals: Mapping[str, Signal], place: Span) -> bool:
@@ -146,17 +146,17 @@ class _Writer:
     def comparison(self, comparison: e.Comparison) -> e.Comparison | Diagnostic:
         sides = (comparison.left, comparison.right)
         try:
-            common = self._common(sides)
-            left, right = (self._written(side, common) for side in sides)
-        except _MistakeError as error:
+            common = self._common_measure(sides)
+            left, right = (self._rewrite(side, common) for side in sides)
+        except _ComparisonError as error:
             return error.diagnostic
         return replace(comparison, left=left, right=right)
 
     def is_mixed(self, comparison: e.Comparison) -> bool:
         """Whether signals of one dimension have different units."""
         try:
-            return self._common((comparison.left, comparison.right)).mixed
-        except _MistakeError:
+            return self._common_measure((comparison.left, comparison.right)).mixed
+        except _ComparisonError:
             return False
 
     # Units
@@ -164,10 +164,10 @@ class _Writer:
     def _measure(self, part: e.Expression) -> _Measure | None:
         """The unit of a part; None if it consists of bare numbers only."""
         if id(part) not in self._measures:
-            self._measures[id(part)] = self._measured(part)
+            self._measures[id(part)] = self._compute_measure(part)
         return self._measures[id(part)]
 
-    def _measured(self, part: e.Expression) -> _Measure | None:
+    def _compute_measure(self, part: e.Expression) -> _Measure | None:
         match part:
             case e.Number():
                 return None
@@ -182,15 +182,15 @@ class _Writer:
                 return self._power(base, exponent)
             case _:
                 parts = e.children(part)
-                plain = all(self._measure(each) is None for each in parts)
-                return None if plain else self._common(parts)
+                plain = all(self._measure(operand) is None for operand in parts)
+                return None if plain else self._common_measure(parts)
 
     def _unit(self, name: str, span: Span | None) -> Unit:
         """The unit of a quantity; F339 if a part of its name is also a signal."""
         kinds = {id: signal.unit.dimension for id, signal in self._signals.items()}
         kind = binding.dimension(e.Quantity("1", name, span), kinds, self._place)
         if isinstance(kind, Diagnostic):
-            raise _MistakeError(kind)
+            raise _ComparisonError(kind)
         known = unit(name)
         assert known is not None, "the lexer knows all units"
         return known
@@ -199,7 +199,7 @@ class _Writer:
         first, second = self._measure(left), self._measure(right)
         if first is None and second is None:
             return None
-        a, b = _of_factor(first), _of_factor(second)
+        a, b = _factor_measure(first), _factor_measure(second)
         combined = times(a.unit, b.unit, 1 if op == "*" else -1)
         name = unit_product(a.name, b.name) if op == "*" else unit_quotient(a.name, b.name)
         both = bool(a.name and b.name)
@@ -216,7 +216,7 @@ class _Writer:
             name, combined = unit_product(name, first.name), times(combined, first.unit)
         return replace(first, name=name, unit=combined)
 
-    def _common(self, parts: Sequence[e.Expression]) -> _Measure:
+    def _common_measure(self, parts: Sequence[e.Expression]) -> _Measure:
         """The common unit of parts that are compared or added: the unit of their signals."""
         measures = [(part, m) for part in parts if (m := self._measure(part)) is not None]
         if not measures:
@@ -224,7 +224,7 @@ class _Writer:
         _, first = measures[0]
         for part, other in measures:
             if other.unit.dimension != first.unit.dimension:
-                raise _MistakeError(_mismatch(first, other, self._span(part)))
+                raise _ComparisonError(_mismatch(first, other, self._span(part)))
         measured = [m for _, m in measures if m.measured]
         mixed = len({m.unit.factor for m in measured}) > 1 or any(m.mixed for m in measured)
         vague = any(m.vague for _, m in measures)
@@ -235,7 +235,7 @@ class _Writer:
 
     # Numbers
 
-    def _written(self, part: e.Expression, target: _Measure) -> e.Expression:
+    def _rewrite(self, part: e.Expression, target: _Measure) -> e.Expression:
         """The part with its numbers converted into the target's unit."""
         if self._measure(part) is None:
             return self._constant(part, target)
@@ -243,37 +243,37 @@ class _Writer:
             case e.Quantity():
                 return self._quantity(part, target)
             case e.Negation(arg):
-                return replace(part, arg=self._written(arg, target))
+                return replace(part, arg=self._rewrite(arg, target))
             case e.Arithmetic("*" | "/", left, right):
-                return self._factors(part, left, right, target)
+                return self._rewrite_product(part, left, right, target)
             case e.Arithmetic("^"):
-                return self._raised(part, target)
+                return self._rewrite_power(part, target)
             case e.Arithmetic(_, left, right):
-                left, right = self._written(left, target), self._written(right, target)
+                left, right = self._rewrite(left, target), self._rewrite(right, target)
                 return replace(part, left=left, right=right)
             case e.Call(name, args):
                 called = name if self._bare else FUNCTIONS[name]
                 return replace(
-                    part, name=called, args=tuple(self._written(a, target) for a in args)
+                    part, name=called, args=tuple(self._rewrite(a, target) for a in args)
                 )
             case _:
                 return part
 
     def _constant(self, part: e.Expression, target: _Measure) -> e.Expression:
         """A part of bare numbers only, with the target's unit attached where bindings need it."""
-        for each in e.parts(part):
-            if isinstance(each, e.Number) and not _is_number(each.digits):
-                raise _MistakeError(too_long(self._span(each)))
+        for operand in e.parts(part):
+            if isinstance(operand, e.Number) and not _is_number(operand.digits):
+                raise _ComparisonError(too_long(self._span(operand)))
         zero = isinstance(part, e.Number) and number(part.digits) == 0
         if (target.mixed or target.vague) and not zero:
-            raise _MistakeError(_which_unit(self._span(part), target))
+            raise _ComparisonError(_ambiguous_unit(self._span(part), target))
         if self._bare:
             return part
-        part = _in_bindings(part)
+        part = _spell_in_bindings(part)
         if not target.name:
             return part
         if unit(target.name) is None:
-            raise _MistakeError(_which_unit(self._span(part), target))
+            raise _ComparisonError(_ambiguous_unit(self._span(part), target))
         if isinstance(part, e.Number):
             return e.Quantity(part.digits, target.name, part.span)
         if isinstance(part, e.Negation):
@@ -286,39 +286,37 @@ class _Writer:
         factor = self._unit(quantity.unit, quantity.span).factor / target.unit.factor
         return plain(number(quantity.digits) * factor, quantity.span)
 
-    def _factors(
+    def _rewrite_product(
         self, part: e.Arithmetic, left: e.Expression, right: e.Expression, target: _Measure
     ) -> e.Expression:
         """A product or quotient: signals keep their units, quantities get base units.
 
         A product of quantities only is converted as a whole.
         """
-        if self._stays(part, target):
+        if self._keeps_units(part, target):
             return part
         product = replace(
             part,
             left=self._factor(left),
             right=self._factor(right),
         )
-        return self._converted(product, part, target)
+        return self._convert(product, part, target)
 
-    def _stays(self, part: e.Expression, target: _Measure) -> bool:
+    def _keeps_units(self, part: e.Expression, target: _Measure) -> bool:
         """Whether quantities keep their units because signals with different units are combined."""
         own = self._measure(part)
         return self._bare and target.mixed and own is not None and not own.measured
 
-    def _raised(self, part: e.Arithmetic, target: _Measure) -> e.Expression:
+    def _rewrite_power(self, part: e.Arithmetic, target: _Measure) -> e.Expression:
         """A power: the base keeps its unit, and the result is converted."""
-        if self._stays(part, target):
+        if self._keeps_units(part, target):
             return part
-        power = replace(part, left=self._written(part.left, self._measure(part.left) or _PLAIN))
+        power = replace(part, left=self._rewrite(part.left, self._measure(part.left) or _PLAIN))
         if not self._bare:  # bindings write exponents with digits alone
             power = replace(power, right=e.Number(str(_exponent(part.right))))
-        return self._converted(power, part, target)
+        return self._convert(power, part, target)
 
-    def _converted(
-        self, product: e.Arithmetic, part: e.Arithmetic, target: _Measure
-    ) -> e.Expression:
+    def _convert(self, product: e.Arithmetic, part: e.Arithmetic, target: _Measure) -> e.Expression:
         """The rewritten part, converted to the target's unit if it contains no signal."""
         own = self._measure(part)
         assert own is not None
@@ -330,12 +328,12 @@ class _Writer:
     def _factor(self, part: e.Expression) -> e.Expression:
         """An operand of a product. The unit of a bare number added to a quantity is ambiguous."""
         measure = self._measure(part)
-        target = _of_factor(measure)
+        target = _factor_measure(measure)
         added = measure is not None and not measure.measured
-        return self._written(part, replace(target, vague=target.vague or added))
+        return self._rewrite(part, replace(target, vague=target.vague or added))
 
 
-def _of_factor(measure: _Measure | None) -> _Measure:
+def _factor_measure(measure: _Measure | None) -> _Measure:
     """The unit of a factor: quantities are in base units, so `50 %` is 0.5."""
     if measure is None:
         return _PLAIN
@@ -363,9 +361,9 @@ def plain(exact: Fraction, span: Span | None = None) -> e.Expression:
     return e.Number(f"{whole}.{fraction}" if fraction else whole, span)
 
 
-def _in_bindings(part: e.Expression) -> e.Expression:
+def _spell_in_bindings(part: e.Expression) -> e.Expression:
     """An expression of bare numbers with the function names and exponents of bindings."""
-    parts = [_in_bindings(each) for each in e.children(part)]
+    parts = [_spell_in_bindings(operand) for operand in e.children(part)]
     match e.with_children(part, parts):
         case e.Call(name, _) as call:
             return replace(call, name=FUNCTIONS.get(name, name))
@@ -383,7 +381,7 @@ def _is_number(digits: str) -> bool:
     return True
 
 
-def _words(measure: _Measure) -> str:
+def _describe(measure: _Measure) -> str:
     if measure.unit.dimension == DIMENSIONLESS:
         return "a number without a unit"
     return f"a quantity in {measure.name}"
@@ -392,13 +390,13 @@ def _words(measure: _Measure) -> str:
 def _mismatch(left: _Measure, right: _Measure, place: Span) -> Diagnostic:
     return Diagnostic(
         Code.UNIT_MISMATCH,
-        f"{_words(left)} cannot be compared with or added to {_words(right)}",
+        f"{_describe(left)} cannot be compared with or added to {_describe(right)}",
         place,
         help="a bare number is in the unit of the signal beside it",
     )
 
 
-def _which_unit(place: Span, target: _Measure) -> Diagnostic:
+def _ambiguous_unit(place: Span, target: _Measure) -> Diagnostic:
     plain = target.unit.dimension == DIMENSIONLESS
     return Diagnostic(
         Code.WHICH_UNIT,

@@ -21,7 +21,7 @@ def constants(expression: e.Expression) -> set[Exact]:
     A constant sub-expression is one value. `-5 cm` gives two: with and without its sign.
     """
     numbers: set[Exact] = set()
-    measured = _measured(expression)
+    measured = _non_constant_parts(expression)
     waiting = [expression]
     while waiting:
         part = waiting.pop()
@@ -35,7 +35,7 @@ def constants(expression: e.Expression) -> set[Exact]:
     return numbers
 
 
-def _measured(expression: e.Expression) -> set[int]:
+def _non_constant_parts(expression: e.Expression) -> set[int]:
     """The `id` of each part that is not constant: a word, a `pre`, or a part with a name."""
     measured: set[int] = set()
     for part in reversed([*e.parts(expression)]):  # operands before their operators

@@ -25,22 +25,22 @@ MOST_PARTS = 10_000
 """Largest size of an expanded sentence: 100 definitions could each double it."""
 
 
-def circle(definitions: Definitions) -> tuple[str, ...]:
+def find_cycle(definitions: Definitions) -> tuple[str, ...]:
     """The names of a cyclic definition, the first repeated at the end; empty if there is none."""
     done: set[str] = set()
     for name in definitions:
-        path = _circle_from(name, definitions, done)
+        path = _cycle_from(name, definitions, done)
         if path:
             return path
     return ()
 
 
-def _circle_from(start: str, definitions: Definitions, done: set[str]) -> tuple[str, ...]:
+def _cycle_from(start: str, definitions: Definitions, done: set[str]) -> tuple[str, ...]:
     """A cycle that `start` leads to; adds to `done` the names that lead to none."""
     path = {start: None}
-    waiting = [_needs(start, definitions)]
+    waiting = [_dependencies(start, definitions)]
     while waiting:
-        name = next((each for each in waiting[-1] if each not in done), None)
+        name = next((id for id in waiting[-1] if id not in done), None)
         if name is None:
             done.add(path.popitem()[0])
             waiting.pop()
@@ -49,42 +49,44 @@ def _circle_from(start: str, definitions: Definitions, done: set[str]) -> tuple[
             return (*names[names.index(name) :], name)
         else:
             path[name] = None
-            waiting.append(_needs(name, definitions))
+            waiting.append(_dependencies(name, definitions))
     return ()
 
 
-def _needs(name: str, definitions: Definitions) -> Iterator[str]:
+def _dependencies(name: str, definitions: Definitions) -> Iterator[str]:
     """The defined names in the definition of a name."""
     if name in definitions:
         yield from dict.fromkeys(
-            each.id for each in e.names(definitions[name]) if each.id in definitions
+            used.id for used in e.names(definitions[name]) if used.id in definitions
         )
 
 
-def used(sentence: Sentence, definitions: Definitions) -> Definitions:
+def used_definitions(sentence: Sentence, definitions: Definitions) -> Definitions:
     """The definitions that the sentence needs, each after the definitions it depends on."""
-    found: dict[str, e.Expression] = {}
+    ordered: dict[str, e.Expression] = {}
     for expression in conditions(sentence):
         for name in e.names(expression):
-            for each in _order(name.id, definitions, found):
-                found[each] = definitions[each]
-    return found
+            for id in _dependency_order(name.id, definitions, ordered):
+                ordered[id] = definitions[id]
+    return ordered
 
 
-def _order(start: str, definitions: Definitions, done: Mapping[str, object]) -> list[str]:
+def _dependency_order(
+    start: str, definitions: Definitions, done: Mapping[str, object]
+) -> list[str]:
     """The name and the names it depends on, dependencies first."""
-    found: dict[str, None] = {}
-    path = [(start, _needs(start, definitions))] if start in definitions else []
+    ordered: dict[str, None] = {}
+    path = [(start, _dependencies(start, definitions))] if start in definitions else []
     while path:
-        name, needs = path[-1]
-        inner = next((each for each in needs if each not in found and each not in done), None)
+        name, dependencies = path[-1]
+        inner = next((id for id in dependencies if id not in ordered and id not in done), None)
         if inner is not None:
-            path.append((inner, _needs(inner, definitions)))
+            path.append((inner, _dependencies(inner, definitions)))
             continue
         path.pop()
         if name not in done:
-            found[name] = None
-    return list(found)
+            ordered[name] = None
+    return list(ordered)
 
 
 def expanded(sentence: Sentence, needed: Definitions) -> Sentence | Diagnostic:
@@ -100,11 +102,11 @@ def expanded(sentence: Sentence, needed: Definitions) -> Sentence | Diagnostic:
     depths: dict[str, int] = {}
     for name, value in needed.items():
         sizes[name], depths[name] = _size(value, sizes), _depth(value, depths)
-    if sum(_size(each, sizes) for each in conditions(sentence)) > MOST_PARTS:
+    if sum(_size(condition, sizes) for condition in conditions(sentence)) > MOST_PARTS:
         return _too_large(sentence.span)
-    if max(_depth(each, depths) for each in conditions(sentence)) > MOST:
+    if max(_depth(condition, depths) for condition in conditions(sentence)) > MOST:
         return too_deep(sentence)
-    return s.with_expressions(sentence, partial(_put_in, values=needed))
+    return s.with_expressions(sentence, partial(_substitute, values=needed))
 
 
 def _size(tree: e.Expression, sizes: Mapping[str, int]) -> int:
@@ -123,18 +125,18 @@ def _depth(tree: e.Expression, depths: Mapping[str, int]) -> int:
 
 
 @with_recursion_limit
-def _put_in(tree: e.Expression, values: Definitions) -> e.Expression:
+def _substitute(tree: e.Expression, values: Definitions) -> e.Expression:
     """The expression with all defined names replaced, also within their values."""
     if isinstance(tree, e.Name):
-        return _placed(tree, tree.span, values) if tree.id in values else tree
-    return e.with_children(tree, [_put_in(part, values) for part in e.children(tree)])
+        return _with_span(tree, tree.span, values) if tree.id in values else tree
+    return e.with_children(tree, [_substitute(part, values) for part in e.children(tree)])
 
 
-def _placed(tree: e.Expression, span: Span | None, values: Definitions) -> e.Expression:
+def _with_span(tree: e.Expression, span: Span | None, values: Definitions) -> e.Expression:
     """The expanded expression with `span` as the span of each part; each part is built once."""
     while isinstance(tree, e.Name) and tree.id in values:
         tree = values[tree.id]
-    placed = e.with_children(tree, [_placed(part, span, values) for part in e.children(tree)])
+    placed = e.with_children(tree, [_with_span(part, span, values) for part in e.children(tree)])
     match placed:
         case e.Name() | e.Number() | e.Quantity() | e.Negation() | e.Call():
             return replace(placed, span=span)

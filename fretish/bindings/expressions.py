@@ -38,16 +38,16 @@ Kind = Dimension | None
 def parse(text: Span) -> e.Expression | Diagnostic:
     """Parse the whole text as one expression; spans of the tree refer to the text's source."""
     try:
-        return cast(e.Expression, _Build(text).transform(_lark().parse(text.text)))
+        return cast(e.Expression, _TreeBuilder(text).transform(_lark().parse(text.text)))
     except UnexpectedInput as error:
         return _unexpected(error, text)
     except VisitError as error:
-        if isinstance(error.orig_exc, _UnitError):
+        if isinstance(error.orig_exc, _ExpressionError):
             return error.orig_exc.diagnostic
         raise
 
 
-class _UnitError(Exception):
+class _ExpressionError(Exception):
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
         self.diagnostic = diagnostic
@@ -68,7 +68,7 @@ def _parts(children: list[Any]) -> list[Any]:
 
 
 @v_args(inline=False)
-class _Build(Transformer_NonRecursive[Token, Any]):
+class _TreeBuilder(Transformer_NonRecursive[Token, Any]):
     def __init__(self, text: Span) -> None:
         super().__init__()
         self._text = text
@@ -88,7 +88,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
             text = str(token)
             before = len(text) - len(text.lstrip())
             place = self._span(token).part(before, len(text))
-            raise _UnitError(_bad_duration(text.strip(), place))
+            raise _ExpressionError(_bad_duration(text.strip(), place))
         return e.Persistence(arg, duration)
 
     def either(self, children: list[Any]) -> e.Expression:
@@ -126,7 +126,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         split = next(i for i, c in enumerate(text) if _begins_unit(text, i, c))
         name = text[split:].strip()
         if unit(name) is None:
-            raise _UnitError(unknown_unit(name, self._span(children[0])))
+            raise _ExpressionError(unknown_unit(name, self._span(children[0])))
         return e.Quantity(text[:split].strip(), name, self._span(children[0]))
 
     def number(self, children: list[Token]) -> e.Expression:
@@ -158,7 +158,8 @@ def dimension(
 ) -> Kind | Diagnostic:
     """The dimension of the expression; None for a truth value; F305-F309 if it has errors.
 
-    A word counts as a plain number, the index of its value. `words` checks where a word is allowed.
+    A word counts as a plain number, the index of its value. `resolve_words` checks where a word is
+    allowed.
 
     Args:
         expression: the expression.
@@ -191,13 +192,13 @@ def dimension(
             if name not in FUNCTIONS:
                 return _unknown_function(name, span or place)
             if name == "abs" and len(args) != 1:
-                return _wrong_kind("`abs` takes one number", expression, span or place)
+                return _kind_error("`abs` takes one number", expression, span or place)
             if name == "pre" and len(args) != 2:
                 why = "`pre` takes the value at the first tick, and a number: `pre(0 m/s, speed)`"
-                return _wrong_kind(why, expression, span or place)
+                return _kind_error(why, expression, span or place)
             if ticks_back(expression) > MOST_TICKS_BACK:
                 why = f"`pre` looks back by more than {MOST_TICKS_BACK} ticks"
-                return _wrong_kind(why, expression, span or place)
+                return _kind_error(why, expression, span or place)
             return _numbers(list(args), kinds, span or place)
         case _:
             return _truths(e.children(expression), kinds, place)
@@ -213,7 +214,7 @@ def _truths(
         if isinstance(arg, e.Name) and kind == DIMENSIONLESS:
             continue  # 1 is true, and 0 is false
         if kind is not None:
-            return _wrong_kind("a truth value is needed, and this is a number", arg, place)
+            return _kind_error("a truth value is needed, and this is a number", arg, place)
     return None
 
 
@@ -227,10 +228,10 @@ def _numbers(
         if isinstance(kind, Diagnostic):
             return kind
         if kind is None:
-            return _wrong_kind("a number is needed, and this is a truth value", arg, place)
+            return _kind_error("a number is needed, and this is a truth value", arg, place)
         if common is not None and kind != common:
             return _mismatch(
-                f"{_in_words(common)} cannot be compared with or added to {_in_words(kind)}",
+                f"{_describe(common)} cannot be compared with or added to {_describe(kind)}",
                 arg,
                 place,
             )
@@ -283,7 +284,7 @@ def is_base(base: e.Expression) -> bool:
     return not any(isinstance(part, e.Arithmetic) and part.op == "^" for part in e.parts(base))
 
 
-def _in_words(dimension: Dimension) -> str:
+def _describe(dimension: Dimension) -> str:
     name = base_name(dimension)
     return f"a quantity in {name}" if name else "a number without a unit"
 
@@ -297,7 +298,7 @@ def _mismatch(message: str, part: e.Expression, place: Span) -> Diagnostic:
     )
 
 
-def _wrong_kind(message: str, part: e.Expression, place: Span) -> Diagnostic:
+def _kind_error(message: str, part: e.Expression, place: Span) -> Diagnostic:
     return Diagnostic(
         Code.BAD_EXPRESSION,
         message,

@@ -48,10 +48,12 @@ _KINDS = (
 def kind(type_name: str) -> Kind | None:
     """The kind of a FRET data type; None for any other type."""
     name = " ".join(type_name.lower().split())
-    return next((found for form, found in _KINDS if re.fullmatch(form, name)), None)
+    return next((value_kind for pattern, value_kind in _KINDS if re.fullmatch(pattern, name)), None)
 
 
-def misuses(expression: e.Expression, variables: Variables, place: Span) -> Iterator[Diagnostic]:
+def type_errors(
+    expression: e.Expression, variables: Variables, place: Span
+) -> Iterator[Diagnostic]:
     """F344 for each use of a variable in a Boolean expression that its type does not allow.
 
     Args:
@@ -62,7 +64,7 @@ def misuses(expression: e.Expression, variables: Variables, place: Span) -> Iter
     yield from _Check(variables, place).truth(expression)
 
 
-def misuses_of_value(variable: Variable, variables: Variables) -> Iterator[Diagnostic]:
+def value_type_errors(variable: Variable, variables: Variables) -> Iterator[Diagnostic]:
     """F344 if the value of a variable does not have its type, and for each misuse in the value."""
     value, place = variable.value, variable.span
     assert value is not None
@@ -70,8 +72,8 @@ def misuses_of_value(variable: Variable, variables: Variables) -> Iterator[Diagn
     check = _Check(variables, place)
     declared, actual = kind(variable.type), check.kind(value)
     if declared is not None and actual is not None and declared.is_number != actual.is_number:
-        yield _misuse(
-            f"is declared {variable.type}, and its value is a {_words(actual)}",
+        yield _type_error(
+            f"is declared {variable.type}, and its value is a {_kind_name(actual)}",
             variable.name,
             place,
         )
@@ -97,7 +99,7 @@ class _Check:
         match tree:
             case e.Name(id, span):
                 if (declared := self._declared(id)) is not None and declared.is_number:
-                    yield self._wanted("truth value", id, span)
+                    yield self._wrong_kind("truth value", id, span)
             case e.Comparison():
                 yield from self._comparison(tree)
             case e.Call(name, args):
@@ -111,7 +113,7 @@ class _Check:
         match tree:
             case e.Name(id, span):
                 if self._declared(id) is Kind.TRUTH:
-                    yield self._wanted("number", id, span)
+                    yield self._wrong_kind("number", id, span)
             case e.Call(name, args):
                 yield from self._arguments(name, args)
             case _:
@@ -142,7 +144,7 @@ class _Check:
         else:
             return
         place = getattr(value, "span", None) or self._place
-        yield _misuse(f"is declared {self._type(id)}, and {printed(value)} is {why}", id, place)
+        yield _type_error(f"is declared {self._type(id)}, and {printed(value)} is {why}", id, place)
 
     def _comparison(self, tree: e.Comparison) -> Iterator[Diagnostic]:
         """Truth values can be compared by `=` and `!=`; every other comparison needs numbers."""
@@ -189,16 +191,16 @@ class _Check:
             case _:
                 return None
 
-    def _wanted(self, what: str, id: str, span: Span | None) -> Diagnostic:
+    def _wrong_kind(self, what: str, id: str, span: Span | None) -> Diagnostic:
         why = f"is declared {self._type(id)}, and a {what} is needed here"
-        return _misuse(why, id, span or self._place)
+        return _type_error(why, id, span or self._place)
 
 
-def _words(kind: Kind) -> str:
+def _kind_name(kind: Kind) -> str:
     return "truth value" if kind is Kind.TRUTH else "number"
 
 
-def _misuse(why: str, id: str, place: Span) -> Diagnostic:
+def _type_error(why: str, id: str, place: Span) -> Diagnostic:
     return Diagnostic(
         Code.VARIABLE_TYPE,
         f"`{id}` {why}",

@@ -52,7 +52,7 @@ class FixedText:
     @property
     def span(self) -> Span:
         """The fixed text as a new source with the same name."""
-        return Source(self.original.source.name, applied(self.original, self.fixes)).span()
+        return Source(self.original.source.name, apply_fixes(self.original, self.fixes)).span()
 
     def place(self, span: Span) -> Span:
         """The span in the original text of a span in the fixed text."""
@@ -82,14 +82,14 @@ class FixedText:
         return place, place + 1
 
 
-def left_out(span: Span, *, is_safe: bool = False) -> Fix:
+def removal(span: Span, *, is_safe: bool = False) -> Fix:
     """The fix that removes a span and the white space after it."""
     rest = span.source.text[span.end :]
     blank = len(rest) - len(rest.lstrip(" \t"))
     return Fix(Span(span.source, span.start, span.end + blank), "", is_safe)
 
 
-def applied(text: Span, fixes: Sequence[Fix]) -> str:
+def apply_fixes(text: Span, fixes: Sequence[Fix]) -> str:
     """The text with all fixes applied.
 
     Args:

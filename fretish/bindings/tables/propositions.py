@@ -10,7 +10,7 @@ from fretish import units
 from fretish.bindings import expressions as binding
 from fretish.bindings.declarations import Aggregate, Default, Proposition, Role, Signal
 from fretish.bindings.tables.fields import Fields, Notes
-from fretish.bindings.words import words
+from fretish.bindings.words import resolve_words
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.toml_text import Tables
 
@@ -71,7 +71,7 @@ class PropositionTables(Fields):
         unknown = self._tables("signal").keys() - self._signals.keys()
         if any(name.id in unknown for name in e.names(written)):
             return None  # The signal already has a diagnostic.
-        expression = words(written, self._signals, place)
+        expression = resolve_words(written, self._signals, place)
         if isinstance(expression, Diagnostic):
             self.notes.diagnostics.append(expression)
             return None

@@ -9,7 +9,7 @@ from typing import Any
 
 from fretish import expressions as e
 from fretish.bindings.declarations import Role, Variable
-from fretish.bindings.definitions import circle
+from fretish.bindings.definitions import find_cycle
 from fretish.bindings.tables.fields import Fields
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
@@ -158,7 +158,7 @@ class VariableTables(Fields):
                     self._of_value(name, component),
                     "remove one of them",
                 )
-        chain = circle(values)
+        chain = find_cycle(values)
         if chain:
             self._say(
                 Code.DEFINITION_CIRCLE,

@@ -6,7 +6,7 @@ from fretish import expressions as e
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.expressions import parse
 from fretish.bindings.tables.reader import read_bindings
-from fretish.bindings.words import words
+from fretish.bindings.words import resolve_words
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.parser import parse as sentence
@@ -138,7 +138,7 @@ def test_a_name_of_a_sentence_is_a_word_with_quotes_and_without() -> None:
     for text in ('"mode" = docking', '"mode" = "docking"'):
         tree = sentence(Source("r", f"the agv shall always satisfy {text} & p").span())
         assert not isinstance(tree, Diagnostic)
-        found = words(tree.response, declared.signals)
+        found = resolve_words(tree.response, declared.signals)
         docks = e.Comparison("=", MODE, e.Word("docking"))
         assert found == e.And((docks, e.Name("p")))
         assert expression(docks) == '"mode" = docking'
@@ -153,7 +153,7 @@ def test_a_deep_sentence_is_read() -> None:
         tree = e.Not(tree)
     declared, _ = read("drive")
     assert declared is not None
-    found = words(tree, declared.signals)
+    found = resolve_words(tree, declared.signals)
     assert e.Word("docking") in [p for p in e.parts(found) if isinstance(p, e.Word)]  # type: ignore[arg-type]
 
 

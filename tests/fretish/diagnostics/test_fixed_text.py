@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretish.diagnostics.diagnostic import suggestion
-from fretish.diagnostics.fixes import Fix, FixedText, applied
+from fretish.diagnostics.fixes import Fix, FixedText, apply_fixes
 from fretish.diagnostics.source import Source, Span
 
 SOURCE = Source("r.fret", "0123456789abcdefghij")
@@ -25,7 +25,7 @@ def fixed(draw: st.DrawFn) -> FixedText:
 @given(fixed())
 def test_what_no_fix_touches_is_where_it_was(text: FixedText) -> None:
     read = text.span
-    assert read.text == applied(text.original, text.fixes)
+    assert read.text == apply_fixes(text.original, text.fixes)
     for at, character in enumerate(read.text):
         place = text.place(read.part(at, at + 1))
         if character in "XYZ":

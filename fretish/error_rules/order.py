@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.fixes import Fix, left_out
+from fretish.diagnostics.fixes import Fix, removal
 from fretish.diagnostics.source import Span
-from fretish.mistakes.operators import JOIN
-from fretish.mistakes.unexpected import Unexpected, not_fretish
+from fretish.error_rules.operators import JOIN
+from fretish.error_rules.unexpected import Unexpected, not_fretish
 
 _SIMPLE_TIMINGS = frozenset(
     {"IMMEDIATELY", "INITIALLY", "FINALLY", "EVENTUALLY", "ALWAYS", "NEVER"}
@@ -166,7 +166,7 @@ def missing_part(u: Unexpected) -> Diagnostic | None:
         return None
     word, kind = u.before.word, u.before.kind
     if u.lexeme.word.lower() == word.lower() and word.isalpha():
-        leave = left_out(u.lexeme.span, is_safe=True)
+        leave = removal(u.lexeme.span, is_safe=True)
         return not_fretish(f"`{word}` is written twice", u.lexeme.span, leave)
     part = next((part for part, kinds in _PARTS.items() if kind in kinds), "")
     begins = u.lexeme.kind in ("SATISFY", "SHALL") or _is_component(u.rest.text)
@@ -196,7 +196,7 @@ def article(u: Unexpected) -> Diagnostic | None:
         return None
     message, words = "an expression cannot contain `the`", _words(u)
     if len(words) == 1:
-        return not_fretish(message, u.lexeme.span, left_out(u.lexeme.span, is_safe=True))
+        return not_fretish(message, u.lexeme.span, removal(u.lexeme.span, is_safe=True))
     name = "_".join(word for word in words if word.lower() not in _SMALL)
     example = f"such as `{name}` for these words, " if name else ""
     return not_fretish(

@@ -3,7 +3,7 @@
 import pytest
 
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.diagnostics.fixes import applied
+from fretish.diagnostics.fixes import apply_fixes
 from fretish.diagnostics.source import Source
 from fretish.parser import parse
 from fretish.syntax import Sentence
@@ -46,7 +46,7 @@ def test_a_fix_puts_the_part_where_it_belongs(text: str, message: str, fixed: st
     assert found.fix is not None
     assert found.span is not None
     whole = found.span.source.span()
-    assert applied(whole, [found.fix]) == f"the sw shall {fixed}"
+    assert apply_fixes(whole, [found.fix]) == f"the sw shall {fixed}"
     assert isinstance(parse(Source("r.fret", f"the sw shall {fixed}").span()), Sentence)
 
 

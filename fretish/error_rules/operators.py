@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.diagnostics.fixes import Fix, left_out
+from fretish.diagnostics.fixes import Fix, removal
 from fretish.diagnostics.source import Span
-from fretish.mistakes.precedence import one_way
-from fretish.mistakes.unexpected import STARTS_EXPRESSION, Lexeme, Unexpected, not_fretish
+from fretish.error_rules.precedence import one_way
+from fretish.error_rules.unexpected import STARTS_EXPRESSION, Lexeme, Unexpected, not_fretish
 
 COMPARISONS = ("LESS", "AT_MOST", "GREATER", "AT_LEAST", "EQUAL", "UNEQUAL")
 _WORDS = {"not": "!", "true": "true", "false": "false"}
@@ -48,7 +48,7 @@ def unknown_character(text: Span, at: int) -> Diagnostic:
         name = quoted[1] or quoted[2]
         fix = Fix(Span(text.source, quoted.start(), quoted.end()), f'"{name}"', is_safe=True)
     elif span.text == ";" and not text.text[at + 1 :].strip(" \t\r\n.;"):
-        fix = left_out(span, is_safe=True)
+        fix = removal(span, is_safe=True)
     return not_fretish(f"FRETish does not use the character `{span.text}`", span, fix)
 
 
@@ -158,7 +158,7 @@ def number_form(u: Unexpected) -> Diagnostic | None:
 def parenthesis(u: Unexpected) -> Diagnostic | None:
     """F101 for a missing or superfluous parenthesis; no fix is safe."""
     if u.lexeme.kind == "RPAR" and u.wants("$END", "SATISFY", "SHALL"):
-        fix = left_out(u.lexeme.span)
+        fix = removal(u.lexeme.span)
         words = "remove it, or write the `(` that it closes"
         return not_fretish("there is no `(` for this `)`", u.lexeme.span, fix, words)
     if not u.lexeme.at_end or not u.wants("RPAR"):
