@@ -16,20 +16,20 @@ from fretish.diagnostics.fixes import Fix, removal
 from fretish.diagnostics.source import Span
 from fretish.error_rules.operators import (
     COMPARISONS,
-    chain,
-    join_of_expressions,
-    number_form,
-    other_language,
-    parenthesis,
+    chained_comparison,
+    malformed_number,
+    unmatched_parenthesis,
+    wrong_join,
+    wrong_operator,
 )
 from fretish.error_rules.order import (
     TIMINGS,
-    article,
-    behind,
+    further_sentence,
+    misplaced_part,
     missing_part,
-    out_of_order,
-    second_sentence,
-    timing,
+    part_after_response,
+    superfluous_article,
+    wrong_timing,
 )
 from fretish.error_rules.unexpected import STARTS_EXPRESSION, Unexpected, not_fretish
 from fretish.keywords import KEYWORDS
@@ -157,7 +157,7 @@ def bad_probability(span: Span) -> Diagnostic:
 
 
 def _unit(u: Unexpected) -> Diagnostic | None:
-    if not u.wants(*_UNITS):
+    if not u.expects(*_UNITS):
         return None
     words = "write ticks, microseconds, milliseconds, seconds, minutes or hours: `within 3 seconds`"
     if u.lexeme.kind != "ID":
@@ -174,10 +174,10 @@ def _unit(u: Unexpected) -> Diagnostic | None:
 
 def _measured(u: Unexpected) -> Diagnostic | None:
     """A name after a number, in the position of a unit."""
-    if u.before is None or u.before.kind != "NUMBER" or u.lexeme.kind != "ID":
+    if u.previous is None or u.previous.kind != "NUMBER" or u.lexeme.kind != "ID":
         return None
     if unit(u.lexeme.word) is not None:
-        return too_long(u.before.span)
+        return too_long(u.previous.span)
     return unknown_unit(u.lexeme.word, u.lexeme.span)
 
 
@@ -192,7 +192,7 @@ def _unit_fix(span: Span) -> Fix | None:
 
 def _number(u: Unexpected) -> Diagnostic | None:
     """F108 for a duration that does not begin with a number."""
-    if u.before is None or u.before.kind not in ("WITHIN", "FOR", "AFTER"):
+    if u.previous is None or u.previous.kind not in ("WITHIN", "FOR", "AFTER"):
         return None
     if not u.accepts <= {"NUMBER", "MINUS"}:
         return None
@@ -200,7 +200,7 @@ def _number(u: Unexpected) -> Diagnostic | None:
         Code.BAD_DURATION,
         "a duration must begin with a number in digits",
         u.lexeme.span,
-        help=f"write, for example, `{u.before.word} N seconds`",
+        help=f"write, for example, `{u.previous.word} N seconds`",
     )
 
 
@@ -212,27 +212,29 @@ def _superfluous(u: Unexpected) -> Diagnostic | None:
         "MODE": "`while` needs an expression, not a mode",
     }
     fits = {
-        "THEN": u.wants("SHALL", "WHENEVER"),
-        "THE": u.wants("MODE", "ID") and not u.wants("SHALL") and u.follows("IN", "DURING", "MODE"),
-        "MODE": u.wants("SHALL", "_AMPERSAND"),
+        "THEN": u.expects("SHALL", "WHENEVER"),
+        "THE": u.expects("MODE", "ID")
+        and not u.expects("SHALL")
+        and u.follows("IN", "DURING", "MODE"),
+        "MODE": u.expects("SHALL", "_AMPERSAND"),
     }
     if not fits.get(u.lexeme.kind, False):
         return None
-    if u.lexeme.kind == "MODE" and not re.search(r"\bwhile\b", u.read.text, re.IGNORECASE):
+    if u.lexeme.kind == "MODE" and not re.search(r"\bwhile\b", u.text_before.text, re.IGNORECASE):
         return None
     return not_fretish(reasons[u.lexeme.kind], u.lexeme.span, removal(u.lexeme.span, is_safe=True))
 
 
 def _globally(u: Unexpected) -> Diagnostic | None:
-    if u.before is None or u.before.word.lower() not in ("globally", "global", "everywhere"):
+    if u.previous is None or u.previous.word.lower() not in ("globally", "global", "everywhere"):
         return None
-    if not u.wants("SHALL"):
+    if not u.expects("SHALL"):
         return None
     comma = u.lexeme.kind == "_COMMA"
     return not_fretish(
-        f"FRETish has no word for the scope `{u.before.word}`",
-        u.before.span,
-        removal(u.before.span.to(u.lexeme.span) if comma else u.before.span, is_safe=True),
+        f"FRETish has no word for the scope `{u.previous.word}`",
+        u.previous.span,
+        removal(u.previous.span.to(u.lexeme.span) if comma else u.previous.span, is_safe=True),
         "remove it: without a scope a requirement applies to the whole run",
     )
 
@@ -241,7 +243,7 @@ def _mode(u: Unexpected) -> Diagnostic | None:
     """`in p & q`."""
     if u.lexeme.kind not in ("_AMPERSAND", "_BAR", *COMPARISONS):
         return None
-    if not u.wants("MODE") or u.wants("NUMBER"):
+    if not u.expects("MODE") or u.expects("NUMBER"):
         return None
     return not_fretish(
         "a mode must be one name",
@@ -252,7 +254,7 @@ def _mode(u: Unexpected) -> Diagnostic | None:
 
 def _shall(u: Unexpected) -> Diagnostic | None:
     word = u.lexeme.word.lower()
-    if not u.wants("SHALL") or word not in (*_SHALL, *_WEAKER):
+    if not u.expects("SHALL") or word not in (*_SHALL, *_WEAKER):
         return None
     fix = Fix(u.lexeme.span, "shall", is_safe=word in _SHALL)
     return Diagnostic(
@@ -266,7 +268,7 @@ def _shall(u: Unexpected) -> Diagnostic | None:
 
 def _missing_shall(u: Unexpected) -> Diagnostic | None:
     """`the sw satisfy p`, `the sw always satisfy p`."""
-    if not u.wants("SHALL") or u.wants("$END") or not u.follows("ID", "QUOTED"):
+    if not u.expects("SHALL") or u.expects("$END") or not u.follows("ID", "QUOTED"):
         return None
     if u.lexeme.kind not in ("SATISFY", *TIMINGS) or re.search(r"\bshall\b", u.rest.text, re.I):
         return None
@@ -282,20 +284,20 @@ def _missing_shall(u: Unexpected) -> Diagnostic | None:
 
 def _component(u: Unexpected) -> Diagnostic | None:
     """`the big robot shall`."""
-    if u.before is None or not (u.follows("ID") and u.lexeme.kind == "ID" and u.wants("SHALL")):
+    if u.previous is None or not (u.follows("ID") and u.lexeme.kind == "ID" and u.expects("SHALL")):
         return None
     if not re.match(r"[\w.%]+\s+shall\b", u.rest.text, re.IGNORECASE):
         return None
-    both = u.before.span.to(u.lexeme.span)
-    fix = Fix(both, f"{u.before.word}_{u.lexeme.word}")
+    both = u.previous.span.to(u.lexeme.span)
+    fix = Fix(both, f"{u.previous.word}_{u.lexeme.word}")
     return not_fretish("a component must be one name", both, fix)
 
 
 def _misspelt(u: Unexpected) -> Diagnostic | None:
     """F107 for a name that is similar to a key word, where only a key word is allowed."""
-    suspects = [u.lexeme] if not u.wants("ID") else []
-    if u.before is not None and u.wants("SHALL"):
-        suspects.append(u.before)
+    suspects = [u.lexeme] if not u.expects("ID") else []
+    if u.previous is not None and u.expects("SHALL"):
+        suspects.append(u.previous)
     for suspect in suspects:
         near = suggestion(suspect.word, KEYWORDS, cutoff=0.72)
         if suspect.kind == "ID" and near is not None:
@@ -311,7 +313,7 @@ def _misspelt(u: Unexpected) -> Diagnostic | None:
 
 
 def _missing_satisfy(u: Unexpected) -> Diagnostic | None:
-    if not u.wants("SATISFY") or u.lexeme.kind not in STARTS_EXPRESSION:
+    if not u.expects("SATISFY") or u.lexeme.kind not in STARTS_EXPRESSION:
         return None
     response = u.rest
     two_words = _TWO_WORDS.match(response.text) is not None
@@ -325,29 +327,29 @@ def _missing_satisfy(u: Unexpected) -> Diagnostic | None:
 
 
 def _missing_component(u: Unexpected) -> Diagnostic | None:
-    if re.search(r"\bsatisfy\b", u.read.text, re.IGNORECASE):
+    if re.search(r"\bsatisfy\b", u.text_before.text, re.IGNORECASE):
         return None
-    starts = u.lexeme.kind == "SHALL" and u.wants("ID")
-    ends = u.follows("SHALL") and u.wants("ID")
+    starts = u.lexeme.kind == "SHALL" and u.expects("ID")
+    ends = u.follows("SHALL") and u.expects("ID")
     if not starts and not (ends and u.lexeme.word.lower() in KEYWORDS):
         return None
     return Diagnostic(
         Code.MISSING_COMPONENT,
         "there is no component before `shall`",
-        u.lexeme.span if starts or u.before is None else u.before.span,
+        u.lexeme.span if starts or u.previous is None else u.previous.span,
         help="name what must satisfy the requirement: `the rover shall ...`",
     )
 
 
 def _key_word_as_name(u: Unexpected) -> Diagnostic | None:
-    if not u.wants("ID") or u.lexeme.word.lower() not in KEYWORDS:
+    if not u.expects("ID") or u.lexeme.word.lower() not in KEYWORDS:
         return None
     return key_word_as_name(u.lexeme.span)
 
 
 def _does_not_fit(u: Unexpected) -> Diagnostic:
-    own = frozenset({"MODE"}) if u.wants("ID") else frozenset()  # there `mode` is a name, too
-    expected = [words for words, kinds in _GROUPS if u.wants(*kinds - own)]
+    own = frozenset({"MODE"}) if u.expects("ID") else frozenset()  # there `mode` is a name, too
+    expected = [words for words, kinds in _GROUPS if u.expects(*kinds - own)]
     message = (
         "the sentence ends too early" if u.lexeme.at_end else f"`{u.lexeme.word}` does not fit here"
     )
@@ -364,7 +366,7 @@ def _alternatives(words: list[str]) -> str:
 
 
 _RULES: tuple[Callable[[Unexpected], Diagnostic | None], ...] = (
-    second_sentence,
+    further_sentence,
     _unit,
     _measured,
     _number,
@@ -373,15 +375,15 @@ _RULES: tuple[Callable[[Unexpected], Diagnostic | None], ...] = (
     _shall,
     missing_part,
     _superfluous,
-    out_of_order,
-    behind,
-    timing,
-    other_language,
-    join_of_expressions,
-    chain,
-    number_form,
-    parenthesis,
-    article,
+    misplaced_part,
+    part_after_response,
+    wrong_timing,
+    wrong_operator,
+    wrong_join,
+    chained_comparison,
+    malformed_number,
+    unmatched_parenthesis,
+    superfluous_article,
     _missing_shall,
     _component,
     _misspelt,

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from fretish.diagnostics.source import Span
 
 _WORDS = {"and", "or", "implies", "iff", "xor"}
-_RIVALS = {
+_CONFLICTS = {
     "&&": {"|", "xor"},
     "||": {"xor"},
     "and": {"|", "||", "->", "=>", "<->", "<=>"} | _WORDS - {"and"},
@@ -24,14 +24,14 @@ _RIVALS = {
 _OPERATOR = re.compile(
     rf"<->|<=>|->|=>|\|\||&&|\||&|\b(?:{'|'.join(sorted(_WORDS))})\b", re.IGNORECASE
 )
-_ENDS = re.compile(
+_PART_ENDS = re.compile(
     r"\b(?:shall|satisfy|until|before|after|whenever|when|where|if|then|upon|unless|while)\b",
     re.IGNORECASE,
 )
 _QUOTED = re.compile(r'"[^"\n]*"')
 
 
-def one_way(text: Span, at: Span, operator: str) -> bool:
+def is_unambiguous(text: Span, at: Span, operator: str) -> bool:
     """Whether the precedence of an operator is clear relative to the operators beside it.
 
     Args:
@@ -39,22 +39,24 @@ def one_way(text: Span, at: Span, operator: str) -> bool:
         at: the span of the operator.
         operator: the operator in lower case, without white space.
     """
-    beside = {found.lower() for found in _OPERATOR.findall(_level(text, at))}
-    return beside.isdisjoint(_RIVALS.get(operator, frozenset()))
+    beside = {found.lower() for found in _OPERATOR.findall(_surrounding_text(text, at))}
+    return beside.isdisjoint(_CONFLICTS.get(operator, frozenset()))
 
 
-def _level(text: Span, at: Span) -> str:
+def _surrounding_text(text: Span, at: Span) -> str:
     """The text around a span, within the same parentheses and the same part of the sentence."""
     source = text.source.text
-    left = _outer(reversed(_QUOTED.sub("x", source[text.start : at.start])), ")", "(")[::-1]
-    right = _outer(_QUOTED.sub("x", source[at.end : text.end]), "(", ")")
-    return f"{_ENDS.split(left)[-1]} {_ENDS.split(right)[0]}"
+    left = _outside_parentheses(
+        reversed(_QUOTED.sub("x", source[text.start : at.start])), ")", "("
+    )[::-1]
+    right = _outside_parentheses(_QUOTED.sub("x", source[at.end : text.end]), "(", ")")
+    return f"{_PART_ENDS.split(left)[-1]} {_PART_ENDS.split(right)[0]}"
 
 
-def _outer(characters: Iterable[str], opening: str, closing: str) -> str:
+def _outside_parentheses(characters: Iterable[str], opening: str, closing: str) -> str:
     """The characters outside of inner parentheses, up to the end of the enclosing ones."""
     depth = 0
-    kept = []
+    outside = []
     for character in characters:
         if character == closing:
             if depth == 0:
@@ -63,5 +65,5 @@ def _outer(characters: Iterable[str], opening: str, closing: str) -> str:
         elif character == opening:
             depth += 1
         elif depth == 0:
-            kept.append(character)
-    return "".join(kept)
+            outside.append(character)
+    return "".join(outside)

@@ -34,22 +34,22 @@ class Unexpected:
     """The first unexpected word, with its context."""
 
     lexeme: Lexeme
-    before: Lexeme | None
+    previous: Lexeme | None
     accepts: frozenset[str]
     """The kinds of word that the grammar expects."""
     text: Span
     """The whole sentence."""
 
-    def wants(self, *kinds: str) -> bool:
+    def expects(self, *kinds: str) -> bool:
         """Whether the grammar expects a word of one of the kinds."""
         return not self.accepts.isdisjoint(kinds)
 
     def follows(self, *kinds: str) -> bool:
         """Whether the previous word is of one of the kinds."""
-        return self.before is not None and self.before.kind in kinds
+        return self.previous is not None and self.previous.kind in kinds
 
     @property
-    def read(self) -> Span:
+    def text_before(self) -> Span:
         """The text before the unexpected word, which is correct."""
         return Span(self.text.source, self.text.start, self.lexeme.span.start)
 
