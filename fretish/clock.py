@@ -70,7 +70,7 @@ class Clock:
     """Nanoseconds between a tick and its evaluation; None: evaluated when the run has ended."""
 
     @property
-    def patience(self) -> int | None:
+    def effective_lateness(self) -> int | None:
         """The effective lateness: 0 with log time, which is the time of arrival."""
         return 0 if self.time is TimeSource.LOG_TIME else self.lateness
 

@@ -96,7 +96,7 @@ def requirements(source: Source) -> tuple[tuple[RequirementEntry, ...], tuple[Di
     return tuple(found), tuple(diagnostics)
 
 
-def unread(path: str, why: Diagnostic) -> RequirementEntry:
+def unreadable_file(path: str, why: Diagnostic) -> RequirementEntry:
     """A requirement that represents an unreadable file, with the file name as its id."""
     source = Source(path, "")
     return _unread(source, source.span(), why)

@@ -58,7 +58,7 @@ def _formalized(
     written = parse(entry.wording)
     if isinstance(written, Diagnostic):
         return None, find_errors(entry.wording)
-    declarations = declarations.about(written.component) if declarations else None
+    declarations = declarations.for_component(written.component) if declarations else None
     definitions = used_definitions(written, declarations.definitions) if declarations else {}
     wrong = _misuses(written, definitions, declarations, entry.wording)
     if wrong:

@@ -46,7 +46,7 @@ class Reading(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Invalid:
+class InvalidReadings:
     """How each kind of invalid reading is interpreted (REP 117)."""
 
     nan: Reading = Reading.UNKNOWN
@@ -56,7 +56,7 @@ class Invalid:
     """A finite number outside of `valid`."""
 
 
-REP_117 = Invalid(Reading.DROP, Reading.FAR, Reading.NEAR, Reading.DROP)
+REP_117 = InvalidReadings(Reading.DROP, Reading.FAR, Reading.NEAR, Reading.DROP)
 """ROS Enhancement Proposal 117: -inf is too near, +inf is nothing in range, NaN is an error."""
 
 
@@ -132,7 +132,7 @@ class Signal:
     type: str | None = None
     reduce: Reduce | None = None
     valid: Expression | None = None
-    invalid: Invalid = Invalid()
+    invalid: InvalidReadings = InvalidReadings()
     max_age: int | None = None
     role: Role | None = None
     aggregate: Aggregate = Aggregate.LAST
@@ -218,7 +218,7 @@ class Variable:
     """The span of `value`."""
 
 
-class Form(StrEnum):
+class InterceptorForm(StrEnum):
     """When an interceptor publishes."""
 
     TIMER = "timer"
@@ -248,7 +248,7 @@ class Interception:
     stop_timeout: int = 0
     scan_timeout: int = 0
     command_timeout: int = 0
-    form: Form = Form.TIMER
+    form: InterceptorForm = InterceptorForm.TIMER
     latching: bool = False
     ros: int = 2
     """1 or 2: the ROS version of the emitted node."""
@@ -273,7 +273,7 @@ class Planner(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Assumed:
+class LoopAssumptions:
     """`[assume]`: the assumptions of a proof about the closed loop. Times in nanoseconds."""
 
     stands: str
@@ -291,7 +291,7 @@ class Assumed:
 
 
 @dataclass(frozen=True, slots=True)
-class Map:
+class MapCoordinates:
     """`[map]`: the robot's coordinates, for the maps of a report; no verdict depends on them."""
 
     x: Signal
@@ -320,7 +320,7 @@ class Default:
 
     part: Part
     text: str
-    written: bool | None = None
+    is_explicit: bool | None = None
     """Whether the bindings state the default explicitly; None: it cannot be stated."""
 
 
@@ -335,11 +335,11 @@ class Declarations:
     variables: Mapping[str, Variable] = field(default_factory=dict)
     defaults: tuple[Default, ...] = ()
     interceptor: Interception | None = None
-    assumed: Assumed | None = None
+    assumed: LoopAssumptions | None = None
     mistakes: Mapping[Part, tuple[Diagnostic, ...]] = field(default_factory=dict)
     """Declared but unusable signals, propositions and shared tables → their errors. The errors of a
     signal are also errors of the propositions that read it."""
-    map: Map | None = None
+    map: MapCoordinates | None = None
     labels: Mapping[str, tuple[LabelSource, ...]] = field(default_factory=dict)
     """`[run.label]`: label → its sources; the first source with a value counts."""
     fret: tuple[Mapping[str, Any], ...] = ()
@@ -362,7 +362,7 @@ class Declarations:
             if variable.value is not None
         }
 
-    def about(self, component: str) -> Declarations:
+    def for_component(self, component: str) -> Declarations:
         """The declarations for sentences about a component, with the variables of the component."""
         own = {
             name: each.of[component]
@@ -371,7 +371,7 @@ class Declarations:
         }
         return replace(self, variables={**self.variables, **own}) if own else self
 
-    def reading(self, propositions: Iterable[str]) -> Declarations:
+    def restricted_to(self, propositions: Iterable[str]) -> Declarations:
         """The declarations without the signals that none of these propositions reads."""
         bound = [self.propositions[name] for name in propositions if name in self.propositions]
         read = {signal for proposition in bound for signal in proposition.signals}
@@ -387,7 +387,7 @@ class Declarations:
     @property
     def assumptions(self) -> tuple[str, ...]:
         """The implicit defaults, and the declared values of unknown propositions, as phrases."""
-        return tuple(default.text for default in self.defaults if not default.written)
+        return tuple(default.text for default in self.defaults if not default.is_explicit)
 
 
 def short_type(name: str) -> str:

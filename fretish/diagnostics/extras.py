@@ -9,7 +9,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
 
 
-def install(extra: str) -> str:
+def install_help(extra: str) -> str:
     """The help text that says how to install an extra."""
     return (
         f"install the extra: pip install 'fretc[{extra}]' (in a checkout: pip install '.[{extra}]')"
@@ -29,7 +29,7 @@ def missing_extra(
     """
     *some, last = [f"`{name}`" for name in packages]
     names = f"{', '.join(some)} and {last}" if some else last
-    return Diagnostic(Code.MISSING_EXTRA, f"{need} {names}", place, install(extra))
+    return Diagnostic(Code.MISSING_EXTRA, f"{need} {names}", place, install_help(extra))
 
 
 def unless_installed(need: str, packages: Sequence[str], extra: str) -> Diagnostic | None:

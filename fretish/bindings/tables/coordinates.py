@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from fretish import units
-from fretish.bindings.declarations import Map, Signal, path
+from fretish.bindings.declarations import MapCoordinates, Signal, path
 from fretish.bindings.tables.fields import Fields, Notes
 from fretish.diagnostics.diagnostic import Code
 from fretish.reading.toml_text import Tables
@@ -23,7 +23,7 @@ class MapTable(Fields):
         super().__init__(tables, notes)
         self._signals = signals
 
-    def map(self) -> Map | None:
+    def map(self) -> MapCoordinates | None:
         """The map; None if the table is absent or has errors, which become diagnostics."""
         table = self.tables.data.get("map")
         if table is None:
@@ -38,7 +38,7 @@ class MapTable(Fields):
             return None
         self._check_keys(table, _MAP, "[map]", "map")
         x, y = self._coordinate(table, "x"), self._coordinate(table, "y")
-        return Map(x, y) if x is not None and y is not None else None
+        return MapCoordinates(x, y) if x is not None and y is not None else None
 
     def _coordinate(self, table: Mapping[str, Any], key: str) -> Signal | None:
         """A coordinate, in the unit of the signal with the same path, else in metres."""

@@ -7,7 +7,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fretish import units
-from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
+from fretish.bindings.declarations import (
+    Interception,
+    InterceptorForm,
+    LoopAssumptions,
+    Planner,
+    Requests,
+)
 from fretish.bindings.tables.fields import Fields
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source, Span
@@ -43,7 +49,7 @@ _TOPIC = re.compile(r"(?:/?[A-Za-z_]\w*|~)(?:/[A-Za-z_]\w*)*", re.ASCII)
 """A ROS topic name; no part begins with a digit."""
 
 
-class Loop(Fields):
+class InterceptorTables(Fields):
     """Reader of the tables `[interceptor]`, `[assume]` and `[[assume.requirement]]`."""
 
     def interceptor(self) -> Interception | None:
@@ -55,7 +61,7 @@ class Loop(Fields):
         self._check_keys(table, _INTERCEPTOR, "[interceptor]", "interceptor")
         topics = {key: self._topic(table, key) for key in _TOPICS}
         at = ("interceptor", "form")
-        form = self._choice(table, at, Form, Form.TIMER)
+        form = self._choice(table, at, InterceptorForm, InterceptorForm.TIMER)
         times = {
             key: self._duration(table, ("interceptor", key)) or 0 for key in ("period", *_TIMES)
         }
@@ -79,7 +85,7 @@ class Loop(Fields):
             span=span,
         )
 
-    def assumed(self, propositions: Sequence[str]) -> Assumed | None:
+    def assumed(self, propositions: Sequence[str]) -> LoopAssumptions | None:
         """The assumptions; None if `[assume]` is absent or has errors, which become diagnostics.
 
         Args:
@@ -100,7 +106,7 @@ class Loop(Fields):
         if len(self.notes.diagnostics) > before:
             return None
         span = self.tables.place("assume")
-        return Assumed(stands, latency, braking, lost, requests, planner, heartbeat, span)
+        return LoopAssumptions(stands, latency, braking, lost, requests, planner, heartbeat, span)
 
     def _table(self, name: str) -> Mapping[str, Any] | None:
         table = self.tables.data.get(name)
@@ -177,8 +183,10 @@ class Loop(Fields):
                 )
             key_of.setdefault(name, key)
 
-    def _check_times(self, table: Mapping[str, Any], form: Form, times: Mapping[str, int]) -> None:
-        if form is Form.EVENT:
+    def _check_times(
+        self, table: Mapping[str, Any], form: InterceptorForm, times: Mapping[str, int]
+    ) -> None:
+        if form is InterceptorForm.EVENT:
             for key in ("period", *_TIMES):
                 if key in table:
                     self._without_timer(key)
@@ -269,7 +277,7 @@ class Loop(Fields):
             return ()
         found: dict[str, RequirementEntry] = {}
         for each, block in zip(listed, self._blocks(len(listed)), strict=True):
-            requirement = Loop(Tables(block, each), self.notes)._sentence(each)
+            requirement = InterceptorTables(Tables(block, each), self.notes)._sentence(each)
             if requirement is not None and requirement.id in found:
                 self._say(Code.DUPLICATE_ID, f"the id `{requirement.id}` is already used", block)
             elif requirement is not None:

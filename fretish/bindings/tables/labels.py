@@ -16,7 +16,7 @@ _MOST_SOURCES, _LONGEST_SOURCE = 8, 200
 _LABEL_FORM = '`version = "metadata:build.version"` or `scenario = "path:{scenario}-*.mcap"`'
 
 
-class Labels(Fields):
+class LabelTable(Fields):
     """Reader of the table `[run.label]`."""
 
     def labels(self) -> dict[str, tuple[LabelSource, ...]]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-from fretish.bindings.declarations import Assumed, Declarations, Part, Proposition, Signal
+from fretish.bindings.declarations import Declarations, LoopAssumptions, Part, Proposition, Signal
 from fretish.bindings.tables.clock import ClockTable
 from fretish.bindings.tables.coordinates import MapTable
 from fretish.bindings.tables.fields import Fields, Notes
-from fretish.bindings.tables.interceptor import Loop
-from fretish.bindings.tables.labels import Labels
+from fretish.bindings.tables.interceptor import InterceptorTables
+from fretish.bindings.tables.labels import LabelTable
 from fretish.bindings.tables.propositions import PropositionTables
 from fretish.bindings.tables.signals import SignalTables
 from fretish.bindings.tables.variables import VariableTables
@@ -66,7 +66,7 @@ class _Reader(Fields):
         of_propositions = PropositionTables(tables, notes, of_signals.known)
         propositions = self._parts("proposition", of_propositions.proposition)
         variables = VariableTables(tables, notes).variables()
-        loop = Loop(tables, notes)
+        loop = InterceptorTables(tables, notes)
         return Declarations(
             tables.text.source,
             ClockTable(tables, notes).clock(),
@@ -78,7 +78,7 @@ class _Reader(Fields):
             self._shared("assume", lambda: self._assumed(loop)),
             notes.mistakes,
             self._shared("map", MapTable(tables, notes, of_signals.known).map),
-            self._shared("run", Labels(tables, notes).labels),
+            self._shared("run", LabelTable(tables, notes).labels),
             VariableTables(tables, notes).kept(),
             self._shared("environment", loop.sentences),
         )
@@ -108,7 +108,7 @@ class _Reader(Fields):
                 parts[name] = part
         return parts
 
-    def _assumed(self, loop: Loop) -> Assumed | None:
+    def _assumed(self, loop: InterceptorTables) -> LoopAssumptions | None:
         """`[assume]`; None also if the proposition that it names has errors."""
         assumption = loop.assumed(tuple(self._tables("proposition")))
         broken = (

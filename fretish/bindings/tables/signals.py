@@ -13,7 +13,7 @@ from fretish.bindings.declarations import (
     REP_117,
     Aggregate,
     Default,
-    Invalid,
+    InvalidReadings,
     Path,
     Reading,
     Reduce,
@@ -22,7 +22,7 @@ from fretish.bindings.declarations import (
     path,
 )
 from fretish.bindings.tables.fields import Fields, Notes
-from fretish.bindings.tables.vocabulary import Vocabulary
+from fretish.bindings.tables.vocabulary import ValuesField
 from fretish.diagnostics.diagnostic import Code
 from fretish.reading.toml_text import Tables
 
@@ -107,7 +107,7 @@ class SignalTables(Fields):
                 self.tables.value(*at, "path"),
                 "name one element: `[0]`",
             )
-        values, numbers = Vocabulary(self.tables, self.notes).words(
+        values, numbers = ValuesField(self.tables, self.notes).words(
             table["values"], (*at, "values")
         )
         signal = Signal(
@@ -196,14 +196,16 @@ class SignalTables(Fields):
             return None
         return self._choice(table, (*at, "reduce"), Reduce, Reduce.MIN)
 
-    def _invalid(self, table: Mapping[str, Any], at: tuple[str, ...], type_: str | None) -> Invalid:
+    def _invalid(
+        self, table: Mapping[str, Any], at: tuple[str, ...], type_: str | None
+    ) -> InvalidReadings:
         scan = type_ is not None and type_.endswith("/LaserScan")
-        default = REP_117 if scan else Invalid()
+        default = REP_117 if scan else InvalidReadings()
         fields = self._field(table, (*at, "invalid"), dict, "a table of readings")
         words = "as REP 117 says" if scan else "unknown"
         text = f"signal {at[1]}: readings that are no measurement are {words}"
         if fields is None:
-            self.notes.defaults.append(Default((at[0], at[1]), text, written=False))
+            self.notes.defaults.append(Default((at[0], at[1]), text, is_explicit=False))
             return default
         self._check_keys(fields, (*_INVALID, "empty"), "`invalid`", *at, "invalid")
         place = (*at, "invalid")
@@ -217,9 +219,9 @@ class SignalTables(Fields):
             attribute: self._choice(fields, (*place, key), Reading, getattr(default, attribute))
             for key, attribute in _INVALID.items()
         }
-        invalid = Invalid(**values)
+        invalid = InvalidReadings(**values)
         if invalid == default:
-            self.notes.defaults.append(Default((at[0], at[1]), text, written=True))
+            self.notes.defaults.append(Default((at[0], at[1]), text, is_explicit=True))
         return invalid
 
     def _max_age(self, table: Mapping[str, Any], at: tuple[str, ...]) -> int | None:

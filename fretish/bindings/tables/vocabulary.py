@@ -15,7 +15,7 @@ _EXACT = 2**53
 """Numbers below this limit are exact in every numeric type."""
 
 
-class Vocabulary(Fields):
+class ValuesField(Fields):
     """Reader of the field `values`."""
 
     def words(

@@ -2,7 +2,13 @@
 
 import pytest
 
-from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
+from fretish.bindings.declarations import (
+    Interception,
+    InterceptorForm,
+    LoopAssumptions,
+    Planner,
+    Requests,
+)
 from fretish.bindings.tables.interceptor import TABLE
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.rendering import render
@@ -77,11 +83,11 @@ def test_both_tables_are_read() -> None:
         stop_timeout=1200 * MS,
         scan_timeout=300 * MS,
         command_timeout=500 * MS,
-        form=Form.TIMER,
+        form=InterceptorForm.TIMER,
         latching=True,
         ros=1,
     )
-    assert found.assumed == Assumed(
+    assert found.assumed == LoopAssumptions(
         stands="stopped",
         latency=100 * MS,
         braking=200 * MS,
@@ -97,8 +103,8 @@ def test_what_is_left_out_is_not_watched_and_assumes_little() -> None:
     found, wrong = read_bindings(Source("b.toml", BEFORE + paper + assume))
     assert wrong == ()
     assert found is not None
-    assert found.interceptor == Interception("stop", "~/in", "/out", form=Form.EVENT)
-    assert found.assumed == Assumed("stopped", latency=0, braking=0)
+    assert found.interceptor == Interception("stop", "~/in", "/out", form=InterceptorForm.EVENT)
+    assert found.assumed == LoopAssumptions("stopped", latency=0, braking=0)
     bare, wrong = read_bindings(Source("b.toml", BEFORE))
     assert wrong == ()
     assert bare is not None

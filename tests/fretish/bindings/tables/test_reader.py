@@ -9,7 +9,7 @@ from fretish.bindings.declarations import (
     REP_117,
     Aggregate,
     Declarations,
-    Invalid,
+    InvalidReadings,
     Modality,
     Path,
     Reading,
@@ -101,7 +101,7 @@ def test_a_signal_is_read() -> None:
     assert (signal.type, signal.reduce) == ("sensor_msgs/LaserScan", Reduce.MIN)
     assert (signal.unit.factor, signal.unit_name) == (Fraction(1), "m")
     assert signal.max_age == 300_000_000
-    assert signal.invalid == Invalid(Reading.DROP, Reading.FAR, Reading.NEAR, Reading.DROP)
+    assert signal.invalid == InvalidReadings(Reading.DROP, Reading.FAR, Reading.NEAR, Reading.DROP)
     within = e.Comparison("<=", e.Name("range_min"), e.Name("x"))
     assert signal.valid == e.And((within, e.Comparison("<=", e.Name("x"), e.Name("range_max"))))
 
