@@ -63,8 +63,8 @@ def has_units(sentence: Sentence) -> bool:
 
 def check_names(sentence: Sentence) -> Iterator[Diagnostic]:
     """F109 for each unquoted name that is a reserved word of FRET."""
-    found = [each for expression in conditions(sentence) for each in _names(expression)]
-    for _, span in [(sentence.component, sentence.component_span), *found]:
+    names = [name for expression in conditions(sentence) for name in _names(expression)]
+    for _, span in [(sentence.component, sentence.component_span), *names]:
         if span is not None and span.text.lower() in UNUSED:
             yield key_word_as_name(span)
 

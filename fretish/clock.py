@@ -145,11 +145,12 @@ def in_unit(ticks: int, unit: TimeUnit, clock: Clock | None) -> Duration:
     """A number of ticks as a duration: in the unit if exact, else in a smaller unit or in ticks."""
     if unit == "tick" or clock is None or clock.period is None:
         return Duration(ticks, unit)
-    smaller = [each for each in reversed(NANOSECONDS) if NANOSECONDS[each] <= NANOSECONDS[unit]]
-    for each in smaller:
-        amount, rest = divmod(ticks * clock.period, NANOSECONDS[each])
+    for smaller_unit in reversed(NANOSECONDS):
+        if NANOSECONDS[smaller_unit] > NANOSECONDS[unit]:
+            continue
+        amount, rest = divmod(ticks * clock.period, NANOSECONDS[smaller_unit])
         if rest == 0:
-            return Duration(amount, each)
+            return Duration(amount, smaller_unit)
     return Duration(ticks, "tick")
 
 

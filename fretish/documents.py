@@ -21,7 +21,7 @@ IDENTIFIER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 _ID_LINE = re.compile(rf'^[ \t]*id[ \t]*=[ \t]*"(?P<id>{IDENTIFIER.pattern})"', re.MULTILINE)
 _FREE_TEXT = re.compile(r'"[^"]*"')
 _WHITE_SPACE = " \t\r\n\f\v\u00a0"
-"""What may stand around and between the words of a sentence, as in `grammar.lark`."""
+"""White space around and between the words of a sentence, as in `grammar.lark`."""
 _FENCE = re.compile(r"^\ufeff?\+\+\+[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
 
 
@@ -84,7 +84,7 @@ def requirements(source: Source) -> tuple[tuple[RequirementEntry, ...], tuple[Di
     A requirement whose header has errors is in the result, too, so that it is reported. If its id
     cannot be read, the file name is its id.
     """
-    found: list[RequirementEntry] = []
+    entries: list[RequirementEntry] = []
     diagnostics: list[Diagnostic] = []
     pairs = _pairs(source)
     if isinstance(pairs, Diagnostic):
@@ -92,8 +92,8 @@ def requirements(source: Source) -> tuple[tuple[RequirementEntry, ...], tuple[Di
     for header, wording in pairs:
         requirement, mistakes = _requirement(source, header, wording, alone=len(pairs) == 1)
         diagnostics.extend(mistakes)
-        found.append(requirement)
-    return tuple(found), tuple(diagnostics)
+        entries.append(requirement)
+    return tuple(entries), tuple(diagnostics)
 
 
 def unreadable_file(path: str, why: Diagnostic) -> RequirementEntry:
@@ -161,7 +161,7 @@ def _requirement(
 def _stem(source: Source) -> str:
     """The name of the file without suffix; `_` replaces unprintable characters."""
     stem = PurePath(source.name).stem.strip("<>") or "requirement"
-    return "".join(each if each.isprintable() else "_" for each in stem)
+    return "".join(character if character.isprintable() else "_" for character in stem)
 
 
 def _called(source: Source, wording: Span, *, alone: bool) -> str:

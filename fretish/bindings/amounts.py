@@ -53,7 +53,7 @@ def value(number: float | str | None, unit: str, bounds: Sequence[float] = ()) -
         if digits == _MOST_DIGITS
         or (
             isfinite(float(text))
-            and all(_side(float(text), each) == _side(number, each) for each in bounds)
+            and all(_side(float(text), bound) == _side(number, bound) for bound in bounds)
         )
     )
     return f"{text} {unit}".rstrip()
@@ -141,7 +141,7 @@ def _time_unit(number: float) -> tuple[str, int]:
     """The largest unit in which the rounded number is at least 1, and its decimal shift."""
     size = abs(number) or 1.0
     units = (("s", 0), ("ms", 3), ("us", 6), ("ns", 9))
-    return next((each for each in units if size >= 0.9995 * 10.0 ** -each[1]), units[-1])
+    return next((unit for unit in units if size >= 0.9995 * 10.0 ** -unit[1]), units[-1])
 
 
 def _moved(number: float, places: int) -> float:

@@ -44,7 +44,7 @@ def bound(declarations: Declarations, names: Iterable[str]) -> Any:
     propositions = [declarations.propositions[n] for n in names if n in declarations.propositions]
     read = {signal for proposition in propositions for signal in proposition.signals}
     return {
-        "proposition": {each.name: [*proposition_fields(each).values()] for each in propositions},
+        "proposition": {p.name: [*proposition_fields(p).values()] for p in propositions},
         "signal": {name: signal_fields(declarations.signals[name]) for name in read},
     }
 

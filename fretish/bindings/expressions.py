@@ -268,7 +268,7 @@ def _power(
     elif not is_base(base):
         message, part = "a power of this expression may become too large", base
     else:
-        return tuple(times * each for each in dimension)
+        return tuple(times * power for power in dimension)
     return Diagnostic(
         Code.BAD_EXPRESSION,
         message,

@@ -40,8 +40,8 @@ def resolve_words(
     """
     try:
         return _Resolver(signals, place).truth(expression)
-    except _WordError as mistake:
-        return mistake.diagnostic
+    except _WordError as error:
+        return error.diagnostic
 
 
 class _WordError(Exception):

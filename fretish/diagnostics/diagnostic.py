@@ -320,5 +320,5 @@ def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | No
 
 def _claim(word: str) -> list[str]:
     """The numbers and operators in a word, in order."""
-    found: list[str] = re.findall(r"\d+|[<>=!&|]+", word)
-    return [part.lstrip("0") if part.isdigit() else part for part in found]
+    parts: list[str] = re.findall(r"\d+|[<>=!&|]+", word)
+    return [part.lstrip("0") if part.isdigit() else part for part in parts]

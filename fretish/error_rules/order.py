@@ -56,10 +56,10 @@ def _space_before(u: Unexpected) -> str:
 
 def part_after_response(u: Unexpected) -> Diagnostic | None:
     """F101 for a timing, condition or scope after the response."""
-    if not u.expects("$END") or (found := _SATISFY.search(u.text_before.text)) is None:
+    if not u.expects("$END") or (satisfy := _SATISFY.search(u.text_before.text)) is None:
         return None
     if u.lexeme.kind in TIMINGS:
-        return _timing_after_response(u, found)
+        return _timing_after_response(u, satisfy)
     if u.lexeme.kind not in _CONDITIONS | _SCOPES:
         return None
     part = "condition" if u.lexeme.kind in _CONDITIONS else "scope"
@@ -113,15 +113,15 @@ def _timing_after_satisfy(u: Unexpected) -> Diagnostic:
     word = f"{u.lexeme.word}{_AMOUNT.get(u.lexeme.kind, '')}"
     message, words = "the timing must stand before `satisfy`", f"write `{word} satisfy ...`"
     start = u.previous.span.start
-    found = _TIMING.match(u.rest.text)
-    if found is None or (found[0] == u.lexeme.word) != (u.lexeme.kind in _SIMPLE_TIMINGS):
+    match = _TIMING.match(u.rest.text)
+    if match is None or (match[0] == u.lexeme.word) != (u.lexeme.kind in _SIMPLE_TIMINGS):
         return not_fretish(message, u.lexeme.span, words)
     if _has_timing(u.text.source.text[u.text.start : start]):
         return not_fretish(message, u.lexeme.span, _ONE_TIMING)
-    end = u.lexeme.span.start + found.end()
+    end = u.lexeme.span.start + match.end()
     is_safe = JOIN.search(u.rest.text) is None  # Else it may apply to one part.
-    fix = Fix(Span(u.text.source, start, end), f"{found[0]} {u.previous.word}", is_safe)
-    return not_fretish(message, u.lexeme.span, fix, f"write `{found[0]} satisfy ...`")
+    fix = Fix(Span(u.text.source, start, end), f"{match[0]} {u.previous.word}", is_safe)
+    return not_fretish(message, u.lexeme.span, fix, f"write `{match[0]} satisfy ...`")
 
 
 def wrong_timing(u: Unexpected) -> Diagnostic | None:

@@ -39,8 +39,8 @@ def is_unambiguous(text: Span, at: Span, operator: str) -> bool:
         at: the span of the operator.
         operator: the operator in lower case, without white space.
     """
-    beside = {found.lower() for found in _OPERATOR.findall(_surrounding_text(text, at))}
-    return beside.isdisjoint(_CONFLICTS.get(operator, frozenset()))
+    others = {other.lower() for other in _OPERATOR.findall(_surrounding_text(text, at))}
+    return others.isdisjoint(_CONFLICTS.get(operator, frozenset()))
 
 
 def _surrounding_text(text: Span, at: Span) -> str:

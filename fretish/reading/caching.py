@@ -20,17 +20,17 @@ R = TypeVar("R")
 
 def cache_by_identity(function: Callable[P, R]) -> Callable[P, R]:
     """The function with a cache. Its arguments are immutable and positional."""
-    known: dict[tuple[int, ...], tuple[tuple[object, ...], R]] = {}
+    cache: dict[tuple[int, ...], tuple[tuple[object, ...], R]] = {}
 
     @functools.wraps(function)
     def once(*args: P.args, **kwargs: P.kwargs) -> R:
         assert not kwargs, "arguments are given by position"
         key = tuple(map(id, args))
-        found = known.get(key)
-        if found is None:
-            if len(known) >= _MOST:
-                known.clear()
-            found = known[key] = args, function(*args, **kwargs)  # Keeps the ids valid.
-        return found[1]
+        entry = cache.get(key)
+        if entry is None:
+            if len(cache) >= _MOST:
+                cache.clear()
+            entry = cache[key] = args, function(*args, **kwargs)  # Keeps the ids valid.
+        return entry[1]
 
     return once

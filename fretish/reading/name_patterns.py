@@ -47,13 +47,13 @@ def match(pattern: str, path: str) -> Mapping[str, str] | None:
     texts = path.split("/")[-len(parts) :]
     if len(texts) < len(parts) or any(len(text) > _LONGEST_PART for text in texts):
         return None
-    found: dict[str, str] = {}
+    values: dict[str, str] = {}
     for part, text in zip(parts, texts, strict=True):
-        one = _match(part, text)
-        if one is None:
+        part_values = _match(part, text)
+        if part_values is None:
             return None
-        found |= one
-    return found
+        values |= part_values
+    return values
 
 
 @lru_cache(maxsize=64)
@@ -63,8 +63,10 @@ def _parts(pattern: str) -> tuple[_Part, ...] | str:
         return f"a pattern has 1 to {_LONGEST} characters"
     parts = []
     for written in pattern.split("/"):
-        tokens = [_token(found) for found in _TOKEN.finditer(written)]
-        if not tokens or sum(len(found[0]) for found in _TOKEN.finditer(written)) < len(written):
+        tokens = [_token(token_match) for token_match in _TOKEN.finditer(written)]
+        if not tokens or sum(len(token_match[0]) for token_match in _TOKEN.finditer(written)) < len(
+            written
+        ):
             return "between slashes only text, `*` and `{name}` are allowed"
         parts.append(tuple(tokens))
     named = [token.text for part in parts for token in part if token.least == 1]
@@ -72,26 +74,26 @@ def _parts(pattern: str) -> tuple[_Part, ...] | str:
     return f"`{{{twice}}}` is there twice" if twice else tuple(parts)
 
 
-def _token(found: re.Match[str]) -> _Token:
-    if found["text"] is not None:
-        return _Token(found["text"])
-    return _Token(found["name"] or "", 0 if found["star"] else 1)
+def _token(token_match: re.Match[str]) -> _Token:
+    if token_match["text"] is not None:
+        return _Token(token_match["text"])
+    return _Token(token_match["name"] or "", 0 if token_match["star"] else 1)
 
 
 def _match(part: _Part, text: str) -> dict[str, str] | None:
     fits = _fits(part, text)
     if not fits[0][0]:
         return None
-    found, at = {}, 0
+    values, at = {}, 0
     for token, after in zip(part, fits[1:], strict=True):
         if token.least is None:
             at += len(token.text)
             continue
         end = max(end for end in range(at + token.least, len(text) + 1) if after[end])
         if token.least:
-            found[token.text] = text[at:end]
+            values[token.text] = text[at:end]
         at = end
-    return found
+    return values
 
 
 def _fits(part: _Part, text: str) -> list[list[bool]]:

@@ -90,19 +90,19 @@ class Tables:
 @lru_cache(8)
 def _headers(text: str) -> Mapping[tuple[str, ...], _Header]:
     """Path → the first header that has or begins with this path; the empty path is the root."""
-    begins = [match.span() for match in _HEADER.finditer(text)]
-    ends = [start for start, _ in begins[1:]] + [len(text)]
-    found: dict[tuple[str, ...], _Header] = {}
-    found[()] = _Header((0, 0), (0, begins[0][0] if begins else len(text)))
-    for (_, begin), end in zip(begins, ends, strict=False):
+    openings = [match.span() for match in _HEADER.finditer(text)]
+    ends = [start for start, _ in openings[1:]] + [len(text)]
+    headers: dict[tuple[str, ...], _Header] = {}
+    headers[()] = _Header((0, 0), (0, openings[0][0] if openings else len(text)))
+    for (_, begin), end in zip(openings, ends, strict=False):
         path: tuple[str, ...] = ()
         part = first = _PART.match(text, begin)
         while part is not None and first is not None and len(path) < _MOST_PARTS:
             path = (*path, part["text"] or part["literal"] or part["bare"] or "")
             name = first.start("name"), part.end("name")
-            found.setdefault(path, _Header(name, (part.end(), end)))
+            headers.setdefault(path, _Header(name, (part.end(), end)))
             part = _PART.match(text, part.end()) if part["then"] == "." else None
-    return found
+    return headers
 
 
 def _key(key: str) -> re.Pattern[str]:

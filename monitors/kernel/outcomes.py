@@ -40,9 +40,9 @@ from monitors.kernel.verdicts import (
 
 @dataclass(frozen=True)
 class Outcome:
-    """One requirement over one whole trace; ticks count from 0, intervals include both ends.
+    """The result of one requirement on a whole trace; intervals of ticks include both ends.
 
-    `evaluate` gives its lists as `Listing`: nothing is made of what nobody reads.
+    `evaluate` gives the lists as `Listing`, which are computed when they are first read.
     """
 
     requirement: str
@@ -110,7 +110,7 @@ def evaluate(
 def stepped(
     monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict = INCONCLUSIVE
 ) -> tuple[Outcome, ...]:
-    """The same as `evaluate`, by stepping the monitor from tick 0 over every tick.
+    """The outcomes, as from `evaluate`, by stepping the monitor from tick 0 over every tick.
 
     Args, raises: as for `evaluate`.
     """
@@ -155,12 +155,12 @@ class _Record:
         self._tapes = [Tape() for _ in monitor.REQUIREMENTS for _ in Signals._fields]
 
     def append(self, codes: bytes) -> None:
-        """Go on with all signals of some ticks, one tick after the other."""
+        """Append the signals of further ticks, tick by tick."""
         for place, tape in enumerate(self._tapes):
             tape.append(codes[place :: len(self._tapes)])
 
     def columns(self) -> Iterator[Signals[int]]:
-        """Those of each requirement."""
+        """The signals of each requirement."""
         columns = (tape.column().true for tape in self._tapes)
         return map(Signals, *[columns] * len(Signals._fields))
 

@@ -238,15 +238,15 @@ class Monitor:
     """SHA-256 of the generated code: a state fits no other."""
     REQUIREMENTS: ClassVar[tuple[Requirement, ...]]
     PROPOSITIONS: ClassVar[Mapping[str, str]]
-    """Each proposition with its parameter of `step`."""
+    """Proposition → its parameter of `step`."""
     LITERALS: ClassVar[tuple[tuple[str, str, bool], ...]]
-    """Each parameter of `columns`, with its proposition, and False where it is negated."""
+    """Each parameter of `columns`, its proposition, and False if it is negated."""
     RAIL: ClassVar[type[Rail]]
     verdicts: Callable[..., tuple[Verdict, ...]]
-    """Of each requirement, whatever follows: satisfied or violated; or pending."""
+    """The LTL3 verdict on each requirement: satisfied, violated or pending."""
     columns: Callable[..., tuple[Signals[int], ...]]
-    """The signals of whole traces, for each requirement: of `every`, the column that is true at
-    every tick, and a keyword for each of `LITERALS`."""
+    """The signals of each requirement on whole traces. Arguments: `every`, the column that is true
+    at every tick, and a keyword for each of `LITERALS`."""
 
     def __init__(self) -> None:
         self._values = _picked(tuple(self.PROPOSITIONS.values()))
@@ -425,10 +425,10 @@ class Monitor:
         return list(map(_picked(tuple(self.PROPOSITIONS)), rows))
 
     def rows_of(self, names: Sequence[str]) -> Callable[[Iterable[Row]], Iterable[Row]]:
-        """What makes rows for `run` of rows whose values are in the order of `names`.
+        """A function that reorders rows with values in the order of `names` for `run`.
 
         Raises:
-            ValueError: the names are not those of `PROPOSITIONS`, each once.
+            ValueError: the names are not a permutation of `PROPOSITIONS`.
         """
         return rows_in_order(tuple(names), tuple(self.PROPOSITIONS))
 
@@ -455,10 +455,10 @@ class Monitor:
 def rows_in_order(
     names: tuple[str, ...], order: tuple[str, ...]
 ) -> Callable[[Iterable[Sequence[Any]]], Iterable[Sequence[Any]]]:
-    """What puts rows of values in the order of `names` into another order.
+    """A function that reorders rows of values from the order of `names` to `order`.
 
     Raises:
-        ValueError: the names are not the same, each once.
+        ValueError: `names` is not a permutation of `order`.
     """
     places = {name: place for place, name in enumerate(names)}
     missing, unknown = {*order} - places.keys(), places.keys() - {*order}
@@ -481,7 +481,7 @@ def rows_in_order(
 
 
 def _picked(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
-    """What gives the values under all keys."""
+    """A function that gives the values of all keys as a tuple."""
     if len(keys) < 2:
         return lambda values: tuple(values[key] for key in keys)
     return itemgetter(*keys)
@@ -562,7 +562,7 @@ def _saved(rail: Rail) -> dict[str, Any]:
 
 
 def _digest(content: Mapping[str, Any]) -> str:
-    """Of a state, whether its runs are tuples or, out of JSON, lists."""
+    """The SHA-256 of a state; equal for tuples and for lists from JSON; empty if it is no JSON."""
     try:
         text = json.dumps(content, sort_keys=True, allow_nan=False)
     except (TypeError, ValueError):

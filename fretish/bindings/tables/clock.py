@@ -83,9 +83,9 @@ class ClockTable(Fields):
         if "lateness" not in table:
             return None
         text = table["lateness"]
-        found = units.nanoseconds(text) if isinstance(text, str) else None
-        if found is not None and 0 <= found <= _MOST_LATENESS:
-            return found
+        lateness = units.nanoseconds(text) if isinstance(text, str) else None
+        if lateness is not None and 0 <= lateness <= _MOST_LATENESS:
+            return lateness
         self._say(
             Code.BAD_LATENESS,
             f"`lateness` must be a duration from 0 to {in_words(_MOST_LATENESS)}",

@@ -23,13 +23,13 @@ from fretish.reading.toml_text import Tables, as_key
 TABLE = """\
 [interceptor]
 stop         = "/stop"              # std_msgs/Bool: true requests a stop
-command      = "/cmd_vel"           # geometry_msgs/Twist: what the planner wants
-output       = "/cmd_vel_filtered"  # geometry_msgs/Twist: what the wheels hear
-scan         = "/scan"              # sensor_msgs/LaserScan: only that it comes counts
+command      = "/cmd_vel"           # geometry_msgs/Twist: from the planner
+output       = "/cmd_vel_filtered"  # geometry_msgs/Twist: to the wheels
+scan         = "/scan"              # sensor_msgs/LaserScan: only its arrival counts
 period       = "50 ms"              # of the interceptor's timer
-hold         = "200 ms"             # zero after a request, whatever arrives meanwhile
-stop_timeout = "500 ms"             # silence of the safety function for so long halts
-scan_timeout = "500 ms"             # and that of the sensor
+hold         = "200 ms"             # zero is published for so long after a request
+stop_timeout = "500 ms"             # the robot halts after this silence of the safety function
+scan_timeout = "500 ms"             # and after this silence of the sensor
 """
 """An example table, as a starting point for users."""
 
@@ -266,8 +266,8 @@ class InterceptorTables(Fields):
     def sentences(self) -> tuple[RequirementEntry, ...]:
         """The sentences of `[[assume.requirement]]`: assumptions about the environment."""
         table = self.tables.data.get("assume")
-        listed = table.get(_SENTENCES, []) if isinstance(table, dict) else []
-        if not isinstance(listed, list) or not all(isinstance(each, dict) for each in listed):
+        tables = table.get(_SENTENCES, []) if isinstance(table, dict) else []
+        if not isinstance(tables, list) or not all(isinstance(entry, dict) for entry in tables):
             self._say(
                 Code.BAD_BINDING_FIELD,
                 f"`assume.{_SENTENCES}` must be tables",
@@ -275,14 +275,14 @@ class InterceptorTables(Fields):
                 f"write `[[assume.{_SENTENCES}]]`, and `id` and `sentence` below it",
             )
             return ()
-        found: dict[str, RequirementEntry] = {}
-        for each, block in zip(listed, self._blocks(len(listed)), strict=True):
-            requirement = InterceptorTables(Tables(block, each), self.notes)._sentence(each)
-            if requirement is not None and requirement.id in found:
+        requirements: dict[str, RequirementEntry] = {}
+        for entry, block in zip(tables, self._blocks(len(tables)), strict=True):
+            requirement = InterceptorTables(Tables(block, entry), self.notes)._sentence(entry)
+            if requirement is not None and requirement.id in requirements:
                 self._say(Code.DUPLICATE_ID, f"the id `{requirement.id}` is already used", block)
             elif requirement is not None:
-                found[requirement.id] = requirement
-        return tuple(found.values())
+                requirements[requirement.id] = requirement
+        return tuple(requirements.values())
 
     def _blocks(self, count: int) -> list[Span]:
         """The text below each header; all bindings for each one if the headers are not found."""

@@ -40,13 +40,13 @@ class LabelTable(Fields):
             return ()
         texts = written if isinstance(written, list) else [written]
         sources = [_label_source(name, text) for text in texts]
-        wrong = next((each for each in sources if isinstance(each, str)), None)
+        wrong = next((source for source in sources if isinstance(source, str)), None)
         if wrong is None and not 0 < len(sources) <= _MOST_SOURCES:
             wrong = f"a label has 1 to {_MOST_SOURCES} sources"
         if wrong is not None:
             self._bad_label(f"`{name}` has a wrong source: {wrong}", at, f"write {_LABEL_FORM}")
             return ()
-        return tuple(each for each in sources if isinstance(each, LabelSource))
+        return tuple(source for source in sources if isinstance(source, LabelSource))
 
     def _bad_label(self, message: str, at: tuple[str, ...], fix: str | None = None) -> None:
         self._say(Code.BAD_LABEL, message, self.tables.value(*at), fix)
@@ -64,7 +64,7 @@ def _label_source(name: str, written: object) -> LabelSource | str:
         return "it is neither `metadata:RECORD.KEY` nor `path:PATTERN`"
     if kind == "metadata":
         return LabelSource(False, text) if "." in text else "a record has keys: `RECORD.KEY`"
-    found = name_patterns.names(text)
-    if isinstance(found, str):
-        return found
-    return LabelSource(True, text) if name in found else f"`{{{name}}}` is not in the pattern"
+    names = name_patterns.names(text)
+    if isinstance(names, str):
+        return names
+    return LabelSource(True, text) if name in names else f"`{{{name}}}` is not in the pattern"

@@ -33,8 +33,8 @@ def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic
         or in a shared table, is also in `Declarations.mistakes`. After any other error the
         declarations are None.
     """
-    found = with_budget(len(source.text), source.span(0, 0), lambda: _read(source))
-    return (None, (found,)) if isinstance(found, Diagnostic) else found
+    result = with_budget(len(source.text), source.span(0, 0), lambda: _read(source))
+    return (None, (result,)) if isinstance(result, Diagnostic) else result
 
 
 def _read(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
@@ -56,7 +56,10 @@ class _Reader(Fields):
     @property
     def is_usable(self) -> bool:
         """Whether every error belongs to a signal, a proposition or a shared table."""
-        return sum(each.is_error for each in self.notes.diagnostics) == self.errors_of_parts
+        return (
+            sum(diagnostic.is_error for diagnostic in self.notes.diagnostics)
+            == self.errors_of_parts
+        )
 
     def declarations(self) -> Declarations:
         tables, notes = self.tables, self.notes
@@ -73,7 +76,7 @@ class _Reader(Fields):
             signals,
             propositions,
             variables,
-            tuple(each for each in notes.defaults if each.part not in notes.mistakes),
+            tuple(default for default in notes.defaults if default.part not in notes.mistakes),
             self._shared("interceptor", loop.interceptor),
             self._shared("assume", lambda: self._assumed(loop)),
             notes.mistakes,
@@ -92,7 +95,7 @@ class _Reader(Fields):
 
     def _keep(self, part: Part, before: int) -> None:
         """Record the errors since index `before` as errors of a part."""
-        own = [each for each in self.notes.diagnostics[before:] if each.is_error]
+        own = [diagnostic for diagnostic in self.notes.diagnostics[before:] if diagnostic.is_error]
         self.errors_of_parts += len(own)
         self.notes.keep(part, own)
 

@@ -29,10 +29,12 @@ class VariableTables(Fields):
     def variables(self) -> dict[str, Variable]:
         """All variables, including those with errors."""
         variables = {name: self._variable(name, f) for name, f in self._tables("variable").items()}
-        components = dict.fromkeys(name for each in variables.values() for name in each.of)
+        components = dict.fromkeys(name for variable in variables.values() for name in variable.of)
         self._check_definitions(variables, "")
         for component in components:
-            own = {name: each.of.get(component, each) for name, each in variables.items()}
+            own = {
+                name: variable.of.get(component, variable) for name, variable in variables.items()
+            }
             self._check_definitions(own, component)
         return variables
 
@@ -41,7 +43,7 @@ class VariableTables(Fields):
         table = self._field(self.tables.data, ("fret",), dict, "a table") or {}
         self._check_keys(table, _FRET, "[fret]", "fret")
         records = self._field(table, ("fret", "variable"), list, "tables of FRET's fields") or []
-        if not all(isinstance(each, dict) for each in records):
+        if not all(isinstance(record, dict) for record in records):
             self._say(
                 Code.BAD_BINDING_FIELD,
                 "`variable` must hold tables",
@@ -74,7 +76,7 @@ class VariableTables(Fields):
         at = ("variable", name)
         self._check_keys(table, _VARIABLE, f"[variable.{name}]", *at)
         of = self._field(table, (*at, "of"), dict, "tables of components") or {}
-        if not all(isinstance(each, dict) for each in of.values()):
+        if not all(isinstance(own_table, dict) for own_table in of.values()):
             self._say(
                 Code.BAD_BINDING_FIELD,
                 "`of` must hold tables",
@@ -85,12 +87,12 @@ class VariableTables(Fields):
         whole = self._fields_of_variable(name, table, at)
         own = {
             component: replace(
-                self._fields_of_variable(name, each, (*at, "of", component)),
+                self._fields_of_variable(name, own_table, (*at, "of", component)),
                 component=component,
                 modality=whole.modality,
                 action=whole.action,
             )
-            for component, each in of.items()
+            for component, own_table in of.items()
         }
         return replace(whole, of=own)
 

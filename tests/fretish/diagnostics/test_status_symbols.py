@@ -6,7 +6,7 @@ from fretish.diagnostics.status_symbols import STATUS_SYMBOLS, StatusSymbol
 
 ROOT = Path(__file__).parents[3]
 ROOMS = ("fretish", "monitors", "compiler", "fretc", "simulation", "templates")
-HOME = ROOT / "fretish/diagnostics/signs.py"
+HOME = ROOT / "fretish/diagnostics/status_symbols.py"
 GLYPHS = [sign.glyph for sign in STATUS_SYMBOLS if sign.glyph not in ("!", "?", "w", "\N{EN DASH}")]
 
 

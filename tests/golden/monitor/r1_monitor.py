@@ -134,12 +134,12 @@ def at_end(broken: Truth, owed: Truth, triggered: Truth) -> Verdict:
 
 
 LARGE = 1 << 19
-"""Ticks from which on a column is a block that the C library treats in another way."""
+"""Ticks from which the memory of a column is allocated differently; see `reuse_memory`."""
 
 
 @cache
 def reuse_memory() -> None:
-    """Let the C library keep the memory of large columns for the next ones.
+    """Let the C library reuse the memory of large columns.
 
     glibc asks the system for each block from 128 kB on, and gives it back at once, which costs more
     than to compute it. A larger block that has been freed raises this limit: see mallopt(3),
@@ -154,7 +154,7 @@ class Column(NamedTuple):
 
     true: int
     unknown: int
-    """No bit of it is one of `true`."""
+    """Disjoint from `true`."""
 
     def at(self, tick: int) -> Truth:
         """The truth value at one tick."""
@@ -179,7 +179,7 @@ _UNKNOWN = bytes.maketrans(b"\0\1\2", b"001")
 
 
 def code(value: Truth) -> int:
-    """The code of a truth value; anything else is a mistake of the caller."""
+    """The code of a truth value; any other value is an error of the caller."""
     if value is None:
         return 2
     if value is True or value is False:
@@ -197,7 +197,7 @@ class Tape:
         self.rest = b""
 
     def append(self, codes: bytes) -> None:
-        """Go on with one code a tick."""
+        """Append one code per tick."""
         codes = self.rest + codes
         size = len(codes) // 8
         true, unknown = column(codes[: 8 * size])
@@ -208,7 +208,7 @@ class Tape:
         self.rest = codes[8 * size :]
 
     def column(self) -> Column:
-        """All of it."""
+        """The complete column."""
         ticks, last = 8 * len(self.true), column(self.rest)
         return Column(
             int.from_bytes(self.true, "little") | last.true << ticks,
@@ -221,7 +221,7 @@ class Piece(NamedTuple):
 
     ticks: int
     codes: Sequence[bytes]
-    """Of each proposition, one a tick."""
+    """For each proposition, one code per tick."""
 
 
 def pieces_of(rows: Iterable[Sequence[Truth]]) -> Iterator[Piece]:
@@ -285,7 +285,7 @@ _STRETCH = 64
 
 
 def ticks_of(column: int) -> Iterator[int]:
-    """The ticks at which it is true, in order; the cost is that of its memory and of these."""
+    """The ticks at which the column is true, in order."""
     return itertools.chain.from_iterable(_tick_lists(column))
 
 
@@ -294,7 +294,7 @@ _BITS = tuple(tuple(bit for bit in range(8) if byte >> bit & 1) for byte in rang
 
 
 def _tick_lists(column: int) -> Iterator[list[int]]:
-    """The same in pieces: a list of ticks takes less time than a generator that yields each."""
+    """The ticks in lists, which is faster than a generator of single ticks."""
     data = column.to_bytes((column.bit_length() + 7) // 8, "little")
     for start in range(0, len(data), _PIECE_BYTES):
         piece = data[start : start + _PIECE_BYTES]
@@ -309,7 +309,7 @@ def first_of(column: int) -> int | None:
 
 
 def starts_of(column: int) -> int:
-    """True where it is, and was not at the tick before."""
+    """True at the ticks at which the column becomes true."""
     return column ^ column & column << 1
 
 
@@ -702,15 +702,15 @@ class Monitor:
     """SHA-256 of the generated code: a state fits no other."""
     REQUIREMENTS: ClassVar[tuple[Requirement, ...]]
     PROPOSITIONS: ClassVar[Mapping[str, str]]
-    """Each proposition with its parameter of `step`."""
+    """Proposition → its parameter of `step`."""
     LITERALS: ClassVar[tuple[tuple[str, str, bool], ...]]
-    """Each parameter of `columns`, with its proposition, and False where it is negated."""
+    """Each parameter of `columns`, its proposition, and False if it is negated."""
     RAIL: ClassVar[type[Rail]]
     verdicts: Callable[..., tuple[Verdict, ...]]
-    """Of each requirement, whatever follows: satisfied or violated; or pending."""
+    """The LTL3 verdict on each requirement: satisfied, violated or pending."""
     columns: Callable[..., tuple[Signals[int], ...]]
-    """The signals of whole traces, for each requirement: of `every`, the column that is true at
-    every tick, and a keyword for each of `LITERALS`."""
+    """The signals of each requirement on whole traces. Arguments: `every`, the column that is true
+    at every tick, and a keyword for each of `LITERALS`."""
 
     def __init__(self) -> None:
         self._values = _picked(tuple(self.PROPOSITIONS.values()))
@@ -889,10 +889,10 @@ class Monitor:
         return list(map(_picked(tuple(self.PROPOSITIONS)), rows))
 
     def rows_of(self, names: Sequence[str]) -> Callable[[Iterable[Row]], Iterable[Row]]:
-        """What makes rows for `run` of rows whose values are in the order of `names`.
+        """A function that reorders rows with values in the order of `names` for `run`.
 
         Raises:
-            ValueError: the names are not those of `PROPOSITIONS`, each once.
+            ValueError: the names are not a permutation of `PROPOSITIONS`.
         """
         return rows_in_order(tuple(names), tuple(self.PROPOSITIONS))
 
@@ -919,10 +919,10 @@ class Monitor:
 def rows_in_order(
     names: tuple[str, ...], order: tuple[str, ...]
 ) -> Callable[[Iterable[Sequence[Any]]], Iterable[Sequence[Any]]]:
-    """What puts rows of values in the order of `names` into another order.
+    """A function that reorders rows of values from the order of `names` to `order`.
 
     Raises:
-        ValueError: the names are not the same, each once.
+        ValueError: `names` is not a permutation of `order`.
     """
     places = {name: place for place, name in enumerate(names)}
     missing, unknown = {*order} - places.keys(), places.keys() - {*order}
@@ -945,7 +945,7 @@ def rows_in_order(
 
 
 def _picked(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
-    """What gives the values under all keys."""
+    """A function that gives the values of all keys as a tuple."""
     if len(keys) < 2:
         return lambda values: tuple(values[key] for key in keys)
     return itemgetter(*keys)
@@ -1026,7 +1026,7 @@ def _saved(rail: Rail) -> dict[str, Any]:
 
 
 def _digest(content: Mapping[str, Any]) -> str:
-    """Of a state, whether its runs are tuples or, out of JSON, lists."""
+    """The SHA-256 of a state; equal for tuples and for lists from JSON; empty if it is no JSON."""
     try:
         text = json.dumps(content, sort_keys=True, allow_nan=False)
     except (TypeError, ValueError):
@@ -1046,9 +1046,9 @@ def _restored(rail: Rail, state: Mapping[str, Any]) -> None:
 
 @dataclass(frozen=True)
 class Outcome:
-    """One requirement over one whole trace; ticks count from 0, intervals include both ends.
+    """The result of one requirement on a whole trace; intervals of ticks include both ends.
 
-    `evaluate` gives its lists as `Listing`: nothing is made of what nobody reads.
+    `evaluate` gives the lists as `Listing`, which are computed when they are first read.
     """
 
     requirement: str
@@ -1116,7 +1116,7 @@ def evaluate(
 def stepped(
     monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict = INCONCLUSIVE
 ) -> tuple[Outcome, ...]:
-    """The same as `evaluate`, by stepping the monitor from tick 0 over every tick.
+    """The outcomes, as from `evaluate`, by stepping the monitor from tick 0 over every tick.
 
     Args, raises: as for `evaluate`.
     """
@@ -1161,12 +1161,12 @@ class _Record:
         self._tapes = [Tape() for _ in monitor.REQUIREMENTS for _ in Signals._fields]
 
     def append(self, codes: bytes) -> None:
-        """Go on with all signals of some ticks, one tick after the other."""
+        """Append the signals of further ticks, tick by tick."""
         for place, tape in enumerate(self._tapes):
             tape.append(codes[place :: len(self._tapes)])
 
     def columns(self) -> Iterator[Signals[int]]:
-        """Those of each requirement."""
+        """The signals of each requirement."""
         columns = (tape.column().true for tape in self._tapes)
         return map(Signals, *[columns] * len(Signals._fields))
 
@@ -1281,7 +1281,7 @@ class InputError(Exception):
 
 
 def visible(text: str) -> str:
-    """What would move the cursor, or begin another line, as escapes."""
+    """The text with control characters as escapes."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
@@ -1308,10 +1308,10 @@ def read_pieces(text: TextIO, names: Sequence[str], source: str) -> Iterator[Pie
 def placed_rows(
     text: Iterable[str], names: Sequence[str], source: str
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Each row with its place, by its columns; a column `tick` is held to its rule.
+    """The rows of a table, each with its position; a column `tick` is checked.
 
     Raises:
-        InputError: a column is missing, ticks jump.
+        InputError: a column is missing, or `tick` does not increase by one.
     """
     lines, number, is_json = _beginning(text, source)
     if is_json:
@@ -1321,7 +1321,7 @@ def placed_rows(
 
 
 def _beginning(text: Iterable[str], source: str) -> tuple[Iterator[str], int, bool]:
-    """The lines from the first one that is not empty, its number, and whether it is JSON."""
+    """The lines from the first non-empty one, its number, and whether the table is JSON."""
     lines = iter(text)
     lines = itertools.chain([next(lines, "").removeprefix("\ufeff")], lines)
     number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
@@ -1334,7 +1334,7 @@ def _beginning(text: Iterable[str], source: str) -> tuple[Iterator[str], int, bo
 def _in_order(
     rows: Iterable[tuple[str, dict[str, Any]]], names: Sequence[str], tick: int | None = None
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The rows, where a column `tick` grows by one, from the tick before the first row on."""
+    """The rows, after a check that a column `tick` increases by one."""
     has_tick: bool | None = None
     for place, row in rows:
         if "tick" not in names:
@@ -1356,7 +1356,7 @@ def _truths(
 def _header(
     lines: Iterable[str], names: Sequence[str], source: str, number: int
 ) -> tuple[list[str], int]:
-    """The columns of CSV that begins in that line, and the line in which its header ends."""
+    """The column names of a CSV header, and the number of its last line."""
     table = csv.reader(lines, strict=True)
     try:
         header = [name.strip() for name in next(table)]
@@ -1422,7 +1422,7 @@ def _check_columns(keys: Iterable[str], names: Sequence[str], place: str) -> Non
 
 
 def _short(text: str) -> str:
-    """As much of it as a message has room for."""
+    """The text, shortened for a message."""
     return text if len(text) <= _ROOM else f"{text[:_ROOM]}..."
 
 
@@ -1458,7 +1458,7 @@ _WHOLE = re.compile(r"\s*-?[0-9]{1,18}\s*")
 # Whole pieces of CSV, where they leave no doubt ------------------------------------------------
 
 _CHARACTERS, _MOST_CHARACTERS = 1 << 12, 1 << 22
-"""Of the text of a piece for each column, and at most; it ends with the line that they end in."""
+"""Characters of a piece per column, and the largest number; a piece ends at the end of a line."""
 
 
 class _Block(NamedTuple):
@@ -1535,7 +1535,7 @@ def _codes(words: Sequence[str]) -> bytes:
 
 
 def _last_tick(words: Sequence[str], before: int | None) -> int | None:
-    """The last of ticks that grow by one and are written without superfluous zeros."""
+    """The last tick, if ticks increase by one and have no leading zeros; else None."""
     if not words:
         return before
     if not (_WHOLE.fullmatch(words[0]) and _WHOLE.fullmatch(words[-1])):
