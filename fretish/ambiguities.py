@@ -1,4 +1,4 @@
-"""Warnings where FRETish means something else than many readers take it to mean."""
+"""Warnings for sentences that many readers misunderstand."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _ENDS = (
 
 
 def ambiguity_warnings(sentence: s.Sentence) -> Iterator[Diagnostic]:
-    """F204-F208, each with what is meant and how to say the other thing."""
+    """F204-F208: each states the actual meaning, and how to write the other one."""
     yield from _edge(sentence.condition)
     if s.timing_key(sentence) == "null":
         yield _warning(
             Code.NO_TIMING,
-            "without a timing the response is required at some time, however late",
+            "without a timing the response may come at any later tick",
             sentence.component_span,
-            "write `eventually` if that is meant, or `immediately`, `always`, `within N seconds`",
+            "write `eventually` if you mean this, or `immediately`, `always`, `within N seconds`",
         )
     scope = sentence.scope
     if scope is None:
@@ -34,23 +34,23 @@ def ambiguity_warnings(sentence: s.Sentence) -> Iterator[Diagnostic]:
     if s.deadline(sentence.timing) and scope.kind in _ENDS:
         yield _warning(
             Code.SHORT_SCOPE,
-            f"where `{m}` ends the scope before the deadline, nothing is required",
+            f"if `{m}` ends the scope before the deadline, nothing is required",
             sentence.timing_span,
-            "the response is demanded only where the whole duration fits into the scope",
+            "the response is required only if the whole duration fits into the scope",
         )
     if scope.kind in (s.ScopeKind.AFTER, s.ScopeKind.ONLY_AFTER):
         yield _warning(
             Code.FIRST_RUN_ONLY,
             f"only the first stretch of `{m}` counts; later ones change nothing",
             scope.span,
-            f"use a condition, `upon !({m})`, to begin anew each time",
+            f"to begin again each time, use a condition: `upon !({m})`",
         )
     if scope.kind is s.ScopeKind.BEFORE:
         yield _warning(
             Code.BEFORE_NOTHING,
-            f"where `{m}` holds at the first tick, nothing is required",
+            f"if `{m}` is true at the first tick, nothing is required",
             scope.span,
-            f"state what must hold at the start apart, if `{m}` can hold there",
+            f"if `{m}` can be true there, state what must hold at the start in another requirement",
         )
 
 
@@ -64,7 +64,7 @@ def _edge(condition: s.Condition | None) -> Iterator[Diagnostic]:
         Code.EDGE_TRIGGER,
         f"`{condition.word}` triggers only at the ticks at which `{p}` becomes true",
         condition.span,
-        f"write `whenever {p}` if it must trigger as long as that is true, or `upon {p}` if not",
+        f"write `whenever {p}` to trigger at every tick at which it is true, else `upon {p}`",
     )
 
 

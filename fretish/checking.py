@@ -1,4 +1,4 @@
-"""Checks beyond the grammar: reserved words, and numbers where truth values are needed."""
+"""Checks of a parsed sentence: reserved words, nesting depth, and kinds of values."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ def conditions(sentence: Sentence) -> Iterator[e.Expression]:
 
 
 def check_depth(sentence: Sentence) -> Diagnostic | None:
-    """F115 for an expression of more levels than any pass has room for."""
+    """F115 if an expression is nested deeper than `MOST` levels."""
     if all(depth(expression) <= MOST for expression in conditions(sentence)):
         return None
     return too_deep(sentence)
 
 
 def too_deep(sentence: Sentence) -> Diagnostic:
-    """F115."""
+    """F115 for the whole sentence."""
     return _too_deep(sentence.span)
 
 
@@ -47,7 +47,7 @@ def _too_deep(place: Span | None) -> Diagnostic:
         Code.TOO_DEEP,
         "an expression has too many nested operators",
         place,
-        help="give parts of it names of their own",
+        help="define names for parts of it",
     )
 
 
@@ -57,20 +57,20 @@ def calls(expression: e.Expression) -> Iterator[str]:
 
 
 def has_units(sentence: Sentence) -> bool:
-    """Whether a number in it has a unit, which FRET does not know."""
+    """Whether a number in the sentence has a unit, which FRET cannot read."""
     return any(map(e.has_unit, conditions(sentence)))
 
 
 def check_names(sentence: Sentence) -> Iterator[Diagnostic]:
-    """F109 for each name without quotes that FRET's grammar keeps for itself."""
-    found = [each for expression in conditions(sentence) for each in _names(expression)]
-    for _, span in [(sentence.component, sentence.component_span), *found]:
+    """F109 for each unquoted name that is a reserved word of FRET."""
+    names = [name for expression in conditions(sentence) for name in _names(expression)]
+    for _, span in [(sentence.component, sentence.component_span), *names]:
         if span is not None and span.text.lower() in UNUSED:
             yield key_word_as_name(span)
 
 
 def key_word_as_name(word: Span) -> Diagnostic:
-    """F109."""
+    """F109 for a key word that is used as a name."""
     return Diagnostic(
         Code.RESERVED,
         f"`{word.text}` is a key word of FRETish and cannot be a name",
@@ -80,7 +80,7 @@ def key_word_as_name(word: Span) -> Diagnostic:
 
 
 def check_value(expression: e.Expression, place: Span) -> Iterator[Diagnostic]:
-    """The same checks, of the number or the truth value that a variable stands for."""
+    """Check the value of a variable: F112 and F115."""
     if depth(expression) > MOST:
         yield _too_deep(place)
         return
@@ -98,7 +98,7 @@ def _names(expression: e.Expression) -> Iterator[tuple[str, Span | None]]:
 
 
 def check_response_kinds(sentence: Sentence) -> Iterator[Diagnostic]:
-    """F112 for each place where a number meets a truth value."""
+    """F112 for each number that is used as a truth value, and the reverse."""
     for expression in conditions(sentence):
         yield from _check_kinds(expression, sentence.span)
 
@@ -106,14 +106,14 @@ def check_response_kinds(sentence: Sentence) -> Iterator[Diagnostic]:
 def _check_kinds(
     expression: e.Expression, place: Span | None, *, boolean: bool = True
 ) -> Iterator[Diagnostic]:
-    """A name may be either: its kind is what its place asks for."""
+    """F112 for each part of the wrong kind; a name can be a number or a truth value."""
     waiting: list[tuple[e.Expression, bool, Span | None]] = [(expression, boolean, place)]
     while waiting:
         part, boolean, near = waiting.pop()
         here = getattr(part, "span", None) or near
         if boolean is not _is_boolean(part, boolean):
             yield _wrong_kind(boolean, here)
-            continue  # what is within is asked for by a place that is itself wrong
+            continue  # Errors inside a wrong part would only repeat it.
         waiting.extend((child, kind, here) for child, kind in _expected(part))
 
 
@@ -148,7 +148,7 @@ _LAST_TRUTH = frozenset({"persisted", "occurred", "persists", "occurs"})
 
 
 def _expected(part: e.Expression) -> list[tuple[e.Expression, bool]]:
-    """The parts, each with whether it must be Boolean; what functions take is their own."""
+    """The operands, each with whether it must be Boolean."""
     match part:
         case e.Call(name, args):
             return [
@@ -173,7 +173,7 @@ def _wrong_kind(boolean: bool, span: Span | None) -> Diagnostic:
     words = (
         "compare a number: `x > 3`"
         if boolean
-        else "truth values are joined by `<->`, `&`, `|`; only numbers are compared"
+        else "join truth values by `<->`, `&`, `|`; only numbers can be compared"
     )
     return Diagnostic(
         Code.WRONG_KIND,
@@ -185,7 +185,7 @@ def _wrong_kind(boolean: bool, span: Span | None) -> Diagnostic:
 
 
 def _at_least(number: Span) -> Fix | None:
-    """`>=` for the `=>` before a number; `x => 3` is an implication."""
+    """The fix `>=` for a `=>` before a number: `x => 3` is an implication."""
     text = number.source.text[: number.start].rstrip()
     if not text.endswith("=>") or text.endswith("<=>"):
         return None
@@ -198,7 +198,7 @@ NUMBERS_BACK = frozenset({"preInt", "preReal"})
 
 
 def temporal_predicates(sentence: Sentence) -> Iterator[Diagnostic]:
-    """F202 for each temporal predicate: formulas that look the other way cannot express it."""
+    """F202 for each temporal predicate, which only one of the two formulas can express."""
     ids: set[str] = set()
     for expression in conditions(sentence):
         for id, span in _names(expression):
@@ -211,15 +211,15 @@ def temporal_predicates(sentence: Sentence) -> Iterator[Diagnostic]:
 def _not_formalized(id: str, span: Span | None) -> Diagnostic:
     if id in NUMBERS_BACK:
         consequence, fix = (
-            "it stays in the formulas as it is",
-            "a monitor keeps the number of the tick before; an audit needs a proposition",
+            "the formulas keep it as a name",
+            "a monitor keeps the number of the previous tick; an audit needs a proposition",
         )
     elif id in LOOK_BACK:
-        consequence = "PT says what it means, and in FT it stays a proposition"
-        fix = "read PT, or check with a monitor"
+        consequence = "the PT formula expresses it, the FT formula keeps it as a proposition"
+        fix = "read the PT formula, or check with a monitor"
     else:
-        consequence = "FT says what it means, and in PT it stays a proposition"
-        fix = "read FT; a monitor cannot look ahead"
+        consequence = "the FT formula expresses it, the PT formula keeps it as a proposition"
+        fix = "read the FT formula; a monitor cannot look ahead"
     return Diagnostic(
         Code.PREDICATE_NOT_FORMALIZED,
         f"`{id}` looks {'ahead' if id in LOOK_AHEAD else 'back'}: {consequence}",

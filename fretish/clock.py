@@ -1,4 +1,4 @@
-"""The declared clock: what a tick is, and how many of them a duration counts."""
+"""The declared clock: the length of a tick, and durations in ticks."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ NANOSECONDS: dict[TimeUnit, int] = {
 
 
 class TimeSource(StrEnum):
-    """Which of a message's times places it on the clock."""
+    """Which time of a message the clock uses."""
 
     LOG_TIME = "log_time"
     PUBLISH_TIME = "publish_time"
@@ -47,12 +47,12 @@ class End(StrEnum):
 
 
 class Rounding(StrEnum):
-    """What happens to a duration that is not a whole number of ticks."""
+    """How a duration that is not a whole number of ticks is rounded."""
 
     EXACT = "exact"
     """It is an error."""
     CONSERVATIVE = "conservative"
-    """It is rounded to the stricter side, never to 0; where neither side is, it is an error."""
+    """It is rounded to the stricter side, never to 0; an error if neither side is stricter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,18 +65,18 @@ class Clock:
     end: End = End.INCONCLUSIVE
     rounding: Rounding = Rounding.EXACT
     phase: int = 0
-    """Nanoseconds from where the grid of ticks would begin to where it does, less than a tick."""
+    """Nanoseconds by which all ticks are shifted; less than a tick."""
     lateness: int | None = None
-    """Nanoseconds after its time at which a tick is judged; None: when all messages are there."""
+    """Nanoseconds between a tick and its evaluation; None: evaluated when the run has ended."""
 
     @property
-    def patience(self) -> int | None:
-        """The lateness that counts: by log time, which is that of arrival, nothing is ever late."""
+    def effective_lateness(self) -> int | None:
+        """The effective lateness: 0 with log time, which is the time of arrival."""
         return 0 if self.time is TimeSource.LOG_TIME else self.lateness
 
     @property
     def declared(self) -> bool:
-        """Whether it says what a tick is; bindings that bind nothing yet may leave it open."""
+        """Whether a tick is declared; bindings without signals need no clock."""
         return self.period is not None or self.topic is not None
 
     def __str__(self) -> str:
@@ -91,7 +91,7 @@ _PERIOD = re.compile(r"[0-9.]+ (?:s|ms|us|ns)")
 
 
 def period_of(text: str) -> int | None:
-    """Nanoseconds of a tick, of a text that begins as that of a clock; None: one a message."""
+    """The length of a tick in nanoseconds, from the text of a clock; None: a tick per message."""
     match = _PERIOD.match(text)
     return nanoseconds(match[0]) if match else None
 
@@ -107,7 +107,7 @@ def in_words(period: int) -> str:
 
 
 def _exactly(value: Fraction) -> str:
-    """As a decimal number where it is one, else as a fraction: never rounded."""
+    """The exact number as a decimal if it has one, else as a fraction."""
     for digits in range(10):
         if (value * 10**digits).denominator == 1:
             whole, part = divmod(int(value * 10**digits), 10**digits)
@@ -116,14 +116,13 @@ def _exactly(value: Fraction) -> str:
 
 
 def in_ticks(sentence: Sentence, clock: Clock | None) -> int | Diagnostic | None:
-    """How many ticks the sentence's timing counts.
+    """The duration of the sentence's timing in ticks.
 
-    Without a clock a unit counts ticks, whatever its name: that is how FRET reads it
-    (`assumed_ticks` then has a warning to give).
+    Without a clock every unit is read as ticks, as FRET does; `assumed_ticks` gives the warning.
 
     Returns:
-        Ticks, or None for a timing that counts none, or what keeps the duration from being
-        a whole number of ticks.
+        The number of ticks; None for a timing without a duration; F307 or F313 if the duration
+        is not a whole number of ticks.
     """
     bound = duration(sentence.timing)
     if bound is None or clock is None or bound.unit == "tick":
@@ -143,23 +142,24 @@ def in_ticks(sentence: Sentence, clock: Clock | None) -> int | Diagnostic | None
 
 
 def in_unit(ticks: int, unit: TimeUnit, clock: Clock | None) -> Duration:
-    """So many ticks: in the unit where that is exact, else in a smaller one, or in ticks."""
+    """A number of ticks as a duration: in the unit if exact, else in a smaller unit or in ticks."""
     if unit == "tick" or clock is None or clock.period is None:
         return Duration(ticks, unit)
-    smaller = [each for each in reversed(NANOSECONDS) if NANOSECONDS[each] <= NANOSECONDS[unit]]
-    for each in smaller:
-        amount, rest = divmod(ticks * clock.period, NANOSECONDS[each])
+    for smaller_unit in reversed(NANOSECONDS):
+        if NANOSECONDS[smaller_unit] > NANOSECONDS[unit]:
+            continue
+        amount, rest = divmod(ticks * clock.period, NANOSECONDS[smaller_unit])
         if rest == 0:
-            return Duration(amount, each)
+            return Duration(amount, smaller_unit)
     return Duration(ticks, "tick")
 
 
 def _fewer_is_stricter(sentence: Sentence) -> bool | None:
-    """Whether the sentence asks for more when its timing counts fewer ticks; None: for neither.
+    """Whether fewer ticks make the sentence stricter; None if neither direction does.
 
-    `within` asks for more then, and `for` for less. An `only` scope demands the opposite outside
-    of itself, and so does a probability that is bounded from above. `after` asks for the response
-    at one tick, and another number of ticks is another tick.
+    Fewer ticks make `within` stricter and `for` weaker. An `only` scope and an upper bound of a
+    probability reverse the direction. `after` requires the response at one tick, so neither
+    direction is stricter.
     """
     odds = sentence.probability
     fewer = _fewer_asks_more(sentence.timing)
@@ -171,7 +171,7 @@ def _fewer_is_stricter(sentence: Sentence) -> bool | None:
 
 
 def _fewer_asks_more(timing: Timing) -> bool | None:
-    """The same of a timing that counts ticks, alone."""
+    """Whether fewer ticks make a timing with a duration stricter; None if neither does."""
     shape = SHAPES[type(timing)]
     match shape.extent:
         case Extent.DURATION:
@@ -179,13 +179,13 @@ def _fewer_asks_more(timing: Timing) -> bool | None:
         case Extent.BEYOND:
             return None
         case Extent.TRIGGER | Extent.NEXT | Extent.LAST | Extent.INTERVAL | Extent.STOP:
-            raise AssertionError(f"it counts nothing: {timing}")
+            raise AssertionError(f"timing without a duration: {timing}")
         case _:
             assert_never(shape.extent)
 
 
 def assumed_ticks(sentence: Sentence, clock: Clock | None) -> Diagnostic | None:
-    """F312: the sentence counts seconds and no clock says how long a tick is."""
+    """F312 if the sentence has a unit of time, and no clock says how long a tick is."""
     bound = duration(sentence.timing)
     if clock is not None or bound is None or bound.unit == "tick":
         return None

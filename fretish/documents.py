@@ -21,70 +21,70 @@ IDENTIFIER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 _ID_LINE = re.compile(rf'^[ \t]*id[ \t]*=[ \t]*"(?P<id>{IDENTIFIER.pattern})"', re.MULTILINE)
 _FREE_TEXT = re.compile(r'"[^"]*"')
 _WHITE_SPACE = " \t\r\n\f\v\u00a0"
-"""What may stand around and between the words of a sentence, as in `grammar.lark`."""
+"""White space around and between the words of a sentence, as in `grammar.lark`."""
 _FENCE = re.compile(r"^\ufeff?\+\+\+[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
 class RequirementEntry:
-    """One requirement as it was written; its sentence is not parsed yet."""
+    """A requirement of a file: its header fields, and its unparsed sentence."""
 
     id: str
     wording: Span
-    """The bare FRETish sentence, without the white space around it."""
+    """The FRETish sentence, without surrounding white space."""
     title: str = ""
     text: str = ""
     """The requirement in natural language."""
     parents: tuple[str, ...] = ()
-    """Ids of hazards and of the requirements above this one."""
+    """Ids of hazards and of parent requirements."""
     rationale: str = ""
     status: str = "draft"
     verify: tuple[str, ...] = ()
-    """The planned methods of verification."""
+    """The planned verification methods."""
     params: Mapping[str, str] = field(default_factory=dict)
-    """Numbers that the requirement states, by the proposition they belong to."""
+    """Proposition → the number that the requirement states for it."""
     accept: Mapping[str, str] = field(default_factory=dict)
-    """Code of a warning about the requirement → why it is accepted."""
+    """Code of an accepted warning → the reason."""
     fret: Mapping[str, str] = field(default_factory=dict)
-    """What FRET keeps beside the sentence and fretc does not use: project, comments, ..."""
+    """FRET's other fields, which fretc does not use: project, comments, ..."""
     header: Tables | None = field(default=None, compare=False, repr=False)
     mistakes: tuple[Diagnostic, ...] = ()
-    """What is wrong with the header; its other fields are then not read."""
+    """The errors of the header; if there are any, its fields are not read."""
 
     @property
     def name(self) -> str:
-        """As a person calls it: `No contact (R14)`; its id, where it has no title."""
+        """The display name: `No contact (R14)`, or the id if there is no title."""
         return named(self.id, self.title)
 
     @property
     def is_free_text(self) -> bool:
-        """A text wholly in double quotes is kept, and not formalized."""
+        """Whether the whole text is in double quotes: it is kept, and not formalized."""
         return _FREE_TEXT.fullmatch(self.wording.text) is not None
 
     def contains(self, place: Span | None) -> bool:
-        """Whether a place is in its header or its sentence."""
+        """Whether a span is in the header or the sentence."""
         if place is None or place.source.name != self.wording.source.name:
             return False
         start = self.header.text.start if self.header else self.wording.start
         return start <= place.start <= self.wording.end
 
     def place(self, *path: str) -> Span:
-        """Where a header field stands; the sentence where there is no header."""
+        """The span of a header field; the sentence if there is no header."""
         return self.header.value(*path) if self.header else self.wording
 
 
 def named(id: str, title: str) -> str:
-    """The title of a requirement, and its id behind it; the id, where it has no title."""
+    """The display name of a requirement: `TITLE (ID)`, or the id if there is no title."""
     return f"{title} ({id})" if title else id
 
 
 def requirements(source: Source) -> tuple[tuple[RequirementEntry, ...], tuple[Diagnostic, ...]]:
-    """Read every requirement of a `.fret` text, and what is wrong with their headers.
+    """Parse the requirements of a `.fret` text; the diagnostics are those of their headers.
 
-    One whose header cannot be read is kept by its id, so that nobody loses sight of it; by the name
-    of its file where its id cannot be read either.
+    A requirement whose header has errors is in the result, too, so that it is reported. If its id
+    cannot be read, the file name is its id.
     """
-    found: list[RequirementEntry] = []
+    entries: list[RequirementEntry] = []
     diagnostics: list[Diagnostic] = []
     pairs = _pairs(source)
     if isinstance(pairs, Diagnostic):
@@ -92,18 +92,18 @@ def requirements(source: Source) -> tuple[tuple[RequirementEntry, ...], tuple[Di
     for header, wording in pairs:
         requirement, mistakes = _requirement(source, header, wording, alone=len(pairs) == 1)
         diagnostics.extend(mistakes)
-        found.append(requirement)
-    return tuple(found), tuple(diagnostics)
+        entries.append(requirement)
+    return tuple(entries), tuple(diagnostics)
 
 
-def unread(path: str, why: Diagnostic) -> RequirementEntry:
-    """What a file stands for that cannot be read: a requirement, called by the file."""
+def unreadable_file(path: str, why: Diagnostic) -> RequirementEntry:
+    """A requirement that represents an unreadable file, with the file name as its id."""
     source = Source(path, "")
     return _unread(source, source.span(), why)
 
 
 def _pairs(source: Source) -> list[tuple[Span | None, Span]] | Diagnostic:
-    """Header (None: there is none) and sentence, in the order of the file."""
+    """The pairs of header (or None) and sentence, in the order of the file."""
     fences = list(_FENCE.finditer(source.text))
     if len(fences) % 2:
         return _unclosed(source, fences[-1])
@@ -159,20 +159,20 @@ def _requirement(
 
 
 def _stem(source: Source) -> str:
-    """The name of the file, with `_` for what is no printable text: names may be any bytes."""
+    """The name of the file without suffix; `_` replaces unprintable characters."""
     stem = PurePath(source.name).stem.strip("<>") or "requirement"
-    return "".join(each if each.isprintable() else "_" for each in stem)
+    return "".join(character if character.isprintable() else "_" for character in stem)
 
 
 def _called(source: Source, wording: Span, *, alone: bool) -> str:
-    """What a requirement without an id is called: its file, and its line where it is not alone."""
+    """The id of a requirement without one: its file, and its line if the file has several."""
     return _stem(source) if alone else f"{_stem(source)}-line-{wording.line}"
 
 
 def _unread(
     source: Source, wording: Span, why: Diagnostic, header: str = "", *, alone: bool = True
 ) -> RequirementEntry:
-    """A requirement whose header is no TOML; a line that looks like its id still names it."""
+    """A requirement whose header is not TOML; its id is read from a line like `id = "R1"`."""
     match = _ID_LINE.search(header)
     id = match["id"] if match else _called(source, wording, alone=alone)
     return RequirementEntry(id, wording, mistakes=(why,))
@@ -189,7 +189,7 @@ def _mistakes(tables: Tables, *, alone: bool) -> Iterator[Diagnostic]:
     if "id" not in tables.data and not alone:
         yield Diagnostic(
             Code.BAD_FIELD,
-            "each requirement needs an `id` where a file holds several",
+            "each requirement needs an `id` if a file holds several",
             tables.text.part(0, 0),
             help='add `id = "R1"`',
         )

@@ -1,7 +1,7 @@
 """Boolean and arithmetic expressions: the same tree in sentences and in bindings.
 
 A sentence never holds a `Quantity` or a `Persistence`; a binding never holds a temporal predicate.
-Spans do not compare: two expressions are equal when they say the same, wherever they stand.
+Spans are not compared: two expressions are equal if they have the same structure.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from fretish.diagnostics.source import Span
 ComparisonOperator = Literal["<", "<=", ">", ">=", "=", "!="]
 Order = Literal["<", "<=", ">", ">="]
 MIRRORED: Mapping[str, Order] = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
-"""What says the same when both sides are exchanged."""
+"""Comparison operator → the equivalent operator for exchanged sides."""
 COMPARE: Mapping[ComparisonOperator, Callable[[Any, Any], Any]] = {
     "<": operator.lt,
     "<=": operator.le,
@@ -25,10 +25,10 @@ COMPARE: Mapping[ComparisonOperator, Callable[[Any, Any], Any]] = {
     "=": operator.eq,
     "!=": operator.ne,
 }
-"""Of numbers, or of what stands for them."""
+"""Comparison operator → its function."""
 ArithmeticOperator = Literal["+", "-", "*", "/", "mod", "^"]
 MOST_EXPONENT = 16
-"""Of a power that is computed: it is a product."""
+"""The largest exponent of a power."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,7 +217,7 @@ def children(expression: Expression) -> tuple[Expression, ...]:
 
 
 def with_children(expression: Expression, parts: Sequence[Expression]) -> Expression:
-    """The expression with other direct parts, as many; `&` and `|` stay flat."""
+    """The expression with its direct parts replaced by as many others; `&` and `|` stay flat."""
     match expression:
         case Truth() | Name() | Number() | Quantity() | Word():
             return expression
@@ -238,7 +238,7 @@ def with_children(expression: Expression, parts: Sequence[Expression]) -> Expres
 def with_comparisons(
     expression: Expression, rewrite: Callable[[Comparison], Expression]
 ) -> Expression:
-    """The expression with each comparison in it replaced; those within calls, too."""
+    """The expression with each comparison replaced, also inside calls."""
     match expression:
         case Comparison():
             return rewrite(expression)
@@ -256,7 +256,7 @@ def with_comparisons(
 
 
 def parts(expression: Expression) -> Iterator[Expression]:
-    """The expression, and everything in it, left to right."""
+    """The expression and all its parts, in preorder."""
     waiting = [expression]
     while waiting:
         part = waiting.pop()
@@ -265,7 +265,7 @@ def parts(expression: Expression) -> Iterator[Expression]:
 
 
 def truths(expression: Expression) -> Iterator[Name]:
-    """Every `Name` in it that stands for a truth value; those in calls are left out."""
+    """Every `Name` that is a truth value, except in calls."""
     waiting = [expression]
     while waiting:
         part = waiting.pop()
@@ -276,17 +276,17 @@ def truths(expression: Expression) -> Iterator[Name]:
 
 
 def names(expression: Expression) -> Iterator[Name]:
-    """Every `Name` in it, left to right, with repetitions."""
+    """Every `Name`, left to right, with repetitions."""
     return (part for part in parts(expression) if isinstance(part, Name))
 
 
 def has_unit(expression: Expression) -> bool:
-    """Whether a number in it has a unit."""
+    """Whether a number in the expression has a unit."""
     return any(isinstance(part, Quantity) for part in parts(expression))
 
 
 def depth(expression: Expression) -> int:
-    """How many operators stand within each other, without recursion."""
+    """The nesting depth of the expression, computed without recursion."""
     deepest = 0
     waiting = [(expression, 1)]
     while waiting:

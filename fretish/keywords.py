@@ -1,4 +1,4 @@
-"""The words of FRETish's grammar, none of which can be a name without quotes."""
+"""The reserved words of FRETish: none of them can be a name without quotes."""
 
 KEYWORDS = (
     "after always and at before during eventually except finally first for if immediately in "
@@ -7,10 +7,10 @@ KEYWORDS = (
     "tick ticks microsecond microseconds millisecond milliseconds second seconds minute minutes "
     "hour hours"
 ).split()
-"""As one would write them; for suggestions."""
+"""The key words in lower case, for suggestions."""
 
 UNUSED = frozenset({"what"})
-"""A key word of FRET's grammar that begins nothing which FRET formalizes."""
+"""Key words of FRET's grammar that no formalizable sentence uses."""
 RESERVED = frozenset(
     [
         *KEYWORDS,
@@ -18,6 +18,6 @@ RESERVED = frozenset(
         *UNUSED,
     ]
 )
-"""All of them, in lower case; they are reserved in any case. `what` begins nothing that FRET
-formalizes. No other word is reserved: what a target's language keeps for itself is written in
-another way there (`compiler.logic.spelling.reserved_words`)."""
+"""All reserved words in lower case; they are reserved in any case. Words that only a target's
+language reserves are not among them: the target renames these
+(`compiler.logic.spelling.reserved_words`)."""

@@ -1,6 +1,6 @@
 """The meaning of a sentence in English, from its tree.
 
-It states what FRETish only implies: which ticks trigger, whether the trigger itself counts,
+It states what FRETish leaves implicit: which ticks trigger, whether the trigger itself counts, and
 what happens at the end of a scope. Source: SEMANTICS of FRETish, section 3.
 """
 
@@ -14,12 +14,12 @@ from fretish.printer import expression
 
 
 def meaning(sentence: s.Sentence, ticks: int | None, clock: Clock | None) -> str:
-    """One or two English sentences.
+    """The meaning of the sentence as one or two English sentences.
 
     Args:
         sentence: the sentence.
-        ticks: what its duration counts, None where it has none.
-        clock: what a tick is, None where no clock is declared.
+        ticks: its duration in ticks; None if it has no duration.
+        clock: the declared clock; None if there is none.
     """
     where, close = _where(sentence.scope)
     q = f"`{expression(sentence.response)}`"
@@ -32,7 +32,7 @@ def meaning(sentence: s.Sentence, ticks: int | None, clock: Clock | None) -> str
 
 
 def _where(scope: s.Scope | None) -> tuple[str, str]:
-    """Where the sentence is enforced, and what ends the stretch."""
+    """The part of the run in which the sentence is enforced, and the name of that part."""
     if scope is None:
         return "Over the whole run", "the run"
     m = f"`{expression(scope.mode)}`"
@@ -70,7 +70,7 @@ def _when(condition: s.Condition | None, scope: s.Scope | None) -> str:
 
 
 _Lengths = tuple[str, str]
-"""The duration, and one tick more, in words."""
+"""The duration, and the duration plus one tick, as text."""
 
 
 def _demanded(timing: s.Timing, q: str, close: str, lengths: _Lengths) -> str:
@@ -105,7 +105,7 @@ def _demanded(timing: s.Timing, q: str, close: str, lengths: _Lengths) -> str:
 
 
 def _forbidden(timing: s.Timing, q: str, close: str, lengths: _Lengths) -> str:
-    """The negated timing, which `only` scopes demand; its forms are duals."""
+    """The negated timing, which `only` scopes require: the dual of `_demanded`."""
     match timing:
         case s.Immediately():
             return f"{q} must be false at that same tick"
@@ -170,7 +170,7 @@ def _ahead_of(q: str, value: str, close: str, stop: str) -> str:
 
 
 def span(ticks: int, clock: Clock | None) -> str:
-    """`2 ticks (200 ms)`."""
+    """A number of ticks as text: `2 ticks (200 ms)`."""
     count = f"{ticks} tick{'' if ticks == 1 else 's'}"
     if clock is None or clock.period is None:
         return count

@@ -1,7 +1,7 @@
-"""FRETish text → `Sentence`; the only module that knows the parser library.
+"""Parse FRETish text into a `Sentence`.
 
-The grammar is `grammar.lark`, one LALR(1) pass with a lexer that reserves every key word.
-All of the input is read, and every operator of it reaches the tree.
+The grammar is `grammar.lark`: one LALR(1) pass with a lexer that reserves every key word. The whole
+input is parsed, and every operator is in the tree.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from fretish.checking import check_depth, check_names, check_response_kinds, che
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.fixes import FixedText
 from fretish.diagnostics.source import Span
-from fretish.mistakes.operators import unknown_character
-from fretish.mistakes.unexpected import Lexeme, Unexpected
+from fretish.error_rules.operators import unknown_character
+from fretish.error_rules.unexpected import Lexeme, Unexpected
 from fretish.reading.grammars import Grammar
 from fretish.syntax_errors import bad_duration, bad_probability, explain, no_sentence
 from fretish.units import NAMES, number
@@ -42,79 +42,85 @@ _UNITS: dict[str, s.TimeUnit] = {
 
 
 def parse_value(text: Span) -> e.Expression | Diagnostic:
-    """Read one expression, all of it: what a variable stands for.
+    """Parse the whole text as one expression: the value of a variable.
 
     Args:
-        text: the expression, somewhere in a source; spans of the tree point into that source.
+        text: the span of the expression; spans of the tree refer to the same source.
     """
-    words = _divided(text, "value")
-    if isinstance(words, Diagnostic):
-        return words
-    with _places_in(text):  # no callback of an expression has a mistake to tell
-        value = cast(e.Expression, _Build().transform(words))
+    parse_tree = _parse_tree(text, "value")
+    if isinstance(parse_tree, Diagnostic):
+        return parse_tree
+    with _spans_in(text):  # Callbacks of an expression raise no error.
+        value = cast(e.Expression, _TreeBuilder().transform(parse_tree))
     return next(check_value(value, text), value)
 
 
 def parse(text: Span) -> s.Sentence | Diagnostic:
-    """Read one sentence, all of it.
+    """Parse the whole text as one sentence.
 
     Args:
-        text: the sentence, somewhere in a source; spans of the tree point into that source.
+        text: the span of the sentence; spans of the tree refer to the same source.
 
     Returns:
-        The tree, or the first thing that keeps the text from being a sentence.
+        The tree, or the diagnostic of the first error.
     """
-    tree = _tree(text)
+    tree = _parse_sentence(text)
     if isinstance(tree, Diagnostic):
         return tree
-    return next(_against(tree), tree)
+    return next(_check(tree), tree)
 
 
-MISTAKES = 10
-"""Of one sentence that are named at once."""
-_LONG = 10_000
-"""Characters; of a longer text only the first mistake is named: each is a reading of its own."""
+MOST_ERRORS = 10
+"""The largest number of errors that are reported for one sentence."""
+_MOST_CHARACTERS = 10_000
+"""Characters; in a longer text only the first error is reported, because each needs a parse."""
 
 
-def mistakes(text: Span) -> tuple[Diagnostic, ...]:
-    """What keeps a text from being a sentence, in the order of the text.
+def find_errors(text: Span) -> tuple[Diagnostic, ...]:
+    """All errors of a sentence, in the order of the text.
 
-    Behind a mistake of the grammar reading goes on where it is sure how: with the text that its
-    fix gives, or with the sentence that begins there. A fix that leads no further is not safe.
+    After a syntax error with a safe fix, the fixed text is parsed again to find further errors. If
+    a second sentence begins at the error, it is parsed, too. A fix after which parsing stops at the
+    same point is not safe.
     """
-    found: list[Diagnostic] = []
-    read = FixedText(text)
-    while len(found) < MISTAKES:
-        here = read.span
-        words = _words(here)
-        if isinstance(words, Diagnostic) and found and _at(_moved(words, read)) <= _at(found[-1]):
-            found[-1] = _unsure(found[-1])
+    diagnostics: list[Diagnostic] = []
+    fixed = FixedText(text)
+    is_long = len(text.text) > _MOST_CHARACTERS
+    while len(diagnostics) < MOST_ERRORS:
+        span = fixed.span
+        tree = _sentence_tree(span)
+        start = _start(_in_original(tree, fixed)) if isinstance(tree, Diagnostic) else None
+        if start is not None and diagnostics and start <= _start(diagnostics[-1]):
+            diagnostics[-1] = _as_unsafe(diagnostics[-1])
             break
-        tree = words if isinstance(words, Diagnostic) else _built(words, here)
-        wrong = _around(tree, here) if isinstance(tree, Diagnostic) else [*_against(tree)]
-        found.extend(_moved(each, read) for each in wrong)
-        fix = found[-1].fix if isinstance(tree, Diagnostic) else None
-        if len(text.text) > _LONG or fix is None or not fix.is_safe or read.touches(fix.span):
+        sentence = tree if isinstance(tree, Diagnostic) else _build(tree, span)
+        if isinstance(sentence, Diagnostic):
+            errors = _with_neighbours(sentence, span)
+            fix = _in_original(errors[-1], fixed).fix
+        else:
+            errors, fix = [*_check(sentence)], None
+        diagnostics.extend(_in_original(error, fixed) for error in errors)
+        if is_long or fix is None or not fix.is_safe or fixed.touches(fix.span):
             break
-        read = read.with_fix(fix)
-    return tuple(sorted(found[:MISTAKES], key=_at))
+        fixed = fixed.with_fix(fix)
+    return tuple(sorted(diagnostics[:MOST_ERRORS], key=_start))
 
 
-def _tree(text: Span) -> s.Sentence | Diagnostic:
-    """What the grammar makes of a text."""
-    words = _words(text)
-    return words if isinstance(words, Diagnostic) else _built(words, text)
+def _parse_sentence(text: Span) -> s.Sentence | Diagnostic:
+    """The tree of a text, or its first syntax error."""
+    tree = _sentence_tree(text)
+    return tree if isinstance(tree, Diagnostic) else _build(tree, text)
 
 
-def _words(text: Span) -> ParseTree | Diagnostic:
-    """The text as the grammar divides it."""
+def _sentence_tree(text: Span) -> ParseTree | Diagnostic:
+    """The parse tree of a sentence, or a syntax error."""
     if not text.text.strip():
         return no_sentence(text)
-    return _divided(text, "start")
+    return _parse_tree(text, "start")
 
 
-def _divided(text: Span, start: str) -> ParseTree | Diagnostic:
-    """The text as a rule of the grammar divides it."""
+def _parse_tree(text: Span, start: str) -> ParseTree | Diagnostic:
+    """The parse tree of a text for one start rule of the grammar, or a syntax error."""
     try:
         return _lark().parse(text.text, start=start)
     except UnexpectedToken as error:
@@ -123,18 +129,18 @@ def _divided(text: Span, start: str) -> ParseTree | Diagnostic:
         return unknown_character(text, error.pos_in_stream or 0)
 
 
-def _built(words: ParseTree, text: Span) -> s.Sentence | Diagnostic:
+def _build(tree: ParseTree, text: Span) -> s.Sentence | Diagnostic:
     try:
-        with _places_in(text):
-            return cast(s.Sentence, _Build().transform(words))
+        with _spans_in(text):
+            return cast(s.Sentence, _TreeBuilder().transform(tree))
     except VisitError as error:
-        if isinstance(error.orig_exc, _MistakeError):
+        if isinstance(error.orig_exc, _ParseError):
             return error.orig_exc.diagnostic
         raise
 
 
-def _against(sentence: s.Sentence) -> Iterator[Diagnostic]:
-    """What is wrong with a sentence that the grammar has."""
+def _check(sentence: s.Sentence) -> Iterator[Diagnostic]:
+    """The errors of a sentence that is syntactically correct."""
     deep = check_depth(sentence)
     if deep is not None:
         yield deep
@@ -143,35 +149,35 @@ def _against(sentence: s.Sentence) -> Iterator[Diagnostic]:
     yield from check_response_kinds(sentence)
 
 
-def _around(wrong: Diagnostic, text: Span) -> list[Diagnostic]:
-    """A mistake of the grammar; with those around it, where a second sentence begins there."""
-    if wrong.code is not Code.SEVERAL_SENTENCES or len(text.text) > _LONG:
-        return [wrong]
-    first, second = text.part(0, _at(wrong)), text.part(_at(wrong), text.end)
-    tree = _tree(first)
-    before = () if isinstance(tree, Diagnostic) else _against(tree)
-    return [*before, *mistakes(second), wrong]
+def _with_neighbours(error: Diagnostic, text: Span) -> list[Diagnostic]:
+    """A syntax error; if a second sentence begins there, also the errors of both sentences."""
+    if error.code is not Code.SEVERAL_SENTENCES or len(text.text) > _MOST_CHARACTERS:
+        return [error]
+    first, second = text.part(0, _start(error)), text.part(_start(error), text.end)
+    tree = _parse_sentence(first)
+    before = () if isinstance(tree, Diagnostic) else _check(tree)
+    return [*before, *find_errors(second), error]
 
 
-def _moved(wrong: Diagnostic, read: FixedText) -> Diagnostic:
-    """A diagnostic of the fixed text, with its places in the original one."""
-    assert wrong.span is not None
-    fix = wrong.fix and replace(wrong.fix, span=read.place(wrong.fix.span))
-    return replace(wrong, span=read.place(wrong.span), fix=fix)
+def _in_original(error: Diagnostic, fixed: FixedText) -> Diagnostic:
+    """A diagnostic of the fixed text, with its spans in the original text."""
+    assert error.span is not None
+    fix = error.fix and replace(error.fix, span=fixed.place(error.fix.span))
+    return replace(error, span=fixed.place(error.span), fix=fix)
 
 
-def _at(wrong: Diagnostic) -> int:
-    assert wrong.span is not None
-    return wrong.span.start
+def _start(error: Diagnostic) -> int:
+    assert error.span is not None
+    return error.span.start
 
 
-def _unsure(wrong: Diagnostic) -> Diagnostic:
-    assert wrong.fix is not None
-    fix = replace(wrong.fix, is_safe=False)
-    return replace(wrong, fix=fix, help=fix.help if wrong.help == wrong.fix.help else wrong.help)
+def _as_unsafe(error: Diagnostic) -> Diagnostic:
+    assert error.fix is not None
+    fix = replace(error.fix, is_safe=False)
+    return replace(error, fix=fix, help=fix.help if error.help == error.fix.help else error.help)
 
 
-class _MistakeError(Exception):
+class _ParseError(Exception):
     """Carries a diagnostic out of the parser's callbacks."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
@@ -184,7 +190,7 @@ _text: ContextVar[Span] = ContextVar("_text")
 
 
 @contextmanager
-def _places_in(text: Span) -> Iterator[None]:
+def _spans_in(text: Span) -> Iterator[None]:
     token = _text.set(text)
     try:
         yield
@@ -211,7 +217,7 @@ _QUANTITY = (
     r"/(?:0|[1-9][0-9]{0,59})(?:\.[0-9]{1,60})?(?:[eE][+-]?[0-9]{1,3}(?![0-9.]))?/"
     rf" WHITE_SPACE? /{_POWERED}(?:[*\/]{_POWERED})*/"
 )
-"""A number and its unit: all units are known to the lexer, so no name is taken for one."""
+"""A number and its unit. The lexer has a list of all units, so a name is never read as a unit."""
 _OPTIONS = {
     "start": ["start", "value"],
     "lexer": "basic",
@@ -225,41 +231,41 @@ def _meta_span(meta: Any) -> Span:
     return _text.get().part(meta.start_pos, meta.end_pos)
 
 
-def _parts(children: list[Any]) -> list[Any]:
-    """The trees among the children: key words have done their work."""
+def _trees(children: list[Any]) -> list[Any]:
+    """The children that are trees; tokens of key words are dropped."""
     return [child for child in children if not isinstance(child, Token)]
 
 
-def _scoped(kind: s.ScopeKind) -> Callable[..., s.Scope]:
+def _scope_builder(kind: s.ScopeKind) -> Callable[..., s.Scope]:
     def build(self: object, meta: Any, children: list[Any]) -> s.Scope:
-        (mode,) = _parts(children)
+        (mode,) = _trees(children)
         return s.Scope(kind, mode, _meta_span(meta))
 
     return build
 
 
-def _timed(kind: Callable[..., s.Timing]) -> Callable[..., _Timed]:
-    def build(self: object, meta: Any, children: list[Any]) -> _Timed:
-        return _Timed((kind(*_parts(children)), _meta_span(meta)))
+def _timing_builder(kind: Callable[..., s.Timing]) -> Callable[..., _TimingPart]:
+    def build(self: object, meta: Any, children: list[Any]) -> _TimingPart:
+        return _TimingPart((kind(*_trees(children)), _meta_span(meta)))
 
     return build
 
 
-class _Timed(tuple[s.Timing, Span]):
-    """A timing with its place, on the way to the sentence."""
+class _TimingPart(tuple[s.Timing, Span]):
+    """A timing and its span, until the sentence is built."""
 
     __slots__ = ()
 
 
-class _Component(tuple[str, Span, bool]):
-    """The component's name, its place, and whether `the` precedes it; for the sentence."""
+class _ComponentPart(tuple[str, Span, bool]):
+    """The component's name, its span, and whether `the` precedes it."""
 
     __slots__ = ()
 
 
 @v_args(meta=True)
-class _Build(Transformer_NonRecursive[Token, Any]):
-    """Parse tree → `Sentence`, without recursion: a sentence may nest as deep as it likes."""
+class _TreeBuilder(Transformer_NonRecursive[Token, Any]):
+    """Builds a `Sentence` from a parse tree, without recursion, so that any depth is possible."""
 
     # Names and operands
 
@@ -275,7 +281,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         return e.Name(str(children[0]), _span(children[0]))
 
     def named_mode(self, meta: Any, children: list[Any]) -> e.Name:
-        return cast(e.Name, _parts(children)[0])
+        return cast(e.Name, _trees(children)[0])
 
     def number(self, meta: Any, children: list[Token]) -> e.Number:
         return e.Number(str(children[0]), _span(children[0]))
@@ -293,7 +299,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
     def occurrence(self, meta: Any, children: list[Any]) -> e.Call:
         past = any(isinstance(c, Token) and c.type == "PREVIOUS" for c in children)
-        return e.Call("prevOcc" if past else "nextOcc", tuple(_parts(children)), _meta_span(meta))
+        return e.Call("prevOcc" if past else "nextOcc", tuple(_trees(children)), _meta_span(meta))
 
     # Operators
 
@@ -307,7 +313,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         return e.either(*children)
 
     def xor(self, meta: Any, children: list[Any]) -> e.Expression:
-        return e.Xor(*_parts(children))
+        return e.Xor(*_trees(children))
 
     def implies(self, meta: Any, children: list[e.Expression]) -> e.Expression:
         return e.Implies(*children)
@@ -316,7 +322,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         return e.Iff(*children)
 
     def if_then(self, meta: Any, children: list[Any]) -> e.Expression:
-        return e.Implies(*_parts(children))
+        return e.Implies(*_trees(children))
 
     def compare(self, meta: Any, children: list[Token]) -> str:
         return str(children[0])
@@ -331,29 +337,29 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         return e.Arithmetic(operator, left, right, _meta_span(meta))
 
     def negation(self, meta: Any, children: list[Any]) -> e.Expression:
-        return e.Negation(_parts(children)[0], _meta_span(meta))
+        return e.Negation(_trees(children)[0], _meta_span(meta))
 
     # Parts of the sentence
 
-    scope_in = _scoped(s.ScopeKind.IN)
-    scope_not_in = _scoped(s.ScopeKind.NOT_IN)
-    scope_before = _scoped(s.ScopeKind.BEFORE)
-    scope_after = _scoped(s.ScopeKind.AFTER)
-    scope_only_in = _scoped(s.ScopeKind.ONLY_IN)
-    scope_only_before = _scoped(s.ScopeKind.ONLY_BEFORE)
-    scope_only_after = _scoped(s.ScopeKind.ONLY_AFTER)
+    scope_in = _scope_builder(s.ScopeKind.IN)
+    scope_not_in = _scope_builder(s.ScopeKind.NOT_IN)
+    scope_before = _scope_builder(s.ScopeKind.BEFORE)
+    scope_after = _scope_builder(s.ScopeKind.AFTER)
+    scope_only_in = _scope_builder(s.ScopeKind.ONLY_IN)
+    scope_only_before = _scope_builder(s.ScopeKind.ONLY_BEFORE)
+    scope_only_after = _scope_builder(s.ScopeKind.ONLY_AFTER)
 
-    immediately = _timed(s.Immediately)
-    next = _timed(s.Next)
-    finally_ = _timed(s.Finally)
-    eventually = _timed(s.Eventually)
-    always = _timed(s.Always)
-    never = _timed(s.Never)
-    within = _timed(s.Within)
-    for_ = _timed(s.For)
-    after = _timed(s.After)
-    until = _timed(s.Until)
-    before = _timed(s.Before)
+    immediately = _timing_builder(s.Immediately)
+    next = _timing_builder(s.Next)
+    finally_ = _timing_builder(s.Finally)
+    eventually = _timing_builder(s.Eventually)
+    always = _timing_builder(s.Always)
+    never = _timing_builder(s.Never)
+    within = _timing_builder(s.Within)
+    for_ = _timing_builder(s.For)
+    after = _timing_builder(s.After)
+    until = _timing_builder(s.Until)
+    before = _timing_builder(s.Before)
 
     def item(self, meta: Any, children: list[Any]) -> s.Condition:
         word, expression, *truth = children[0], children[1], *children[2:]
@@ -367,20 +373,23 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         return (children[0] != children[-1] and children[0].type == "OR", children[-1])
 
     def condition(self, meta: Any, children: list[Any]) -> s.Condition:
-        """`and` and `or` associate to the left with equal rank; one trigger makes all a trigger."""
-        first, *rest = _parts(children)
+        """Join condition items: `and` and `or` are left-associative with equal precedence.
+
+        One item that is a trigger makes the whole condition a trigger.
+        """
+        first, *rest = _trees(children)
         expression, kind, word = first.expression, first.kind, first.word
         for disjoined, item in rest:
             join = e.either if disjoined else e.both
             expression = join(expression, item.expression)
             if kind is s.ConditionKind.HOLDING:
-                kind, word = item.kind, item.word  # the word that makes it a trigger, if any
+                kind, word = item.kind, item.word
         return s.Condition(kind, expression, word, _meta_span(meta))
 
-    def component(self, meta: Any, children: list[Any]) -> _Component:
-        (name,) = _parts(children)
+    def component(self, meta: Any, children: list[Any]) -> _ComponentPart:
+        (name,) = _trees(children)
         article = any(isinstance(c, Token) and c.type == "THE" for c in children)
-        return _Component((name.id, name.span, article))
+        return _ComponentPart((name.id, name.span, article))
 
     def probability(self, meta: Any, children: list[Any]) -> s.Probability:
         _, _, op, *digits = children
@@ -388,7 +397,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         bound = _number(text)
         impossible = bound == 0 if op == "<" else op == ">" and bound == 1
         if bound is None or impossible or not 0 <= bound <= 1:
-            raise _MistakeError(bad_probability(_meta_span(meta)))
+            raise _ParseError(bad_probability(_meta_span(meta)))
         return s.Probability(op, bound, text)
 
     def duration(self, meta: Any, children: list[Token]) -> s.Duration:
@@ -397,17 +406,17 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         if not text.isdigit() or len(text) > 15:
             digits_span = _span(children[0], digits[-1])
             unit_name = f"{_UNITS[unit.type]}s"
-            raise _MistakeError(bad_duration(digits_span, unit_name, _meta_span(meta)))
+            raise _ParseError(bad_duration(digits_span, unit_name, _meta_span(meta)))
         return s.Duration(int(text), _UNITS[unit.type], _meta_span(meta))
 
     def value(self, meta: Any, children: list[e.Expression]) -> e.Expression:
         return children[0]
 
     def start(self, meta: Any, children: list[Any]) -> s.Sentence:
-        *parts, response = _parts(children)
+        *parts, response = _trees(children)
         by_type = {type(part): part for part in parts}
-        timing, timing_span = by_type.get(_Timed, (s.Eventually(explicit=False), None))
-        component, component_span, article = by_type[_Component]
+        timing, timing_span = by_type.get(_TimingPart, (s.Eventually(explicit=False), None))
+        component, component_span, article = by_type[_ComponentPart]
         return s.Sentence(
             scope=by_type.get(s.Scope),
             condition=by_type.get(s.Condition),
@@ -423,23 +432,23 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
 
 def _number(digits: str) -> Fraction | None:
-    """None where it has more digits than anybody means."""
+    """The exact number; None if it has too many digits."""
     try:
         return number(digits)
     except ValueError:
         return None
 
 
-# What went wrong ---------------------------------------------------------------------------
+# Syntax errors ---------------------------------------------------------------------------
 
 
 def _unexpected(error: UnexpectedToken, text: Span) -> Diagnostic:
     token: Token = error.token
-    before = _word_before(token, text)
+    before = _previous_token(token, text)
     if token.type == "QUANTITY" and "NUMBER" in (error.accepts or error.expected):
         in_duration = before is not None and before.type in ("WITHIN", "FOR", "AFTER")
         return (
-            explain(_duration(token, text))
+            explain(_unit_error(token, text))
             if in_duration
             else bad_probability(_lexeme(token, text).span)
         )
@@ -453,8 +462,8 @@ def _unexpected(error: UnexpectedToken, text: Span) -> Diagnostic:
     )
 
 
-def _duration(token: Token, text: Span) -> Unexpected:
-    """A duration in one of our units, `within 5 s`: FRETish has words of its own."""
+def _unit_error(token: Token, text: Span) -> Unexpected:
+    """The error of a duration in an SI unit, `within 5 s`: FRETish requires `seconds`."""
     digits, unit = split_quantity(str(token))
     start, end = token.start_pos, token.end_pos
     assert start is not None
@@ -467,8 +476,8 @@ def _duration(token: Token, text: Span) -> Unexpected:
     )
 
 
-def _word_before(token: Token, text: Span) -> Token | None:
-    """The parser stopped at `token`, so all words before it are known to the lexer."""
+def _previous_token(token: Token, text: Span) -> Token | None:
+    """The token before the one at which the parser stopped."""
     before = None
     for word in _lark().lex(text.text):
         if token.type != "$END" and word.start_pos == token.start_pos:

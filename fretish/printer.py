@@ -1,4 +1,4 @@
-"""Tree → text: the canonical sentence, and expressions with as few parentheses as may be."""
+"""Print trees as text: canonical sentences, and expressions with minimal parentheses."""
 
 from __future__ import annotations
 
@@ -38,16 +38,16 @@ _SCOPES = {
 
 @with_recursion_limit
 def canonical(tree: s.Sentence) -> str:
-    """The one wording that all equal trees share: the text that fingerprints are taken of."""
+    """The canonical text of a sentence: equal for equal trees; the input of fingerprints."""
     condition = replace(tree.condition, word="") if tree.condition else None
     return sentence(replace(tree, article=False, condition=condition))
 
 
 @with_recursion_limit
 def sentence(tree: s.Sentence) -> str:
-    """The wording that `fretc fmt` writes: parsing it gives an equal tree.
+    """The text that `fretc fmt` writes; parsing it gives an equal tree.
 
-    The words that only the writer's taste decides stay: `the`, and `when`, `if`, `where` or `upon`.
+    It keeps the author's choice of `the`, and of `when`, `if`, `where` or `upon`.
     """
     parts = [
         f"{scope(tree.scope)}," if tree.scope else "",
@@ -63,13 +63,13 @@ def sentence(tree: s.Sentence) -> str:
 
 
 def scope(tree: s.Scope) -> str:
-    """A scope that is one variable is a mode: `in m mode`; any other expression is a `while`."""
+    """A scope as text: `in m mode` for a single variable, else `while ...`."""
     wordings = _MODES if isinstance(tree.mode, e.Name) else _SCOPES
     return wordings[tree.kind].format(expression(tree.mode))
 
 
 def condition(tree: s.Condition) -> str:
-    """`whenever p`, or `upon p` with the word of the writer."""
+    """A condition as text: `whenever p`, or `upon p` with the author's key word."""
     if tree.kind is s.ConditionKind.HOLDING:
         return f"whenever {expression(tree.expression)}"
     word = tree.word if tree.word in ("when", "if", "where") else "upon"
@@ -77,7 +77,7 @@ def condition(tree: s.Condition) -> str:
 
 
 def timing(tree: s.Timing) -> str:
-    """`within 3 seconds`; empty where the sentence gives no timing."""
+    """A timing as text: `within 3 seconds`; empty if the sentence has no timing."""
     match tree:
         case s.Immediately():
             return "immediately"
@@ -106,19 +106,19 @@ def timing(tree: s.Timing) -> str:
 
 
 def identifier(id: str) -> str:
-    """The name, in quotes where it needs them."""
+    """The name, in quotes if necessary."""
     plain = _PLAIN.fullmatch(id) and id.lower() not in RESERVED
     return id if plain else f'"{id}"'
 
 
 @with_recursion_limit
 def expression(tree: e.Expression) -> str:
-    """The text in FRETish; in the language of bindings where FRETish has no such operator."""
+    """An expression as FRETish text; operators that only bindings have keep their spelling."""
     return _at(tree, _IFF)
 
 
 def _at(tree: e.Expression, loosest: int) -> str:
-    """The text, in parentheses where its operator binds looser than its place allows."""
+    """The text, in parentheses if its precedence is lower than `loosest`."""
     rank, text = _ranked(tree)
     return text if rank >= loosest else f"({text})"
 

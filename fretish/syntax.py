@@ -1,6 +1,6 @@
-"""The tree of a FRETish sentence: what was written, and where.
+"""The syntax tree of a FRETish sentence, with spans.
 
-The tree keeps `3 seconds`; how many ticks that is belongs to `fretish.clock`.
+The tree keeps durations as written (`3 seconds`); `fretish.clock` converts them to ticks.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from fretish.expressions import ComparisonOperator, Expression
 
 
 class ScopeKind(StrEnum):
-    """Where a requirement is enforced; the values are FRET's keys."""
+    """Kind of scope; the values are FRET's keys."""
 
     IN = "in"
     NOT_IN = "notin"
@@ -28,12 +28,12 @@ class ScopeKind(StrEnum):
 
     @property
     def negates(self) -> bool:
-        """`only` scopes demand the negated timing outside of themselves."""
+        """Whether the scope is an `only` scope, which requires the negated timing outside of it."""
         return self in (ScopeKind.ONLY_IN, ScopeKind.ONLY_BEFORE, ScopeKind.ONLY_AFTER)
 
 
 def ends_with_run(scope: ScopeKind | None) -> bool:
-    """Whether an interval, once it has begun, lasts as long as the run."""
+    """Whether an interval of the scope, once begun, lasts until the end of the run."""
     match scope:
         case None | ScopeKind.AFTER | ScopeKind.ONLY_BEFORE:
             return True
@@ -55,22 +55,22 @@ class Scope:
 
 
 class ConditionKind(StrEnum):
-    """When a condition triggers; the values are FRET's keys."""
+    """Kind of condition; the values are FRET's keys."""
 
     TRIGGER = "regular"
-    """`upon`, `when`, `if`, `where`, `unless`: at the points where it becomes true."""
+    """`upon`, `when`, `if`, `where`, `unless`: triggers at the ticks at which it becomes true."""
     HOLDING = "holding"
-    """`whenever`: at every point where it is true."""
+    """`whenever`: triggers at every tick at which it is true."""
 
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """All items of the condition, joined into one expression."""
+    """A condition, with all its items joined into one expression."""
 
     kind: ConditionKind
     expression: Expression
     word: str = field(default="", compare=False)
-    """The first qualifier as written, in lower case: `when`, `upon`, ..."""
+    """The first key word as written, in lower case: `when`, `upon`, ..."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -88,7 +88,7 @@ class Duration:
 
 @dataclass(frozen=True, slots=True)
 class Immediately:
-    """At the trigger itself."""
+    """`immediately`: at the tick of the trigger."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,53 +103,53 @@ class Finally:
 
 @dataclass(frozen=True, slots=True)
 class Eventually:
-    """At some point from the trigger on; also what a sentence without timing means."""
+    """`eventually`, or no timing: at some tick from the trigger on."""
 
     explicit: bool = True
-    """False where the sentence gives no timing (FRET's key `null`)."""
+    """False if the sentence has no timing (FRET's key `null`)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Always:
-    """At every point from the trigger on."""
+    """`always`: at every tick from the trigger on."""
 
 
 @dataclass(frozen=True, slots=True)
 class Never:
-    """At no point from the trigger on."""
+    """`never`: at no tick from the trigger on."""
 
 
 @dataclass(frozen=True, slots=True)
 class Within:
-    """No later than that after the trigger."""
+    """`within 3 seconds`: at some tick from the trigger to the end of the duration."""
 
     duration: Duration
 
 
 @dataclass(frozen=True, slots=True)
 class For:
-    """At every point from the trigger to that long after it."""
+    """`for 3 seconds`: at every tick from the trigger to the end of the duration."""
 
     duration: Duration
 
 
 @dataclass(frozen=True, slots=True)
 class After:
-    """Not before that has passed, and at the first point after it."""
+    """`after 3 seconds`: false until the duration has passed, then true at the next tick."""
 
     duration: Duration
 
 
 @dataclass(frozen=True, slots=True)
 class Until:
-    """At every point before the first at which `stop` holds."""
+    """`until p`: at every tick before the first one at which `stop` is true."""
 
     stop: Expression
 
 
 @dataclass(frozen=True, slots=True)
 class Before:
-    """At some point before the first at which `stop` holds, if there is one."""
+    """`before p`: at some tick before the first one at which `stop` is true, if there is one."""
 
     stop: Expression
 
@@ -170,26 +170,26 @@ Timing = (
 
 
 class Extent(Enum):
-    """The ticks that a timing is about, seen from a trigger."""
+    """The ticks that a timing refers to, relative to a trigger."""
 
     TRIGGER = auto()
     """The tick of the trigger."""
     NEXT = auto()
-    """The tick after it."""
+    """The tick after the trigger."""
     LAST = auto()
     """The last tick of the interval."""
     INTERVAL = auto()
-    """All from the trigger to the end of the interval."""
+    """All ticks from the trigger to the end of the interval."""
     DURATION = auto()
-    """All from the trigger to the one that the duration counts to."""
+    """All ticks from the trigger to the end of the duration."""
     BEYOND = auto()
-    """The tick after those; on them it asks for the opposite."""
+    """The tick after the duration; during it the opposite is required."""
     STOP = auto()
-    """All from the trigger to the one before the stop condition."""
+    """All ticks from the trigger to the one before the stop condition."""
 
     @property
     def counts(self) -> bool:
-        """Whether a duration says which ticks they are."""
+        """Whether a duration determines the ticks."""
         match self:
             case Extent.DURATION | Extent.BEYOND:
                 return True
@@ -200,7 +200,7 @@ class Extent(Enum):
 
     @property
     def needs_end(self) -> bool:
-        """Whether an interval without end asks for nothing."""
+        """Whether nothing is required in an interval without end."""
         match self:
             case Extent.LAST:
                 return True
@@ -222,7 +222,7 @@ class Quantifier(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """What a timing asks for; no two timings ask for the same."""
+    """What a timing requires; each timing has a different shape."""
 
     extent: Extent
     quantifier: Quantifier
@@ -241,7 +241,7 @@ SHAPES: Mapping[type[Timing], Shape] = {
     Until: Shape(Extent.STOP, Quantifier.ALL),
     Before: Shape(Extent.STOP, Quantifier.SOME),
 }
-"""Each timing once; what asks which timing it is asks here, or names all of them."""
+"""Timing → its shape. Code tests for a timing by this table, or by a `match` over all timings."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -289,7 +289,7 @@ def timing_key(sentence: Sentence) -> str:
 
 
 def duration(timing: Timing) -> Duration | None:
-    """The duration that the timing counts, if it counts one."""
+    """The duration of the timing, or None."""
     match timing:
         case Within(duration) | For(duration) | After(duration):
             return duration
@@ -302,7 +302,7 @@ def duration(timing: Timing) -> Duration | None:
 
 
 def with_duration(timing: Timing, other: Duration) -> Timing:
-    """The timing with another duration, if it counts one."""
+    """The timing with another duration; unchanged if it has none."""
     match timing:
         case Within() | For() | After():
             return replace(timing, duration=other)
@@ -315,7 +315,7 @@ def with_duration(timing: Timing, other: Duration) -> Timing:
 
 
 def stop(timing: Timing) -> Expression | None:
-    """The stop condition of the timing, if it has one."""
+    """The stop condition of the timing, or None."""
     match timing:
         case Until(stop) | Before(stop):
             return stop
@@ -328,7 +328,7 @@ def stop(timing: Timing) -> Expression | None:
 
 
 def deadline(timing: Timing) -> Duration | None:
-    """The duration within which one response is enough: that of `within`."""
+    """The duration of `within`, or None: the deadline for a single response."""
     match timing:
         case Within(duration):
             return duration
@@ -341,12 +341,12 @@ def deadline(timing: Timing) -> Duration | None:
 
 
 def is_eventual(timing: Timing) -> bool:
-    """Whether one response is enough, however late in the interval: `eventually`, or no timing."""
+    """Whether one response at any later tick suffices: `eventually`, or no timing."""
     return SHAPES[type(timing)] == Shape(Extent.INTERVAL, Quantifier.SOME)
 
 
 def with_expressions(sentence: Sentence, rewritten: Callable[[Expression], Expression]) -> Sentence:
-    """The sentence with each of its Boolean expressions replaced."""
+    """The sentence with each of its Boolean expressions rewritten."""
     scope, condition, timing = sentence.scope, sentence.condition, sentence.timing
     return replace(
         sentence,

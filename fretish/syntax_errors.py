@@ -1,6 +1,7 @@
-"""What keeps a text from being FRETish, and what to write instead, in the words of FRETish.
+"""Explain syntax errors of FRETish, and propose a fix.
 
-Each rule looks at the first word that does not fit, the word before it, and what would have fitted.
+Each rule looks at the first unexpected word, the word before it, and the words that the grammar
+expects.
 """
 
 from __future__ import annotations
@@ -11,27 +12,27 @@ from fractions import Fraction
 
 from fretish.checking import key_word_as_name
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
-from fretish.diagnostics.fixes import Fix, left_out
+from fretish.diagnostics.fixes import Fix, removal
 from fretish.diagnostics.source import Span
-from fretish.keywords import KEYWORDS
-from fretish.mistakes.operators import (
+from fretish.error_rules.operators import (
     COMPARISONS,
-    chain,
-    join_of_expressions,
-    number_form,
-    other_language,
-    parenthesis,
+    chained_comparison,
+    malformed_number,
+    unmatched_parenthesis,
+    wrong_join,
+    wrong_operator,
 )
-from fretish.mistakes.order import (
+from fretish.error_rules.order import (
     TIMINGS,
-    article,
-    behind,
+    further_sentence,
+    misplaced_part,
     missing_part,
-    out_of_order,
-    second_sentence,
-    timing,
+    part_after_response,
+    superfluous_article,
+    wrong_timing,
 )
-from fretish.mistakes.unexpected import STARTS_EXPRESSION, Unexpected, not_fretish
+from fretish.error_rules.unexpected import STARTS_EXPRESSION, Unexpected, not_fretish
+from fretish.keywords import KEYWORDS
 from fretish.units import number, too_long, unit, unknown_unit
 
 _GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
@@ -54,7 +55,7 @@ _GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
     ("`)`", frozenset({"RPAR"})),
     ("the end of the sentence", frozenset({"$END"})),
 )
-"""What the grammar may expect, in the words of a reader, in the order of a sentence."""
+"""Description of what the grammar may expect → its terminals, in the order of a sentence."""
 
 _UNITS = ("TICK", "MICROSECOND", "MILLISECOND", "SECOND", "MINUTE", "HOUR")
 _UNIT_NAMES = {
@@ -62,10 +63,10 @@ _UNIT_NAMES = {
     "s": "seconds", "min": "minutes", "mins": "minutes", "h": "hours", "hr": "hours",
 }  # fmt: skip
 _TICK_NAMES = frozenset({"step", "steps", "cycle", "cycles", "timepoint", "timepoints"})
-"""Of other tools: whether such a step is a tick, only the author knows."""
+"""Words of other tools for a step; fretc cannot decide whether it is a tick."""
 _SHALL = ("should", "must", "will", "shal")
 _WEAKER = ("can", "may", "might", "could", "would", "has", "needs")
-"""What stands where `shall` does, and may say something else."""
+"""Words in the position of `shall` that may have another meaning."""
 _TWO_WORDS = re.compile(
     r"(?!(?:if|not|at)\b)[a-z]\w*\s+(?!(?:and|or|xor|mod|implies|iff|is)\b)[a-z]", re.IGNORECASE
 )
@@ -73,7 +74,7 @@ _MICROSECONDS = {
     "microseconds": 1, "milliseconds": 10**3, "seconds": 10**6, "minutes": 60 * 10**6,
     "hours": 3600 * 10**6,
 }  # fmt: skip
-"""In each unit of time."""
+"""Unit of time → its length in microseconds."""
 
 
 def explain(unexpected: Unexpected) -> Diagnostic:
@@ -86,7 +87,7 @@ def explain(unexpected: Unexpected) -> Diagnostic:
 
 
 def no_sentence(text: Span) -> Diagnostic:
-    """F106."""
+    """F106 for an empty text."""
     return Diagnostic(
         Code.NO_SENTENCE,
         "there is no sentence here",
@@ -96,32 +97,32 @@ def no_sentence(text: Span) -> Diagnostic:
 
 
 def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
-    """F108 for a number that is negative, broken or in scientific notation.
+    """F108 for a number that is negative, fractional or in scientific notation.
 
     Args:
-        span: the number.
-        unit: as FRETish writes it, in the plural.
-        whole: the number and its unit.
+        span: the span of the number.
+        unit: FRETish's name of the unit, in the plural.
+        whole: the span of the number and its unit.
     """
     if span.text.startswith("-"):
         return Diagnostic(
             Code.BAD_DURATION,
             "a duration cannot be negative",
             span,
-            help="count from the trigger on: 0 is the trigger itself",
+            help="count from the trigger: 0 is the trigger itself",
         )
     if span.text.isdigit():
         return Diagnostic(
             Code.BAD_DURATION,
             "a duration has at most 15 digits",
             span,
-            help="count a larger unit",
+            help="use a larger unit",
         )
     fix = _whole(span.text, unit, whole)
-    words = "count a smaller unit, in whole numbers: 500 milliseconds, not 0.5 seconds"
+    words = "use a smaller unit, so that the number is whole: 500 milliseconds, not 0.5 seconds"
     return Diagnostic(
         Code.BAD_DURATION,
-        f"a duration counts whole units, and `{span.text}` is no whole number",
+        f"a duration must be a whole number, and `{span.text}` is not",
         span,
         help=fix.help if fix is not None else words,
         fix=fix,
@@ -129,7 +130,7 @@ def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
 
 
 def _whole(digits: str, unit: str, whole: Span) -> Fix | None:
-    """The same duration in the largest unit of which it is a whole number; None: there is none."""
+    """The fix with the largest unit in which the duration is a whole number, or None."""
     size = _MICROSECONDS.get(unit)
     try:
         length = (number(digits) or Fraction(1, 3)) * (size or Fraction(1, 3))
@@ -143,7 +144,7 @@ def _whole(digits: str, unit: str, whole: Span) -> Fix | None:
 
 
 def bad_probability(span: Span) -> Diagnostic:
-    """F110."""
+    """F110 for a probability out of range."""
     return Diagnostic(
         Code.BAD_PROBABILITY,
         f"no run can have the probability `{span.text}`",
@@ -156,7 +157,7 @@ def bad_probability(span: Span) -> Diagnostic:
 
 
 def _unit(u: Unexpected) -> Diagnostic | None:
-    if not u.wants(*_UNITS):
+    if not u.expects(*_UNITS):
         return None
     words = "write ticks, microseconds, milliseconds, seconds, minutes or hours: `within 3 seconds`"
     if u.lexeme.kind != "ID":
@@ -164,7 +165,7 @@ def _unit(u: Unexpected) -> Diagnostic | None:
     fix = _unit_fix(u.lexeme.span)
     return Diagnostic(
         Code.BAD_DURATION,
-        f"a duration needs a unit, and `{u.lexeme.word}` is none",
+        f"a duration needs a unit, and `{u.lexeme.word}` is not one",
         u.lexeme.span,
         help=fix.help if fix is not None else words,
         fix=fix,
@@ -172,11 +173,11 @@ def _unit(u: Unexpected) -> Diagnostic | None:
 
 
 def _measured(u: Unexpected) -> Diagnostic | None:
-    """A name behind a number stands where a unit may stand."""
-    if u.before is None or u.before.kind != "NUMBER" or u.lexeme.kind != "ID":
+    """A name after a number, in the position of a unit."""
+    if u.previous is None or u.previous.kind != "NUMBER" or u.lexeme.kind != "ID":
         return None
     if unit(u.lexeme.word) is not None:
-        return too_long(u.before.span)
+        return too_long(u.previous.span)
     return unknown_unit(u.lexeme.word, u.lexeme.span)
 
 
@@ -190,49 +191,51 @@ def _unit_fix(span: Span) -> Fix | None:
 
 
 def _number(u: Unexpected) -> Diagnostic | None:
-    """A duration is a literal."""
-    if u.before is None or u.before.kind not in ("WITHIN", "FOR", "AFTER"):
+    """F108 for a duration that does not begin with a number."""
+    if u.previous is None or u.previous.kind not in ("WITHIN", "FOR", "AFTER"):
         return None
     if not u.accepts <= {"NUMBER", "MINUS"}:
         return None
     return Diagnostic(
         Code.BAD_DURATION,
-        "a duration begins with a number in digits",
+        "a duration must begin with a number in digits",
         u.lexeme.span,
-        help=f"write such as `{u.before.word} N seconds`",
+        help=f"write, for example, `{u.previous.word} N seconds`",
     )
 
 
 def _superfluous(u: Unexpected) -> Diagnostic | None:
-    """Words that English has here and FRETish has not."""
+    """Superfluous English words: `then`, `the`, `mode`."""
     reasons = {
         "THEN": "FRETish has no `then` after the condition",
-        "THE": "a mode has no article",
-        "MODE": "after `while` stands an expression, not a mode",
+        "THE": "a mode cannot contain `the`",
+        "MODE": "`while` needs an expression, not a mode",
     }
     fits = {
-        "THEN": u.wants("SHALL", "WHENEVER"),
-        "THE": u.wants("MODE", "ID") and not u.wants("SHALL") and u.follows("IN", "DURING", "MODE"),
-        "MODE": u.wants("SHALL", "_AMPERSAND"),
+        "THEN": u.expects("SHALL", "WHENEVER"),
+        "THE": u.expects("MODE", "ID")
+        and not u.expects("SHALL")
+        and u.follows("IN", "DURING", "MODE"),
+        "MODE": u.expects("SHALL", "_AMPERSAND"),
     }
     if not fits.get(u.lexeme.kind, False):
         return None
-    if u.lexeme.kind == "MODE" and not re.search(r"\bwhile\b", u.read.text, re.IGNORECASE):
+    if u.lexeme.kind == "MODE" and not re.search(r"\bwhile\b", u.text_before.text, re.IGNORECASE):
         return None
-    return not_fretish(reasons[u.lexeme.kind], u.lexeme.span, left_out(u.lexeme.span, is_safe=True))
+    return not_fretish(reasons[u.lexeme.kind], u.lexeme.span, removal(u.lexeme.span, is_safe=True))
 
 
 def _globally(u: Unexpected) -> Diagnostic | None:
-    if u.before is None or u.before.word.lower() not in ("globally", "global", "everywhere"):
+    if u.previous is None or u.previous.word.lower() not in ("globally", "global", "everywhere"):
         return None
-    if not u.wants("SHALL"):
+    if not u.expects("SHALL"):
         return None
     comma = u.lexeme.kind == "_COMMA"
     return not_fretish(
-        f"FRETish has no word for the scope `{u.before.word}`",
-        u.before.span,
-        left_out(u.before.span.to(u.lexeme.span) if comma else u.before.span, is_safe=True),
-        "leave it out: without a scope a requirement is enforced everywhere",
+        f"FRETish has no word for the scope `{u.previous.word}`",
+        u.previous.span,
+        removal(u.previous.span.to(u.lexeme.span) if comma else u.previous.span, is_safe=True),
+        "remove it: without a scope a requirement applies to the whole run",
     )
 
 
@@ -240,23 +243,23 @@ def _mode(u: Unexpected) -> Diagnostic | None:
     """`in p & q`."""
     if u.lexeme.kind not in ("_AMPERSAND", "_BAR", *COMPARISONS):
         return None
-    if not u.wants("MODE") or u.wants("NUMBER"):
+    if not u.expects("MODE") or u.expects("NUMBER"):
         return None
     return not_fretish(
-        "a mode is one name",
+        "a mode must be one name",
         u.lexeme.span,
-        "for an expression write `while p & q` in place of `in`",
+        "for an expression, write `while p & q` instead of `in`",
     )
 
 
 def _shall(u: Unexpected) -> Diagnostic | None:
     word = u.lexeme.word.lower()
-    if not u.wants("SHALL") or word not in (*_SHALL, *_WEAKER):
+    if not u.expects("SHALL") or word not in (*_SHALL, *_WEAKER):
         return None
     fix = Fix(u.lexeme.span, "shall", is_safe=word in _SHALL)
     return Diagnostic(
         Code.MISSPELT,
-        f"a requirement says `shall`, not `{u.lexeme.word}`",
+        f"a requirement uses `shall`, not `{u.lexeme.word}`",
         u.lexeme.span,
         help=fix.help,
         fix=fix,
@@ -265,7 +268,7 @@ def _shall(u: Unexpected) -> Diagnostic | None:
 
 def _missing_shall(u: Unexpected) -> Diagnostic | None:
     """`the sw satisfy p`, `the sw always satisfy p`."""
-    if not u.wants("SHALL") or u.wants("$END") or not u.follows("ID", "QUOTED"):
+    if not u.expects("SHALL") or u.expects("$END") or not u.follows("ID", "QUOTED"):
         return None
     if u.lexeme.kind not in ("SATISFY", *TIMINGS) or re.search(r"\bshall\b", u.rest.text, re.I):
         return None
@@ -281,27 +284,27 @@ def _missing_shall(u: Unexpected) -> Diagnostic | None:
 
 def _component(u: Unexpected) -> Diagnostic | None:
     """`the big robot shall`."""
-    if u.before is None or not (u.follows("ID") and u.lexeme.kind == "ID" and u.wants("SHALL")):
+    if u.previous is None or not (u.follows("ID") and u.lexeme.kind == "ID" and u.expects("SHALL")):
         return None
     if not re.match(r"[\w.%]+\s+shall\b", u.rest.text, re.IGNORECASE):
         return None
-    both = u.before.span.to(u.lexeme.span)
-    fix = Fix(both, f"{u.before.word}_{u.lexeme.word}")
-    return not_fretish("a component is one name", both, fix)
+    both = u.previous.span.to(u.lexeme.span)
+    fix = Fix(both, f"{u.previous.word}_{u.lexeme.word}")
+    return not_fretish("a component must be one name", both, fix)
 
 
 def _misspelt(u: Unexpected) -> Diagnostic | None:
-    """A name stands where only a key word fits, and one key word is near."""
-    suspects = [u.lexeme] if not u.wants("ID") else []
-    if u.before is not None and u.wants("SHALL"):
-        suspects.append(u.before)
+    """F107 for a name that is similar to a key word, where only a key word is allowed."""
+    suspects = [u.lexeme] if not u.expects("ID") else []
+    if u.previous is not None and u.expects("SHALL"):
+        suspects.append(u.previous)
     for suspect in suspects:
         near = suggestion(suspect.word, KEYWORDS, cutoff=0.72)
         if suspect.kind == "ID" and near is not None:
             fix = Fix(suspect.span, near)
             return Diagnostic(
                 Code.MISSPELT,
-                f"`{suspect.word}` is no word of FRETish here",
+                f"FRETish does not allow the word `{suspect.word}` here",
                 suspect.span,
                 help=fix.help,
                 fix=fix,
@@ -310,7 +313,7 @@ def _misspelt(u: Unexpected) -> Diagnostic | None:
 
 
 def _missing_satisfy(u: Unexpected) -> Diagnostic | None:
-    if not u.wants("SATISFY") or u.lexeme.kind not in STARTS_EXPRESSION:
+    if not u.expects("SATISFY") or u.lexeme.kind not in STARTS_EXPRESSION:
         return None
     response = u.rest
     two_words = _TWO_WORDS.match(response.text) is not None
@@ -324,29 +327,29 @@ def _missing_satisfy(u: Unexpected) -> Diagnostic | None:
 
 
 def _missing_component(u: Unexpected) -> Diagnostic | None:
-    if re.search(r"\bsatisfy\b", u.read.text, re.IGNORECASE):
+    if re.search(r"\bsatisfy\b", u.text_before.text, re.IGNORECASE):
         return None
-    starts = u.lexeme.kind == "SHALL" and u.wants("ID")
-    ends = u.follows("SHALL") and u.wants("ID")
+    starts = u.lexeme.kind == "SHALL" and u.expects("ID")
+    ends = u.follows("SHALL") and u.expects("ID")
     if not starts and not (ends and u.lexeme.word.lower() in KEYWORDS):
         return None
     return Diagnostic(
         Code.MISSING_COMPONENT,
         "there is no component before `shall`",
-        u.lexeme.span if starts or u.before is None else u.before.span,
+        u.lexeme.span if starts or u.previous is None else u.previous.span,
         help="name what must satisfy the requirement: `the rover shall ...`",
     )
 
 
 def _key_word_as_name(u: Unexpected) -> Diagnostic | None:
-    if not u.wants("ID") or u.lexeme.word.lower() not in KEYWORDS:
+    if not u.expects("ID") or u.lexeme.word.lower() not in KEYWORDS:
         return None
     return key_word_as_name(u.lexeme.span)
 
 
 def _does_not_fit(u: Unexpected) -> Diagnostic:
-    own = frozenset({"MODE"}) if u.wants("ID") else frozenset()  # there `mode` is a name, too
-    expected = [words for words, kinds in _GROUPS if u.wants(*kinds - own)]
+    own = frozenset({"MODE"}) if u.expects("ID") else frozenset()  # there `mode` is a name, too
+    expected = [words for words, kinds in _GROUPS if u.expects(*kinds - own)]
     message = (
         "the sentence ends too early" if u.lexeme.at_end else f"`{u.lexeme.word}` does not fit here"
     )
@@ -363,7 +366,7 @@ def _alternatives(words: list[str]) -> str:
 
 
 _RULES: tuple[Callable[[Unexpected], Diagnostic | None], ...] = (
-    second_sentence,
+    further_sentence,
     _unit,
     _measured,
     _number,
@@ -372,15 +375,15 @@ _RULES: tuple[Callable[[Unexpected], Diagnostic | None], ...] = (
     _shall,
     missing_part,
     _superfluous,
-    out_of_order,
-    behind,
-    timing,
-    other_language,
-    join_of_expressions,
-    chain,
-    number_form,
-    parenthesis,
-    article,
+    misplaced_part,
+    part_after_response,
+    wrong_timing,
+    wrong_operator,
+    wrong_join,
+    chained_comparison,
+    malformed_number,
+    unmatched_parenthesis,
+    superfluous_article,
     _missing_shall,
     _component,
     _misspelt,

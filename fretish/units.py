@@ -1,6 +1,6 @@
-"""Physical units of the bindings, and exact conversion between them.
+"""Physical units, and exact conversion between them.
 
-Seven base dimensions; angles count as one, so that radians never pass for plain numbers.
+There are six base units. The angle is one of them, so that radians differ from plain numbers.
 Source of the factors: The International System of Units (SI Brochure, 9th edition), tables 2-8; of
 ft and kn, the units of aviation and shipping, ICAO Annex 5, table 3-3.
 """
@@ -93,11 +93,11 @@ _UNITS: dict[str, Unit] = {
 NAMES = tuple(_UNITS)
 _FACTOR = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?[0-9]{1,2}))?")
 _MOST_FACTORS = 16
-"""No unit has more: a power of a power of ten is soon longer than any memory."""
+"""The largest number of factors of a unit; it bounds the size of conversion factors."""
 
 
 def unit(text: str) -> Unit | None:
-    """Read `m`, `m/s`, `m/s^2`, `kg*m/s2`; None where a part is not known."""
+    """Parse `m`, `m/s`, `m/s^2`, `kg*m/s2`; None if a part is unknown."""
     result = ONE
     if text.count("*") + text.count("/") >= _MOST_FACTORS:
         return None
@@ -126,14 +126,14 @@ def unit_quotient(left: str, right: str) -> str:
 
 
 def is_vague(name: str) -> bool:
-    """Whether units of one kind meet in a product and do not cancel: `cm/m`, `km/h*s`, `%*m`."""
+    """Whether a product has units of one dimension that do not cancel: `cm/m`, `km/h*s`, `%*m`."""
     above, below = (Counter(map(_without_power, part)) for part in _fraction(name))
     left = {*(above - below), *(below - above)} - {"1"}
     return any(_is_alike(_UNITS[a], _UNITS[b]) for a, b in combinations(left, 2))
 
 
 def _is_alike(a: Unit, b: Unit) -> bool:
-    """Whether one is a multiple of the other, or shares a base with it, and not both are SI's."""
+    """Whether two units share a base unit or one is dimensionless, and not both are coherent."""
     shared = any(map(mul, a.dimension, b.dimension))
     plain = DIMENSIONLESS in (a.dimension, b.dimension)
     return (shared or plain) and not a.factor == b.factor == 1
@@ -146,7 +146,7 @@ def _without_power(factor: str) -> str:
 
 
 def _fraction(name: str) -> tuple[list[str], list[str]]:
-    """The factors above and below the line; `m/s*s` is m / (s s)."""
+    """The factors of numerator and denominator; `m/s*s` is m / (s s)."""
     above, *below = name.split("/")
     factors = [factor for factor in above.split("*") if factor not in ("", "1")]
     return factors, [factor for part in below for factor in part.split("*")]
@@ -160,19 +160,22 @@ _NUMBER = re.compile(r"-?[0-9]{1,60}(?:\.[0-9]{1,60})?(?:[eE][+-]?[0-9]{1,3})?")
 
 
 def number(text: str) -> Fraction:
-    """`2.5`, `1e-3`, exactly.
+    """The exact value of `2.5` or `1e-3`.
 
     Raises:
-        ValueError: it is no number, or one of more digits or a larger exponent than anybody means:
-            `1e999999999` has as many digits.
+        ValueError: the text is not a number, or has too many digits or too large an exponent:
+            the value of `1e999999999` would not fit into memory.
     """
     if _NUMBER.fullmatch(text) is None:
-        raise ValueError(f"`{text[:80]}` is no number of at most 60 digits and an exponent of 3")
+        raise ValueError(
+            f"`{text[:80]}` is not a number of at most 60 digits with an exponent of at most 3 "
+            "digits"
+        )
     return Fraction(text)
 
 
 def quantity(text: str) -> tuple[Dimension, Fraction] | None:
-    """`5 cm` → its dimension and 1/20, exactly, in base units; None where it is no quantity."""
+    """`5 cm` → its dimension, and its exact value 1/20 in base units; None if it is no quantity."""
     digits, *name = text.split(maxsplit=1) or [""]
     measure = unit(*name) if name else ONE
     try:
@@ -182,7 +185,7 @@ def quantity(text: str) -> tuple[Dimension, Fraction] | None:
 
 
 def base_name(dimension: Dimension) -> str:
-    """`m/s` for (1, 0, -1, 0, 0, 0); empty for a plain number."""
+    """The base unit of a dimension: `m/s` for (1, 0, -1, 0, 0, 0); empty for a plain number."""
     numerator = [_power(b, n) for b, n in zip(_BASES, dimension, strict=True) if n > 0]
     denominator = [_power(b, -n) for b, n in zip(_BASES, dimension, strict=True) if n < 0]
     return "/".join(["*".join(numerator) or ("1" if denominator else ""), *denominator])
@@ -196,14 +199,14 @@ _SPLIT = re.compile(r"([0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)\s*(.*)")
 
 
 def split(text: str) -> tuple[str, str]:
-    """`1.5 m/s` → its digits and its unit.
+    """`1.5 m/s` → `1.5` and `m/s`.
 
     Raises:
-        ValueError: it does not begin with a digit.
+        ValueError: the text does not begin with a digit.
     """
     match = _SPLIT.fullmatch(text.strip())
     if match is None:
-        raise ValueError(f"`{text[:80]}` is no quantity")
+        raise ValueError(f"`{text[:80]}` is not a quantity")
     return match[1], match[2]
 
 
@@ -211,7 +214,7 @@ _DURATION = re.compile(r"\s*(\d{1,30}(?:\.\d{1,30})?)\s*(ns|us|ms|s|min|h)\s*")
 
 
 def nanoseconds(text: str) -> int | None:
-    """`100 ms` → 100 000 000; None where it is no whole number, or over a hundred years."""
+    """`100 ms` → 100 000 000; None if it is no whole number of nanoseconds, or over 140 years."""
     match = _DURATION.fullmatch(text)
     if match is None:
         return None
@@ -220,7 +223,7 @@ def nanoseconds(text: str) -> int | None:
 
 
 _SPELT = {"mps": "m/s", "kph": "km/h", "kmh": "km/h", "rps": "rad/s", "degrees": "deg"}
-"""Units by names that are nearer to those of other units."""
+"""Other names of units → the unit that they mean."""
 
 
 def unknown_unit(name: str, span: Span) -> Diagnostic:
@@ -229,17 +232,17 @@ def unknown_unit(name: str, span: Span) -> Diagnostic:
     examples = "m, cm, s, ms, rad, deg, m/s, rad/s, m/s^2, kg, A, V, Hz, %"
     return Diagnostic(
         Code.UNKNOWN_UNIT,
-        f"`{name}` is no unit",
+        f"unknown unit `{name}`",
         span,
-        help=f"did you mean `{near}`?" if near else f"write one such as {examples}",
+        help=f"did you mean `{near}`?" if near else f"write a unit such as {examples}",
     )
 
 
 def too_long(span: Span) -> Diagnostic:
-    """F308 for a number that `number` does not read."""
+    """F308 for a number with too many digits."""
     return Diagnostic(
         Code.BAD_EXPRESSION,
-        "the number has more than 60 digits, or an exponent of more than 3",
+        "the number has more than 60 digits, or an exponent of more than 3 digits",
         span,
         help="write fewer digits",
     )

@@ -1,6 +1,6 @@
-"""From samples to the truth of a proposition, step by step, and to what a tick sees of it.
+"""Evaluate propositions on the samples of signals, over time and at ticks.
 
-Times are whole nanoseconds. Steps, ages and durations are those of an audit
+Times are whole nanoseconds. Steps, ages and durations are defined as in an audit
 (`fretc.logs.signals.propositions`, `fretc.logs.signals.traces`). The text of this module is copied
 into emitted nodes: it needs the standard library only.
 """
@@ -14,25 +14,26 @@ from monitors.kernel.verdicts import Truth
 
 
 class Meaning(NamedTuple):
-    """A proposition: its truth at an instant, and what a tick sees of several instants."""
+    """The definition of a proposition: its truth at an instant, and its aggregation at a tick."""
 
     name: str
     signals: tuple[str, ...]
     truth: Callable[[Mapping[str, Reading], Sequence[Truth]], Truth]
-    """Of the numbers of its signals, and of what has held for a duration."""
+    """Function of the values of its signals and of the states of its `held` parts."""
     held: tuple[tuple[Callable[[Mapping[str, Reading], Sequence[Truth]], Truth], int], ...] = ()
-    """What has to hold, for how many nanoseconds; each may ask for those before it."""
+    """Parts `... for 200 ms`: a truth function, which may use the states of earlier parts, and its
+    duration in nanoseconds."""
     outer: tuple[int, ...] = ()
-    """The places of those that `truth` asks for."""
+    """The indices of the `held` parts that `truth` uses."""
     lookback: int = 0
-    """How far its truth depends on the past."""
+    """Nanoseconds of the past on which its truth depends."""
     aggregate: str = "last"
-    """`any`, `all` or `last`."""
+    """How several values within one tick combine: `any`, `all` or `last`."""
     on_unknown: Truth = None
 
 
 class Series:
-    """The samples of a signal in order of time; equal times in the order of arrival."""
+    """The samples of a signal in order of time; equal times are in order of arrival."""
 
     def __init__(self, max_age: int | None = None) -> None:
         self.max_age = max_age
@@ -40,18 +41,18 @@ class Series:
         self.values: list[Reading] = []
 
     def put(self, time: int, value: Reading) -> None:
-        """One sample."""
+        """Add a sample."""
         place = bisect_right(self.times, time)
         self.times.insert(place, time)
         self.values.insert(place, value)
 
     def forget(self, start: int) -> None:
-        """Drop what is before the sample in force at `start`."""
+        """Drop the samples before the one that is current at `start`."""
         count = max(0, bisect_left(self.times, start) - 1)
         del self.times[:count], self.values[:count]
 
     def next(self, done: int) -> int | None:
-        """The next time after `done` at which its value may change."""
+        """The next time after `done` at which the value may change; None: never."""
         place = bisect_right(self.times, done)
         following = self.times[place] if place < len(self.times) else None
         if place and self.max_age is not None:
@@ -61,25 +62,25 @@ class Series:
         return following
 
     def span(self, time: int) -> tuple[int, int]:
-        """The places of the samples at a time, from the first one to behind the last one."""
+        """The index range of the samples at a time, end excluded."""
         return bisect_left(self.times, time), bisect_right(self.times, time)
 
     def at(self, place: int, time: int) -> Reading:
-        """The value of a sample as it counts at a time."""
+        """The value of a sample at a time; None if it is too old."""
         if place < 0 or (self.max_age is not None and time - self.times[place] > self.max_age):
             return None
         return self.values[place]
 
 
 class _Persistence:
-    """Whether a truth has held for a duration, event by event."""
+    """Whether a truth value has held for a duration, updated event by event."""
 
     __slots__ = ("current", "duration", "ends", "state")
 
     def __init__(self, duration: int) -> None:
         self.duration = duration
         self.ends: dict[Truth, int] = {}
-        """When the truth was last false, and unknown, before it changed; at first it is unknown."""
+        """Truth value → the time at which it last ended."""
         self.current: Truth = None
         self.state: Truth = None
 
@@ -97,7 +98,7 @@ class _Persistence:
         return min((time for time in over if time > done), default=None)
 
     def settle(self, time: int) -> None:
-        """Its state at a time, once all that happens then was taken."""
+        """Compute the state at a time, after all events of that time."""
         self.state = None if self._within(None, time) else True
         if self._within(False, time):
             self.state = False
@@ -109,27 +110,27 @@ class _Persistence:
 
 
 class Course:
-    """The truth of a proposition, step by step."""
+    """Evaluates one proposition over time, step by step."""
 
     def __init__(self, meaning: Meaning, series: Mapping[str, Series], start: int) -> None:
-        """Nothing has passed; the first step is at `start`."""
+        """Start before the first step, which is at `start`."""
         self._meaning = meaning
         self._series = {name: series[name] for name in meaning.signals}
         self._start, self._done = start, start - 1
         self._held = [_Persistence(duration) for _, duration in meaning.held]
         self._truth: Truth = None
         self._ahead: tuple[Course, list[tuple[int, Truth]]] | None = None
-        """A copy that has gone on alone, and its steps; None: there is none, or it is wrong."""
+        """A copy that was evaluated ahead, and its steps; None if there is none."""
 
     def copy(self) -> "Course":
-        """Another one, which goes on from here by itself."""
+        """An independent copy in the same state."""
         other = Course(self._meaning, self._series, self._start)
         other._done, other._truth = self._done, self._truth
         other._held = [each.copy() for each in self._held]
         return other
 
     def steps(self, until: int) -> list[tuple[int, Truth]]:
-        """Let time pass up to and including `until`: the steps that are new."""
+        """Advance to `until`, which is included; the new steps as (time, truth)."""
         self._ahead = None
         found: list[tuple[int, Truth]] = []
         while (time := self._next()) is not None and time <= until:
@@ -139,10 +140,10 @@ class Course:
         return found
 
     def sight(self, tick: int, first: tuple[int, int | None] | None = None) -> Truth:
-        """What a tick sees, which is later than those before it.
+        """The truth at a tick; ticks must be given in increasing order.
 
-        `first` is for the first tick of all: when the log began, and from when on all of its
-        signals have begun (None: not yet). An unknown before that does not count.
+        `first` is given for the first tick of the run: the start of the log, and the time from
+        which all its signals have a sample (None: not yet). An unknown before that is ignored.
         """
         before = self._truth
         steps: Sequence[tuple[int, Truth]] = self.steps(tick)
@@ -156,7 +157,7 @@ class Course:
         return self._seen(steps, before)
 
     def glance(self, ticks: Sequence[int]) -> list[Truth]:
-        """What later ticks would see, if nothing else came; time does not pass."""
+        """The truth at later ticks if no more samples arrive, without advancing."""
         if self._ahead is None:
             self._ahead = self.copy(), []
         other, steps = self._ahead
@@ -170,7 +171,7 @@ class Course:
         return found
 
     def notice(self, time: int) -> None:
-        """A sample of one of its signals has come: what was seen ahead from there on is wrong."""
+        """Discard results ahead of a new sample of one of its signals."""
         if self._ahead is not None and time <= self._ahead[0]._done:
             self._ahead = None
 
@@ -196,7 +197,7 @@ class Course:
         return min((time for time in times if time is not None), default=None)
 
     def _at(self, time: int) -> list[Truth]:
-        """The truths at one time, of the first samples together, then of the second ones."""
+        """The truth values at one time: of the first samples, then of the second ones, ..."""
         spans = {name: series.span(time) for name, series in self._series.items()}
         ranks = max([1, *(end - begin for begin, end in spans.values())])
         rows = [

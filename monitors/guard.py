@@ -1,11 +1,13 @@
-"""What a node on a robot says: whether the robot must stop, and how it keeps its requirements.
+"""Supervise a robot: decide whether it must stop, and report the status of its requirements.
 
-Nothing here knows a middleware, waits, or looks at a clock: who calls it says what has arrived, and
-when. `now` is in nanoseconds on the clock that stamps messages and arrivals; it may be simulated,
-stand still, or be set. `steady` is in seconds on a clock that nothing sets, for silence alone.
+The module is independent of any middleware. It does not wait and reads no clock: the caller gives
+the messages and their times. `now` is in nanoseconds on the clock of messages and arrivals; this
+clock may be simulated, stand still, or be set. `steady` is in seconds on a monotonic clock, and is
+only used to detect silence.
 
-The robot must stop unless each requirement that decides owes nothing for certain, each topic that
-these read has sent a message that could be read, and none of them is silent for too long.
+The robot must stop unless all of these hold: no deciding requirement has, or may have, an open
+obligation; each topic that these requirements read has sent a readable message; and none of the
+topics is silent for too long.
 
 The text of this module is copied into emitted nodes: it needs the standard library only.
 """
@@ -22,25 +24,25 @@ OK, WARN, ERROR, STALE = range(4)
 
 
 class State(NamedTuple):
-    """What is known of a requirement now, as `fretc watch --format jsonl` says it."""
+    """The present status of a requirement, as in `fretc watch --format jsonl`."""
 
     requirement: str
     verdict: str
-    """If the run ended now."""
+    """The verdict if the run ended now."""
     owed: Truth
-    """Whether a demand is open that the robot must meet now."""
+    """Whether an obligation is open; None: unknown."""
     triggered_ns: int | None
-    """The last tick that has triggered it for certain."""
+    """The last tick that has certainly triggered the requirement."""
     open_ns: int | None
-    """The trigger of the demand that is open for certain."""
+    """The trigger of the obligation that is certainly open."""
     deadline_ns: int | None
-    """The last tick at which that can be met."""
+    """The last tick at which this obligation can be met."""
     violated_ns: int | None
-    """The first tick at which it was violated for certain."""
+    """The first tick at which the requirement was certainly violated."""
 
 
 class Status(NamedTuple):
-    """For a diagnostic_msgs/DiagnosticStatus."""
+    """The contents of a diagnostic_msgs/DiagnosticStatus."""
 
     level: int
     name: str
@@ -49,7 +51,7 @@ class Status(NamedTuple):
 
 
 class Guard:
-    """One monitor, what it reads, and what follows."""
+    """Supervises one monitor and its topics, and decides whether the robot must stop."""
 
     def __init__(
         self,
@@ -58,22 +60,23 @@ class Guard:
         deciding: Collection[str] = (),
         source_timeout: float = 0.0,
     ) -> None:
-        """Nothing has come yet.
+        """Start before the first message.
 
         Args:
-            monitor: makes one.
-            setting: what the bindings say.
-            deciding: the requirements that stop the robot while one of them is owed; none: all.
-            source_timeout: after so many seconds of silence a topic stops the robot whose samples
-                grow too old; 0: only by their ages.
+            monitor: function that makes the monitor.
+            setting: the configuration from the bindings.
+            deciding: the ids of the requirements that stop the robot while an obligation of them
+                is open; empty: all.
+            source_timeout: seconds of silence after which a topic stops the robot, if its signals
+                have a `max_age`; 0: silence has an effect only through `max_age`.
 
         Raises:
-            ValueError: there is no such requirement, or no such time.
+            ValueError: an id of `deciding` is unknown, or the timeout is out of range.
         """
         self._ids = tuple(each.id for each in monitor().REQUIREMENTS)
         unknown = sorted(set(deciding) - set(self._ids))
         if unknown:
-            raise ValueError(f"there is no requirement {unknown[0]}: {', '.join(self._ids)}")
+            raise ValueError(f"unknown requirement {unknown[0]}: there are {', '.join(self._ids)}")
         bounded("source_timeout", source_timeout, 0.0, LONGEST)
         self._judging = Judging(monitor, setting)
         self._setting, self._timeout = setting, source_timeout
@@ -88,19 +91,19 @@ class Guard:
         self._heard: dict[str, float] = {}
         self._counts = dict.fromkeys(setting.topics, 0)
         self._unreadable: dict[str, str] = {}
-        """The topics whose last message could not be read, and why."""
+        """Topic whose last message could not be read → the reason."""
         self._owed: tuple[Truth, ...] = (None,) * len(self._ids)
         self._violated: set[str] = set()
-        """The requirements that were violated before a clock was set."""
+        """The requirements that were violated in earlier runs."""
         self._now = 0
         self._states: tuple[State, ...] = ()
 
-    # What comes
+    # Input
 
     def arrive(
         self, topic: str, message: Any, now: int, steady: float, singles: Collection[str] = ()
     ) -> None:
-        """One message, which has fields as attributes; `singles` as `single_signals` gives them."""
+        """Process a message with fields as attributes; `singles` is from `single_signals`."""
         time = stamp(message) if self._setting.stamped else None
         time = now if time is None else time
         self._counts[topic] += 1
@@ -113,11 +116,11 @@ class Guard:
             self._heard[topic] = steady
 
     def pass_to(self, now: int) -> None:
-        """Everything that was received before `now` has been given."""
+        """Advance to `now`: all messages received earlier have been processed."""
         self._judge(lambda: self._judging.pass_to(now), now)
 
     def _judge(self, step: Callable[[], None], now: int) -> None:
-        """A violation stays one where a clock is set, and another run begins."""
+        """Run a step; keep the violations if it begins a new run."""
         monitor, resets = self._judging.monitor, self._judging.resets
         try:
             step()
@@ -128,11 +131,11 @@ class Guard:
             self._now = now
             self._owed = self._judging.owed()
 
-    # What follows
+    # Output
 
     @property
     def ticks(self) -> int:
-        """How many were judged since the clock was set."""
+        """The number of ticks evaluated in the present run."""
         return len(self._judging.ledger)
 
     def stop(self, steady: float) -> bool:
@@ -141,7 +144,7 @@ class Guard:
         return owed or any(self.fault(topic, steady) for topic in self._needed)
 
     def fault(self, topic: str, steady: float) -> str:
-        """Why a topic cannot be relied on, in words; empty: nothing is wrong."""
+        """The reason why a topic is unreliable; empty if it is reliable."""
         if topic in self._unreadable:
             return f"a message of {topic} cannot be read: {self._unreadable[topic]}"
         if topic not in self._heard:
@@ -152,7 +155,7 @@ class Guard:
         return ""
 
     def states(self) -> tuple[State, ...]:
-        """Of each requirement what is known now; what it owes counts what came since the tick."""
+        """The status of each requirement; `owed` includes the messages since the last tick."""
         monitor = self._judging.monitor
         read = zip(monitor.standings(), self._owed, monitor.must.marks(), strict=True)
         return tuple(
@@ -169,7 +172,7 @@ class Guard:
         )
 
     def news(self) -> list[dict[str, Any]]:
-        """The requirements that are otherwise than at the last call: lines of a watch."""
+        """The requirements whose status changed since the last call, as lines of a watch."""
         before, self._states = self._states, self.states()
         return [
             {"type": "requirement", **state._asdict(), "time_ns": self._now}
@@ -184,7 +187,7 @@ class Guard:
         return origin + self._setting.phase + tick * self._setting.period
 
     def statuses(self, steady: float) -> list[Status]:
-        """One for what is read, and one for each requirement."""
+        """A status of the sources, and one of each requirement."""
         faults = {topic: self.fault(topic, steady) for topic in self._setting.topics}
         wrong = [fault for fault in faults.values() if fault]
         judging = self._judging
@@ -209,12 +212,12 @@ class Guard:
 
 
 def status_of(state: State, fault: str, *, violated: bool = False) -> Status:
-    """What is said of a requirement: a violation stays an error, whatever else is wrong.
+    """The diagnostic status of a requirement; a violation stays an error until the node ends.
 
     Args:
-        state: what is known of it.
-        fault: why a topic that it reads cannot be relied on; empty: nothing is wrong.
-        violated: whether it was before, in another run.
+        state: the present status of the requirement.
+        fault: the reason why one of its topics is unreliable; empty if there is none.
+        violated: whether it was violated in an earlier run.
     """
     values = {name: value for name, value in state._asdict().items() if name != "requirement"}
     if violated or state.verdict == "violated":
@@ -222,26 +225,29 @@ def status_of(state: State, fault: str, *, violated: bool = False) -> Status:
     elif fault:
         level, message = STALE, fault
     elif state.owed is not False:
-        level, message = WARN, "a demand is open" if state.owed else "unknown what is owed"
+        level, message = (
+            WARN,
+            "an obligation is open" if state.owed else "unknown whether an obligation is open",
+        )
     else:
-        level, message = OK, "nothing is owed"
+        level, message = OK, "no obligation is open"
     return status(level, state.requirement, message, values)
 
 
 def status(level: int, name: str, message: str, values: Mapping[str, object]) -> Status:
-    """With its values as texts."""
+    """A status with its values converted to texts."""
     return Status(level, name, message, tuple((key, str(value)) for key, value in values.items()))
 
 
 LONGEST = 3600.0
-"""Seconds that a topic may be silent at most."""
+"""The largest `source_timeout` in seconds."""
 
 
 def bounded(name: str, value: float, least: float, most: float) -> float:
-    """The value of a parameter, in seconds.
+    """The value of a parameter in seconds, after a check of its range.
 
     Raises:
-        ValueError: it is no number, or out of bounds.
+        ValueError: the value is not a number, or is out of range.
     """
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not is_number or not least <= value <= most:
@@ -249,7 +255,7 @@ def bounded(name: str, value: float, least: float, most: float) -> float:
     return float(value)
 
 
-# What middlewares have in common -----------------------------------------------------------------
+# Messages of ROS 1 and ROS 2 ----------------------------------------------------------------------
 
 
 def stamp(message: Any) -> int | None:
@@ -267,13 +273,13 @@ def single_signals(
     """The signals of a topic that are read from 32-bit floats.
 
     Args:
-        setting: what the bindings say.
-        topic: of the message.
-        message: an empty one.
-        types: gives the type of each field of a message, as the middleware names it.
+        setting: the configuration from the bindings.
+        topic: the topic of the message.
+        message: an empty message.
+        types: function that gives field → type name of a message, as the middleware names it.
 
     Raises:
-        ValueError: the message has no such field.
+        ValueError: the message does not have a field of the bindings.
     """
     own = [policy for policy in setting.policies if policy.topic == topic]
     for policy in own:

@@ -1,13 +1,12 @@
-"""The interceptor between the planner and the wheels, as pure steps.
+"""The interceptor between the planner and the wheels, as pure functions.
 
-It keeps the last command and passes it on, or zero in its place: while a stop is in force, for some
-ticks after it was requested, and where a channel that it watches is silent. No input, no output, no
-clock: each step takes values and gives values, and none looks into a velocity. The text is copied
-into the files of `--emit interceptor`; the lines `pre:` and `post:` are its contracts (PEP 316), as
-CrossHair reads them.
+It passes on the last command, or publishes zero instead: while a stop is requested, for `hold`
+ticks after a request, and while a channel with a timeout is silent. The functions have no input,
+output or clock, and do not inspect velocities. Their text is copied into the files of `--emit
+interceptor`. The lines `pre:` and `post:` are contracts (PEP 316) that CrossHair checks.
 
-Source of the latch and of the first three contracts: the Safe-ROS paper, its Dafny listing of
-`cmd_vel_interceptor`.
+Source of the latch and of the first three contracts: the Dafny listing of `cmd_vel_interceptor` in
+the Safe-ROS paper.
 """
 
 from dataclasses import dataclass, replace
@@ -15,7 +14,7 @@ from typing import NamedTuple
 
 
 class Velocity(NamedTuple):
-    """What a Twist of ROS holds: m/s along x, y and z, rad/s around them."""
+    """The contents of a ROS Twist: m/s along x, y and z, rad/s around them."""
 
     vx: float = 0.0
     vy: float = 0.0
@@ -30,32 +29,32 @@ ZERO = Velocity()
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How an interceptor behaves. Times are ticks of its own timer."""
+    """The configuration of an interceptor. Times are in ticks of its own timer."""
 
     hold: int
-    """For so many ticks after a request zero is published, whatever messages come meanwhile."""
+    """Ticks after a stop request during which zero is published, whatever messages arrive."""
     stop_timeout: int
-    """After so many ticks without a message of the safety function the robot halts; 0: never."""
+    """Ticks without a message of the safety function after which the robot halts; 0: never."""
     scan_timeout: int
-    """The same for scans."""
+    """Ticks without a scan after which the robot halts; 0: never."""
     command_timeout: int
-    """The same for commands."""
+    """Ticks without a command after which the robot halts; 0: never."""
     event_driven: bool = False
-    """It publishes only when a command comes, and its timer does nothing: the node of the paper."""
+    """Publish only when a command arrives; the timer has no effect (the node of the paper)."""
     latching: bool = False
-    """The first stop is for ever."""
+    """The first stop is permanent."""
 
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """What an interceptor remembers."""
+    """The state of an interceptor."""
 
     stop: bool
-    """A stop is requested."""
+    """Whether a stop is requested."""
     held: int
-    """Ticks for which zero is still owed after the last request."""
+    """Remaining ticks of zero after the last stop request."""
     command: Velocity
-    """The last one."""
+    """The last command."""
     stop_age: int
     """Ticks since the last message of the safety function, at most the timeout; likewise below."""
     scan_age: int
@@ -64,7 +63,7 @@ class State:
 
 @dataclass(frozen=True, slots=True)
 class StopHeard:
-    """A message of the safety function: a stop is requested, or is no longer."""
+    """A message of the safety function: a stop request or its release."""
 
     requested: bool
 
@@ -78,7 +77,7 @@ class CommandHeard:
 
 @dataclass(frozen=True, slots=True)
 class ScanHeard:
-    """A message of the sensor; only the safety function reads its content."""
+    """A message of the sensor, whose contents only the safety function reads."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +86,7 @@ class TimerRang:
 
 
 def initial(options: Options) -> State:
-    """No message has come yet: every watchdog has run out, so that a watched robot stands.
+    """The state before the first message: every timeout has expired, so that the robot stands.
 
     pre: min(options.hold, options.stop_timeout) >= 0
     pre: min(options.scan_timeout, options.command_timeout) >= 0
@@ -106,7 +105,7 @@ def initial(options: Options) -> State:
 
 
 def halted(state: State, options: Options) -> bool:
-    """Whether nothing but zero may go to the wheels.
+    """Whether only zero may be sent to the wheels.
 
     post: __return__ or not state.stop
     post: __return__ or state.held <= 0
@@ -121,7 +120,7 @@ def halted(state: State, options: Options) -> bool:
 
 
 def expired(age: int, timeout: int) -> bool:
-    """Whether a watchdog has run out; one of 0 ticks never does.
+    """Whether a timeout has expired; a timeout of 0 never expires.
 
     post: __return__ == (0 < timeout <= age)
     """
@@ -139,7 +138,7 @@ def within(state: State, options: Options) -> bool:
 
 
 def hear_stop(state: State, requested: bool, options: Options) -> tuple[State, Velocity | None]:
-    """A request is in force at once, and zero does not wait for the next tick.
+    """Process a message of the safety function; a stop request publishes zero at once.
 
     pre: within(state, options)
     post: within(__return__[0], options)
@@ -161,7 +160,7 @@ def hear_stop(state: State, requested: bool, options: Options) -> tuple[State, V
 def hear_command(
     state: State, command: Velocity, options: Options
 ) -> tuple[State, Velocity | None]:
-    """A command is passed on unchanged, or is zero where the robot is halted.
+    """Process a command: it is passed on unchanged, or replaced by zero if the robot is halted.
 
     pre: within(state, options)
     post: within(__return__[0], options)
@@ -176,7 +175,7 @@ def hear_command(
 
 
 def hear_scan(state: State, options: Options) -> tuple[State, Velocity | None]:
-    """The sensor lives.
+    """Process a scan: its age becomes 0.
 
     pre: within(state, options)
     post: within(__return__[0], options)
@@ -187,7 +186,7 @@ def hear_scan(state: State, options: Options) -> tuple[State, Velocity | None]:
 
 
 def ring(state: State, options: Options) -> tuple[State, Velocity | None]:
-    """Time passes: the last messages grow older, and `held` counts down.
+    """Process a tick of the timer: ages increase, and `held` decreases.
 
     pre: within(state, options)
     post: within(__return__[0], options)
@@ -215,7 +214,7 @@ def ring(state: State, options: Options) -> tuple[State, Velocity | None]:
 def step(
     state: State, event: StopHeard | CommandHeard | ScanHeard | TimerRang, options: Options
 ) -> tuple[State, Velocity | None]:
-    """The state after an event, and what is published; None: nothing is.
+    """The state after an event, and the published velocity; None: nothing is published.
 
     pre: within(state, options)
     post: within(__return__[0], options)

@@ -1,4 +1,4 @@
-"""A generated text → its module; that of a monitor → the monitor, ready to be stepped."""
+"""Load the source text of a generated monitor, and make the monitor."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from monitors.kernel import Monitor
 
 
 def load(name: str, text: str) -> Monitor:
-    """Execute the text of a generated monitor and make one of it.
+    """Execute the text of a generated monitor, and make an instance of the monitor.
 
     Args:
-        name: for tracebacks; the file's name.
-        text: what `--emit monitor` wrote.
+        name: the file name, for tracebacks.
+        text: the text that `--emit monitor` wrote.
 
     Raises:
         ValueError: the text defines no `MONITOR`.
@@ -23,12 +23,12 @@ def load(name: str, text: str) -> Monitor:
     module = executed(text, name)
     monitor = getattr(module, "MONITOR", None)
     if not isinstance(monitor, type):
-        raise ValueError(f"{name} is no generated monitor")
+        raise ValueError(f"{name} is not a generated monitor")
     return cast(Monitor, monitor())
 
 
 def executed(text: str, name: str) -> Any:
-    """The module of a generated text; its attributes are what the text defines."""
+    """The module of a generated text, with the definitions of the text as attributes."""
     module = ModuleType(f"_fretc_{name}")
     # Dataclasses look up their module by name while the text is being executed.
     sys.modules[module.__name__] = module
@@ -41,12 +41,12 @@ def executed(text: str, name: str) -> Any:
 
 
 _OWN = "\n# The requirements ---"
-"""Where what is of one monitor begins. Above it is the run time, most of the text: below the
-comments of its head it is the same in all monitors, and compiled once."""
+"""The start of the part that is specific to one monitor. Above it is the run time. Below its head
+comment it is equal in all monitors, and is therefore compiled only once."""
 
 
 def _compiled(text: str, name: str) -> tuple[CodeType, ...]:
-    """The code of a text, in the order of its execution; lines keep their numbers."""
+    """The code objects of a text in order of execution, with the line numbers of the text."""
     above, found, own = text.partition(_OWN)
     if found:
         head, _, shared = above.partition("\nimport ")
@@ -56,7 +56,7 @@ def _compiled(text: str, name: str) -> tuple[CodeType, ...]:
         try:
             return _run_time(above), compile(f"{lines}#{own}", name, "exec")
         except SyntaxError:
-            pass  # the line stands in the midst of something: the text cannot be divided there
+            pass  # The line is inside another statement: the text cannot be split there.
     return (compile(text, name, "exec"),)
 
 

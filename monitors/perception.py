@@ -1,7 +1,7 @@
-"""Messages that arrive → the truth of propositions at each tick → what a robot owes.
+"""Evaluate arriving messages: the truth of propositions at each tick, and open obligations.
 
-It says of a live robot what an audit says of the recording, tick by tick; which message counts at
-which tick is said by `monitors/ticking.py`. Times are whole nanoseconds.
+The results for a live robot equal those of an audit of the recording, tick by tick.
+`monitors/ticking.py` defines which message counts at which tick. Times are whole nanoseconds.
 
 The text of this module is copied into emitted nodes: it needs the standard library only.
 """
@@ -20,7 +20,7 @@ MOST_TICKS = 10_000
 
 
 class Setting(NamedTuple):
-    """What the bindings say of a robot."""
+    """The configuration of a node, from the bindings."""
 
     policies: tuple[Policy, ...]
     meanings: tuple[Meaning, ...]
@@ -28,21 +28,21 @@ class Setting(NamedTuple):
     phase: int = 0
     lateness: int = 0
     stamped: bool = False
-    """Whether messages with a header are placed by its stamp."""
+    """Whether the time of a message is the stamp of its header."""
     reads: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    """The topics of each requirement."""
+    """Id of each requirement, and the topics that it reads."""
 
     @property
     def topics(self) -> tuple[str, ...]:
-        """All that are read."""
+        """All topics that are read."""
         return tuple(dict.fromkeys(policy.topic for policy in self.policies))
 
 
 class Perception:
-    """What each tick of one run sees."""
+    """Evaluates the propositions at each tick of one run."""
 
     def __init__(self, setting: Setting) -> None:
-        """Nothing has come yet."""
+        """Start before the first message."""
         self._setting = setting
         self._series = {each.name: Series(each.max_age) for each in setting.policies}
         self._topic = {each.name: each.topic for each in setting.policies}
@@ -50,23 +50,23 @@ class Perception:
         self._courses: dict[str, Course] = {}
         self._late: dict[str, list[tuple[int, int]]] = {}
         self._start: int | None = None
-        """The earliest time of all messages, late ones too."""
+        """The earliest time of all messages, including late ones."""
         self._stale: set[str] = set()
-        """Propositions for which the past has changed."""
+        """The propositions that must be evaluated again because of a late message."""
 
     @property
     def origin(self) -> int | None:
-        """Where the grid of ticks begins, once it is placed."""
+        """The time at which the grid of ticks begins; None until it is fixed."""
         return self._ticking.origin
 
     def arrive(
         self, topic: str, time: int, arrival: int, values: Mapping[str, Reading]
     ) -> tuple[int, int, tuple[str, ...]] | None:
-        """One message: a sample of each signal of its topic.
+        """Process a message, given as a sample of each signal of its topic.
 
         Returns:
-            The first and the last judged tick that it was late for, and the propositions that are
-            unknown there.
+            For a late message: the first and the last tick that it missed, and the propositions
+            that are unknown there. Otherwise None.
         """
         for name, value in values.items():
             self._series[name].put(time, value)
@@ -91,10 +91,10 @@ class Perception:
         return any(self._topic[name] == topic for name in meaning.signals)
 
     def until(self, passed: int) -> list[tuple[int, Mapping[str, Truth]]] | None:
-        """Everything before `passed` has come: the ticks that are judged now.
+        """Advance to `passed`: the newly evaluated ticks, as (time, row).
 
         Returns:
-            None where a clock was set forward.
+            The ticks; None if a clock was set forward.
         """
         due, first = self._ticking.due(passed), self._ticking.last is None
         if len(due) > MOST_TICKS:
@@ -111,7 +111,7 @@ class Perception:
         return rows
 
     def glance(self, time: int) -> list[tuple[int, Mapping[str, Truth]]]:
-        """What would be seen if there were a tick now, and the ticks before it not yet judged."""
+        """The rows of the pending ticks and of an additional tick now, without advancing."""
         last, due = self._ticking.last, self._ticking.due(time)
         if last is None and not due:
             return []
@@ -133,11 +133,11 @@ class Perception:
         return max((each.lookback for each in self._setting.meanings), default=0)
 
     def _live(self) -> Mapping[str, Course]:
-        """The courses, up to the last tick."""
+        """The evaluators of all propositions, up to date to the last tick."""
         start, last = self._start, self._ticking.last
-        assert start is not None, "a tick comes of a message"
+        assert start is not None, "a tick needs a message"
         for meaning in self._setting.meanings:
-            if last is None:  # the start may still have moved
+            if last is None:  # The start may have changed.
                 self._courses[meaning.name] = Course(meaning, self._series, start)
             elif meaning.name in self._stale:
                 begin = max(start, last - meaning.lookback - 1)
@@ -178,28 +178,28 @@ class Perception:
         return any(a <= tick <= b for topic in topics for a, b in self._late.get(topic, ()))
 
 
-# From rows to what is owed -----------------------------------------------------------------------
+# From rows to open obligations -----------------------------------------------------------------
 
 KEPT = 1000
-"""So many of the last ticks become unknown where a message comes late."""
+"""The number of last ticks that a late message can make unknown."""
 
 
 class Judging:
-    """A monitor of one or several requirements, stepped by what arrives.
+    """A monitor that is stepped by arriving messages.
 
-    The rule of who drives: stop unless `owed` is False.
+    The robot must stop unless `owed` is False.
     """
 
     def __init__(self, monitor: Callable[[], Any], setting: Setting) -> None:
-        """Nothing has come yet.
+        """Start before the first message.
 
         Args:
-            monitor: makes one; its propositions are all in the setting.
-            setting: what the bindings say.
+            monitor: function that makes the monitor; the setting has all its propositions.
+            setting: the configuration from the bindings.
         """
         self._make, self._setting = monitor, setting
         self.resets = 0
-        """How often a clock was set: what followed was another run."""
+        """The number of times that a clock was set and a new run began."""
         self._begin()
 
     def _begin(self) -> None:
@@ -209,26 +209,26 @@ class Judging:
         self._latest: dict[str, int] = {}
         self._received = 0
         self._ahead: tuple[list[Mapping[str, Truth]], tuple[Truth, ...]] | None = None
-        """The last rows that were looked at ahead of the ledger, and what is owed after them."""
+        """The last rows evaluated ahead of the ledger, and the open obligations after them."""
 
     def arrive(
         self, topic: str, time: int, arrival: int, message: Any, singles: Collection[str] = ()
     ) -> None:
-        """One message.
+        """Process a message.
 
         Args:
-            topic: on which it came.
-            time: of the message, on the declared clock.
-            arrival: when it was received, on the clock of arrivals.
-            message: with its fields as attributes.
-            singles: the signals whose fields are of 32-bit floats.
+            topic: the topic of the message.
+            time: the time of the message on the declared clock.
+            arrival: the time of its reception on the clock of arrivals.
+            message: the message, with its fields as attributes.
+            singles: the signals that are read from 32-bit floats.
 
         Raises:
-            AttributeError, TypeError: it does not have the fields that the bindings name.
+            AttributeError, TypeError: the message does not have the fields of the bindings.
         """
         is_back = is_jump(self._received, arrival)
         if not is_back:
-            self.pass_to(arrival)  # what is due is judged before another run begins
+            self.pass_to(arrival)  # Evaluate pending ticks before a new run.
         if is_back or is_jump(self._latest.get(topic), time):
             self.resets += 1
             self._begin()
@@ -245,7 +245,7 @@ class Judging:
             self._ahead = None
 
     def pass_to(self, now: int) -> None:
-        """Everything that was received before `now` has been given."""
+        """Advance to `now`: all messages received earlier have been processed."""
         self._received = max(self._received, now)
         rows = self.perception.until(self._received - self._setting.lateness)
         if rows is None:
@@ -258,14 +258,14 @@ class Judging:
             self._ahead = None
 
     def owed(self) -> tuple[Truth, ...]:
-        """Of each requirement whether the robot must act now; None: unknown, or nothing is known.
+        """For each requirement, whether an obligation is open now; None: unknown.
 
-        It counts what has come since the last tick, as if there were a tick now.
+        Messages since the last tick count as if there were a tick now.
         """
         now = max(self._received - self._setting.lateness, *self._latest.values(), 0)
         rows = [row for _, row in self.perception.glance(now)]
         if not rows:
             return (None,) * len(self.monitor.REQUIREMENTS)
-        if self._ahead is None or self._ahead[0] != rows:  # most messages change nothing
+        if self._ahead is None or self._ahead[0] != rows:  # Most messages change nothing.
             self._ahead = rows, self.monitor.owed_after(rows)
         return self._ahead[1]

@@ -1,7 +1,7 @@
-"""From a message to the number of a sample, as the bindings ask for it; and Kleene's logic.
+"""Read samples from messages as the bindings declare, and Kleene's three-valued logic.
 
-It is what `fretc.logs.signals` does of a recording. A clearance alone is computed by other library
-functions than an audit's and may differ from it in the last digits. The text of this module is
+`fretc.logs.signals` reads the same samples from a recording. Only a clearance is computed by other
+library functions than in an audit, and may differ in the last digits. The text of this module is
 copied into emitted nodes: it needs the standard library only.
 """
 
@@ -13,45 +13,45 @@ from monitors.kernel.readings import Reading, Single, exact, number
 from monitors.kernel.verdicts import Truth
 
 DROP, FAR, NEAR, UNKNOWN = "drop", "far", "near", "unknown"
-"""What an element that is no measurement means."""
+"""How an element that is not a valid measurement is interpreted."""
 
 
 class Policy(NamedTuple):
-    """A signal: which field of a message, and which number that is."""
+    """How a signal is read from a field of a message."""
 
     name: str
     topic: str
     fields: tuple[str, ...]
     place: int | None = None
-    """Of one element of an array."""
+    """The index of one element of an array."""
     each: bool = False
-    """Whether all elements of an array count, of which `reduce` makes one number."""
+    """Whether `reduce` combines all elements of an array into one number."""
     reduce: str = ""
     """`min`, `max` or `outline`."""
     invalid: tuple[str, str, str, str] = (UNKNOWN,) * 4
-    """What NaN, +inf, -inf and a finite number mean for which `valid` is not true."""
+    """How NaN, +inf, -inf and a finite number outside of `valid` are interpreted."""
     valid: Callable[[Mapping[str, Reading]], Truth] | None = None
-    """Of an element, `x`, and of the fields `beside` it."""
+    """Whether an element `x` is a valid measurement; also given the fields `beside`."""
     quick: Callable[..., list[Reading]] | None = None
-    """The same of a whole array of Python's floats, with a function for those that are no
-    measurement, and with the fields `beside` it, none of which is unknown."""
+    """The readings of a whole array of floats. Arguments: the array, a function for invalid
+    elements, and the fields `beside`, none of which may be unknown."""
     beside: tuple[str, ...] = ()
     max_age: int | None = None
     words: tuple[str, ...] = ()
-    """What a word may be: the number of a sample is the place of its word."""
+    """The words of an enumerated signal; a sample is the index of its word."""
     numbers: tuple[int, ...] = ()
-    """By which numbers a message means the words; none: by the words."""
+    """The numbers of the words in messages; empty: the field holds the words."""
     scale: str = "1"
-    """From the unit of the field to metres, for `outline`."""
+    """The factor from the field's unit to metres, for `outline`."""
     footprint: tuple[tuple[float, float], ...] = ()
     sensor: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 def field(message: Any, path: Iterable[str]) -> Any:
-    """What a field of a message holds.
+    """The value of a field of a message.
 
     Raises:
-        AttributeError: there is none.
+        AttributeError: the message has no such field.
     """
     for name in path:
         message = getattr(message, name)
@@ -59,16 +59,16 @@ def field(message: Any, path: Iterable[str]) -> Any:
 
 
 def sample(policy: Policy, message: Any, single: bool = False) -> Reading:
-    """The number of a message; None: unknown.
+    """The sample of a signal in a message; None: unknown.
 
     Args:
-        policy: of the signal.
-        message: with fields as attributes.
-        single: whether the field is of 32-bit floats.
+        policy: how the signal is read.
+        message: the message, with fields as attributes.
+        single: whether the field has 32-bit floats.
 
     Raises:
         AttributeError: the message has no such field.
-        TypeError: something else than numbers is in it.
+        TypeError: the field does not hold numbers.
     """
     value = field(message, policy.fields)
     if policy.place is not None:
@@ -106,7 +106,7 @@ def _beside(message: Any, name: str) -> Reading:
 def _elements(
     policy: Policy, message: Any, values: Iterable[Any], single: bool
 ) -> list[Reading] | None:
-    """Infinities for far and near, None where one is dropped; no list: all is unknown."""
+    """The readings: infinities for far and near, None if dropped; None for the list if unknown."""
     row: dict[str, Reading] = {name: _beside(message, name) for name in policy.beside}
     if policy.quick and None not in row.values() and {*map(type, values)} <= {float}:
         try:
@@ -129,11 +129,11 @@ def _elements(
 
 
 class _UnknownSampleError(Exception):
-    """An element makes all of the sample unknown."""
+    """An element makes the whole sample unknown."""
 
 
 def _meant(policy: Policy, x: Reading) -> Reading:
-    """An element that is no measurement: infinity for far and near, None where it is dropped."""
+    """The reading of an invalid element: an infinity for far or near, None if dropped."""
     finite = x is not None and isfinite(x)
     kind = 3 if finite else 0 if x is None or isnan(x) else 1 if x > 0 else 2
     meaning = policy.invalid[kind]
@@ -143,7 +143,7 @@ def _meant(policy: Policy, x: Reading) -> Reading:
 
 
 def _clearance(policy: Policy, ranges: Sequence[Reading], start: float, step: float) -> float:
-    """Metres from the footprint to the nearest end of a beam."""
+    """The distance in metres between the footprint and the nearest scan point."""
     if -inf in ranges:
         return 0.0
     x, y, yaw = policy.sensor
@@ -153,18 +153,18 @@ def _clearance(policy: Policy, ranges: Sequence[Reading], start: float, step: fl
     for i, value in enumerate(ranges):
         if value is None or value > limit or isinf(value):
             continue
-        length = value * top / bottom  # as `in_base`, without a call for each beam
+        length = value * top / bottom  # Inlined `in_base`: faster for each beam.
         angle = start + step * i + yaw
         gap = _gap(x + length * cos(angle), y + length * sin(angle), policy.footprint)
         if gap < least:
             least = gap
-            # What is farther out cannot be nearer; a millimetre is more than any rounding.
+            # Longer beams cannot be nearer; 1 mm exceeds any rounding error.
             limit = (least + reach + 1e-3) * bottom / top
     return least
 
 
 def _gap(x: float, y: float, corners: Sequence[tuple[float, float]]) -> float:
-    """From a point to a polygon; 0 within it."""
+    """The distance from a point to a polygon; 0 inside."""
     inside, least = False, inf
     for place, (x1, y1) in enumerate(corners):
         x2, y2 = corners[(place + 1) % len(corners)]
@@ -177,29 +177,29 @@ def _gap(x: float, y: float, corners: Sequence[tuple[float, float]]) -> float:
     return 0.0 if inside else least
 
 
-# Kleene's logic of what is read ------------------------------------------------------------------
+# Kleene's three-valued logic ---------------------------------------------------------------------
 
 
 def flag(reading: Reading) -> Truth:
-    """A number as a truth: 1 is true, 0 is false, any other is unknown."""
+    """A number as a truth value: 1 is true, 0 is false, any other is unknown."""
     return None if reading not in (0, 1) else reading == 1
 
 
 def negation(truth: Truth) -> Truth:
-    """Not."""
+    """Three-valued negation."""
     return None if truth is None else not truth
 
 
 def every(*truths: Truth) -> Truth:
-    """And."""
+    """Three-valued conjunction."""
     return False if False in truths else None if None in truths else True
 
 
 def some(*truths: Truth) -> Truth:
-    """Or."""
+    """Three-valued disjunction."""
     return True if True in truths else None if None in truths else False
 
 
 def same(left: Truth, right: Truth) -> Truth:
-    """If and only if."""
+    """Three-valued equivalence."""
     return None if left is None or right is None else left is right

@@ -1,4 +1,4 @@
-"""The text of the run time, as it is copied into generated monitors and interceptors."""
+"""The source text of the run time that is copied into generated monitors and interceptors."""
 
 from __future__ import annotations
 
@@ -14,47 +14,47 @@ ALONE = """\
 import sys
 
 if __name__ == "__main__" and not getattr(sys.flags, "safe_path", False):
-    del sys.path[0]  # what stands beside this file is no library
+    del sys.path[0]  # files beside this one are not libraries
 """
-"""The first statements of whatever can be run as a file. Python would look for the standard library
-beside it first. `from __future__ import annotations` is an import, too, and can only come before
-it: so generated files have none, and neither have the modules that they are made of."""
+"""The first statements of each generated file that can be run. Python would otherwise search its
+folder for the standard library first. `from __future__ import annotations` would have to come
+before these statements, so neither generated files nor the modules copied into them have it."""
 _MODULES = ("verdicts", "columns", "listings", "stepping", "outcomes", "tables", "command")
-"""The modules of `monitors.kernel`, each after those that it needs."""
+"""The modules of `monitors.kernel`, each after the modules that it imports."""
 _VARIABLES = ("readings", "variables", "variable_tables", "variable_command")
-"""Those that a monitor needs, too, where it is stepped by variables."""
+"""The additional modules of a monitor that is stepped by variables."""
 
 
 @dataclass(frozen=True, slots=True)
 class Runtime:
-    """Several modules as one text."""
+    """Several modules joined into one text."""
 
     imports: str
-    """Imports of the standard library only, below the statements that keep others out."""
+    """The imports of the standard library, after the statements `ALONE`."""
     text: str
 
 
 @cache
 def kernel() -> Runtime:
-    """All modules of the kernel, one after the other, below one head of imports."""
+    """The modules of the kernel, joined, with one block of imports."""
     return _joined(_ROOM / "kernel", _MODULES)
 
 
 @cache
 def kernel_of_variables() -> Runtime:
-    """The same, and what compares variables: its text begins with that of `kernel`."""
+    """The kernel and the modules for variables; the text begins with the text of `kernel`."""
     return _joined(_ROOM / "kernel", (*_MODULES, *_VARIABLES))
 
 
 @cache
 def interceptor() -> Runtime:
-    """The core of every interceptor, `monitors/interceptor.py`."""
+    """The module `monitors/interceptor.py`."""
     return _joined(_ROOM, ("interceptor",))
 
 
 @cache
 def perception() -> Runtime:
-    """What a live node needs beside its monitor: from messages to whether the robot must stop."""
+    """The modules that a live node needs in addition to its monitor."""
     needed = "kernel/verdicts kernel/readings samples courses ticking perception guard voice"
     return _joined(_ROOM, needed.split())
 
@@ -70,17 +70,17 @@ def _joined(folder: Path, modules: Sequence[str]) -> Runtime:
 
 
 _CODE = re.compile(r"^(?!import |from |[ )]|$)", re.MULTILINE)
-"""A line that is neither of the imports nor empty."""
+"""The start of a line that is neither an import nor empty."""
 
 
 def _beginning(source: str) -> str:
-    """The docstring of a module and its imports: to parse the rest of all took 15 ms of a start."""
+    """The docstring and imports of a module; parsing all modules completely would take 15 ms."""
     code = _CODE.search(source, source.index('"""', 3) + 3)
     return source[: code.start()] if code else source
 
 
 def _collect(tree: ast.Module, imports: dict[str, set[str]]) -> int:
-    """Add what a module imports of the standard library; gives the line after which code begins."""
+    """Add a module's imports of the standard library; the last line of its imports."""
     last = 0
     for node in tree.body:
         if isinstance(node, ast.Import):

@@ -1,38 +1,38 @@
-"""Ticks of messages that arrive: what is seen at which tick, live and in a log alike.
+"""Assign arriving messages to ticks, live and in a log alike.
 
-A message has a *time*, on the clock that the bindings declare, and an *arrival*: when who watches,
-or who records, received it. Both are whole nanoseconds. Where the clock is that of arrivals the two
-are one, and nothing is ever late.
+A message has a *time*, on the clock that the bindings declare, and an *arrival*: the time at which
+the watch or the recorder received it. Both are whole nanoseconds. If the declared clock is that of
+arrivals, both are equal, and no message is late.
 
 **Grid.** Ticks lie at `origin + phase + k * period`, k = 0, 1, ... The origin is the time of the
-first message, or of the first one of the last topic to begin, where that is less than a period
-later: no two topics are received at once, and the first tick shall know all of them (`origin`). It
-comes of the times of messages and never of a timer. Who watches places it once and writes it into
-the recording; who audits the recording takes it from there. Where the clock ticks by message, each
-message of its topic is a tick, and there is no grid.
+first message; or of the first message of the last topic to begin, if that is less than a period
+later, so that all topics are known at the first tick (`origin`). It depends on the times of
+messages, never on a timer. A watch fixes it once and writes it into the recording; an audit of the
+recording reads it from there. If the clock ticks by message, each message of its topic is a tick,
+and there is no grid.
 
-**Judgement.** Tick T sees every message with a time up to T. It is judged when everything has
-arrived that arrives up to T + lateness: as soon as something later arrives, or, where nothing
-arrives any more, by a timer (`Ticking.until` of the present less the lateness).
+**Evaluation.** Tick T sees every message with a time up to T. It is evaluated when all messages
+with an arrival up to T + lateness have been received: as soon as a later message arrives, or, if
+none arrives, by a timer (`Ticking.until` with the present time minus the lateness).
 
-**Late.** A message is late for the ticks that lie at its time or after it, and that were judged
-before it arrived: `time <= T < arrival - lateness` (`late`). What reads its topic is unknown at
-these ticks, whatever was said of them; all later ticks see it as if it had been in time. A tick
-that was judged changes in no other way: it may become unknown (`Ledger.withdraw`), and never the
-opposite. A late message of the topic that the clock ticks by makes everything unknown there, and
-is a tick of its own among them (`Ledger.insert`).
+**Late.** A message is late for the ticks at or after its time that were evaluated before it
+arrived: `time <= T < arrival - lateness` (`late`). Propositions that read its topic become unknown
+at these ticks; later ticks see the message as if it had been in time. An evaluated tick changes in
+no other way: it may become unknown (`Ledger.withdraw`), but never takes the opposite value. A late
+message of the clock's topic makes all propositions unknown there, and is itself a tick
+(`Ledger.insert`).
 
-**Order.** Messages are taken by their times, and those of one topic and one time by arrival. Of
-several topics the first ones of that time are taken together, then the second ones: no order of
-topics is ever seen. Ages and durations are differences of times, to the nanosecond: a timer decides
-when a tick is judged, and never what it sees.
+**Order.** Messages are processed in order of time; messages of one topic with equal times in order
+of arrival. For several topics, the first messages of that time are processed together, then the
+second ones, so the order of topics has no effect. Ages and durations are differences of times, to
+the nanosecond: a timer decides when a tick is evaluated, but not what it sees.
 
-**Jumps.** A message whose time is more than `JUMP` before the latest one of its topic is not late:
-its clock was set back (`is_jump`). What comes then is another run, with another grid and with
-monitors that begin anew. Who watches says so and counts it.
+**Jumps.** If the time of a message is more than `JUMP` before the latest one of its topic, it is
+not late: its clock was set back (`is_jump`). A new run begins, with a new grid and new monitors. A
+watch reports and counts this.
 
-**Demands for a stop** do not wait for the tick: what would be seen if there were a tick now is
-stepped by a copy of the monitor, and the robot stops unless nothing is owed for certain.
+**Stop requests** do not wait for the next tick: a copy of the monitor is stepped as if there were a
+tick now, and the robot stops unless certainly no obligation is open.
 
 The text of this module is copied into emitted nodes: it needs the standard library only.
 """
@@ -42,37 +42,37 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any, Protocol
 
 JUMP = 10**9
-"""A step back of more than this means that a clock was set: no message is so late."""
+"""Nanoseconds; if a time goes back by more than this, a clock was set."""
 
 
 def origin(start: int, firsts: Iterable[int], period: int) -> int:
-    """Where the grid begins at phase 0.
+    """The time at which the grid begins at phase 0.
 
     Args:
         start: the first time of the log.
-        firsts: the first time of each topic that has any message.
-        period: of the ticks.
+        firsts: the first time of each topic that has a message.
+        period: the length of a tick.
     """
     last = max(firsts, default=start)
     return last if 0 <= last - start < period else start
 
 
 def late(time: int, arrival: int, lateness: int) -> tuple[int, int] | None:
-    """The first and the last time at which a tick does without a message; None: it is in time."""
+    """The first and last time of ticks that miss a late message; None if it is in time."""
     last = arrival - lateness - 1
     return (time, last) if time <= last else None
 
 
 def is_jump(latest: int | None, time: int) -> bool:
-    """Whether the clock of a topic was set back, whose latest time so far is given."""
+    """Whether a topic's clock was set back, given its latest time so far."""
     return latest is not None and time < latest - JUMP
 
 
 class Ticking:
-    """Places the ticks while messages come, in any order.
+    """Computes the times of ticks while messages arrive, in any order.
 
-    The grid is placed as soon as no message can move it any more: where all topics have begun, or
-    a period after the first message.
+    The grid is fixed as soon as no message can move it: when all topics have begun, or one period
+    after the first message.
     """
 
     def __init__(
@@ -82,11 +82,11 @@ class Ticking:
         phase: int = 0,
         clock: str | None = None,
     ) -> None:
-        """No message yet.
+        """Start before the first message.
 
         Args:
-            topics: those whose beginning the grid waits for.
-            period: of the ticks; None: each message of `clock` is a tick.
+            topics: the topics for whose first message the grid waits.
+            period: the length of a tick; None: each message of `clock` is a tick.
             phase: from the origin to the first tick, less than a period.
             clock: the topic that the clock ticks by.
         """
@@ -94,16 +94,16 @@ class Ticking:
         self._period, self._phase, self._clock = period, phase, clock
         self._firsts: dict[str, int] = {}
         self._clock_times: list[int] = []
-        """Messages of the clock's topic that are no ticks yet."""
+        """Times of messages of the clock's topic that are not evaluated as ticks yet."""
         self.passed = 0
-        """No message with an earlier time comes any more, but a late one."""
+        """Only late messages can have an earlier time than this."""
         self.last: int | None = None
-        """The last tick that was judged."""
+        """The time of the last evaluated tick."""
         self.origin: int | None = None
-        """Where the grid begins, once a tick was judged."""
+        """The time at which the grid begins; None before the first evaluated tick."""
 
     def arrive(self, topic: str, time: int) -> None:
-        """A message that is not late, of a topic that counts."""
+        """Process a message of a relevant topic that is not late."""
         self._firsts[topic] = min(time, self._firsts.get(topic, time))
         if topic == self._clock:
             self._clock_times.insert(bisect_right(self._clock_times, time), time)
@@ -115,7 +115,7 @@ class Ticking:
 
     @property
     def waiting(self) -> tuple[str, ...]:
-        """The topics that are yet to begin, and before which the grid cannot be placed."""
+        """The topics without a message that prevent the grid from being fixed."""
         if self._period is None or self.last is not None:
             return ()
         begun = self._begun(self.passed)
@@ -124,21 +124,21 @@ class Ticking:
         return tuple(sorted(self._topics - begun.keys()))
 
     def due(self, passed: int) -> Sequence[int]:
-        """The ticks before `passed` that are still to be judged."""
+        """The times of the ticks before `passed` that are not evaluated yet."""
         return self._before(max(passed, self.passed), ended=False)
 
     def until(self, passed: int) -> Sequence[int]:
-        """Let time pass up to there; the ticks before it are judged now."""
+        """Advance to `passed`; the times of the ticks that are evaluated now."""
         times = self.due(passed)
         self.passed = max(passed, self.passed)
         return self._judged(times)
 
     def ending(self, end: int) -> Sequence[int]:
-        """The ticks that would be left if the log ended at `end`."""
+        """The remaining ticks if the log ended at `end`, without advancing."""
         return self._before(max(end + 1, self.passed), ended=True)
 
     def end(self, end: int) -> Sequence[int]:
-        """The ticks that are left: nothing comes any more after `end`."""
+        """The remaining ticks of a log that ends at `end`."""
         times = self.ending(end)
         self.passed = max(end + 1, self.passed)
         return self._judged(times)
@@ -161,11 +161,11 @@ class Ticking:
         return range(0) if found is None else range(found + self._phase, passed, self._period)
 
     def _begun(self, passed: int) -> dict[str, int]:
-        """The topics that have begun by then, each with its first time."""
+        """Topic that began before `passed` → the time of its first message."""
         return {topic: first for topic, first in self._firsts.items() if first < passed}
 
     def _origin(self, passed: int, *, ended: bool) -> int | None:
-        """Where the grid begins; None while messages that are still to come decide that.
+        """The time at which the grid begins; None while later messages can change it.
 
         A topic that has not begun can move it back to the start of the log, and, less than a period
         after that, forward to its own first message.
@@ -181,51 +181,51 @@ class Ticking:
 
 
 class Steppable(Protocol):
-    """What a ledger asks of a monitor."""
+    """The interface of a monitor that a ledger uses."""
 
     def advance(self, rows: Sequence[Mapping[str, Any]]) -> object:
-        """Take rows, each the truth of propositions at one tick."""
+        """Step over rows, each with the truth of propositions at one tick."""
 
     def state(self) -> Mapping[str, Any]:
-        """All that it remembers."""
+        """The complete state."""
 
     def restore(self, state: Mapping[str, Any], /) -> object:
-        """Go back to a state."""
+        """Restore a state."""
 
 
 class Ledger:
-    """Monitors with the ticks that they have taken, of which some may become unknown later."""
+    """Steps monitors, and steps them again if earlier ticks become unknown."""
 
     def __init__(self, monitors: Sequence[Steppable], kept: int = 0) -> None:
-        """No tick yet.
+        """Start before the first tick.
 
         Args:
-            monitors: they are stepped by the ledger alone.
-            kept: so many of the last ticks can become unknown; 0: all of them.
+            monitors: the monitors; only the ledger may step them.
+            kept: the number of last ticks that can become unknown; 0: all.
         """
         self._monitors, self._kept = tuple(monitors), kept
         self._times: list[int] = []
         self._rows: list[Mapping[str, bool | None]] = []
         self._states = [(0, self._state())]
-        """Before which of the rows the monitors were so."""
+        """Indices of rows, with the states of the monitors before them."""
         self._late: set[int] = set()
-        """The kept ticks that have become unknown after they were judged."""
+        """The times of kept ticks that became unknown after their evaluation."""
         self._dropped_late = 0
-        """Such ticks that are not kept any more."""
+        """The number of such ticks that were dropped."""
         self.beyond = 0
-        """Ticks that should have become so and were not kept: what is said of them stands."""
+        """The number of late messages for dropped ticks, whose results stay unchanged."""
         self._dropped = 0
-        """Ticks that are not kept any more."""
+        """The number of dropped ticks."""
         self._before: int | None = None
-        """The last of them."""
+        """The time of the last dropped tick."""
 
     def __len__(self) -> int:
-        """How many ticks there were."""
+        """The number of ticks."""
         return self._dropped + len(self._times)
 
     @property
     def late(self) -> int:
-        """How many ticks have become unknown after they were judged."""
+        """The number of ticks that became unknown after their evaluation."""
         return self._dropped_late + len(self._late)
 
     @property
@@ -234,11 +234,11 @@ class Ledger:
         return self._rows[-1] if self._rows else None
 
     def row(self, tick: int) -> Mapping[str, bool | None]:
-        """What was seen at a tick that is kept."""
+        """The row of a kept tick."""
         return self._rows[tick - self._dropped]
 
     def time(self, tick: int) -> int | None:
-        """When a tick was; None where it is not kept."""
+        """The time of a tick; None if it was dropped."""
         place = tick - self._dropped
         return self._times[place] if 0 <= place < len(self._times) else None
 
@@ -246,7 +246,7 @@ class Ledger:
         return tuple(monitor.state() for monitor in self._monitors)
 
     def advance(self, time: int, row: Mapping[str, bool | None]) -> None:
-        """One tick."""
+        """Step all monitors by one tick."""
         if len(self._rows) - self._states[-1][0] >= _APART:
             self._states.append((len(self._rows), self._state()))
             self._forget()
@@ -256,10 +256,10 @@ class Ledger:
             monitor.advance((row,))
 
     def withdraw(self, first: int, last: int, propositions: Collection[str]) -> int:
-        """Let propositions be unknown at the ticks from `first` to `last`, times that `late` gave.
+        """Make propositions unknown at the ticks from `first` to `last`, as given by `late`.
 
         Returns:
-            At how many ticks one of them was known before.
+            The number of ticks at which one of them was known before.
         """
         if self._before is not None and first <= self._before:
             self.beyond += 1
@@ -277,11 +277,11 @@ class Ledger:
         return len(changed)
 
     def insert(self, time: int, propositions: Collection[str]) -> None:
-        """A tick among those that were judged, or right after them: nothing is known of it.
+        """Insert a tick among the evaluated ones, or after them, with all propositions unknown.
 
         Args:
-            time: of the tick.
-            propositions: all that there are.
+            time: the time of the tick.
+            propositions: the names of all propositions.
         """
         if self._before is not None and time < self._before:
             self.beyond += 1
@@ -293,7 +293,7 @@ class Ledger:
         self._again(place)
 
     def _again(self, place: int) -> None:
-        """Step the rows from a place on once more."""
+        """Step the monitors again over the rows from an index on."""
         while self._states[-1][0] > place:
             self._states.pop()
         begin, states = self._states[-1]
@@ -302,7 +302,7 @@ class Ledger:
             monitor.advance(self._rows[begin:])
 
     def _forget(self) -> None:
-        """Drop rows beyond those that are kept, up to a state of the monitors."""
+        """Drop rows that need not be kept, up to a stored state of the monitors."""
         spare = len(self._rows) - self._kept if self._kept else 0
         drop = max((place for place, _ in self._states if place <= spare), default=0)
         if not drop:
@@ -316,4 +316,4 @@ class Ledger:
 
 
 _APART = 64
-"""Ticks from one kept state of the monitors to the next."""
+"""The number of ticks between two stored states of the monitors."""

@@ -1,7 +1,7 @@
-"""What a node publishes, and when: the stop at once, and all of it again with each heartbeat.
+"""Publish the status of a node: changes of the stop flag at once, everything at each heartbeat.
 
-One message is handled at a time, whatever thread brings it. Nothing here knows a middleware. The
-text of this module is copied into emitted nodes: it needs the standard library only.
+Messages from several threads are processed one at a time. The module is independent of any
+middleware. Its text is copied into emitted nodes: it needs the standard library only.
 """
 
 import json
@@ -14,18 +14,18 @@ from monitors.guard import Guard, Status, bounded
 
 
 class Channels(NamedTuple):
-    """Where a node publishes, and what its clock says."""
+    """The publishers and the clock of a node."""
 
     stop: Callable[[bool], object]
     verdict: Callable[[str], object]
-    """A line of JSON."""
+    """Publishes a line of JSON."""
     statuses: Callable[[Sequence[Status]], object]
     now: Callable[[], int]
-    """Nanoseconds on the middleware's clock, which may be simulated; 0 before that has begun."""
+    """Nanoseconds on the middleware's clock, which may be simulated; 0 before it has started."""
 
 
 class Voice:
-    """Between what a middleware brings, a guard, and what is published."""
+    """Passes messages to a guard, and publishes the results."""
 
     def __init__(
         self,
@@ -34,16 +34,16 @@ class Voice:
         heartbeat: float,
         steady: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Nothing is published yet.
+        """Start before anything is published.
 
         Args:
-            guard: it is used by the voice alone.
-            channels: they are called one after the other, each from any thread.
-            heartbeat: seconds from one `beat` to the next.
-            steady: seconds on a clock that nothing sets.
+            guard: the guard; nothing else may use it.
+            channels: the publishers; they are never called concurrently, but from any thread.
+            heartbeat: seconds between two calls of `beat`.
+            steady: a monotonic clock in seconds.
 
         Raises:
-            ValueError: the heartbeat is too short or too long.
+            ValueError: the heartbeat is out of range.
         """
         self.heartbeat = bounded("heartbeat", heartbeat, SHORTEST, LONGEST_BEAT)
         self._guard, self._channels, self._steady = guard, channels, steady
@@ -55,21 +55,21 @@ class Voice:
         self._lock = Lock()
 
     def hear(self, topic: str, message: Any, singles: Collection[str] = ()) -> None:
-        """A message of a topic; what fails here ends the node at its next beat, standing."""
+        """Process a message; after an exception the robot stops, and the next `beat` raises it."""
         with self._lock:
             try:
                 now = self._channels.now()
-                if now:  # else the simulated clock has not begun
+                if now:  # 0: the simulated clock has not started
                     self._guard.arrive(topic, message, now, self._steady(), singles)
             except Exception as error:
                 self._failure = error
             self._speak(again=False)
 
     def beat(self) -> None:
-        """To be called once in each heartbeat.
+        """Publish everything; to be called once per heartbeat.
 
         Raises:
-            Exception: what has failed since the last one.
+            Exception: an exception of `hear` since the last call.
         """
         with self._lock:
             now = self._channels.now()
@@ -82,7 +82,7 @@ class Voice:
                 self._report()
 
     def close(self) -> None:
-        """The last that is published is a stop."""
+        """Publish a stop as the last message."""
         with self._lock:
             if not self._closed:
                 self._channels.stop(True)
@@ -106,6 +106,6 @@ class Voice:
 
 
 SHORTEST, LONGEST_BEAT = 0.001, 10.0
-"""Seconds of a heartbeat."""
+"""The range of a heartbeat in seconds."""
 REPORT = 0.5
-"""Seconds from one report of diagnostics to the next, about."""
+"""The approximate number of seconds between two reports of diagnostics."""

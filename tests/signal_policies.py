@@ -28,7 +28,7 @@ from fretc.logs.signals.signals import is_chosen, sample
 from fretish import expressions as e
 from fretish.bindings.declarations import (
     Declarations,
-    Invalid,
+    InvalidReadings,
     Path,
     Proposition,
     Reading,
@@ -164,7 +164,7 @@ def truths_of(names: tuple[str, ...]) -> st.SearchStrategy[e.Expression]:
 
 
 readings_of = st.sampled_from(Reading)
-invalids = st.builds(Invalid, readings_of, readings_of, readings_of, readings_of)
+invalids = st.builds(InvalidReadings, readings_of, readings_of, readings_of, readings_of)
 
 
 @st.composite
@@ -289,7 +289,7 @@ def edge_cases() -> list[Case]:
         near = [*beside(value), *map(np.float64, choose.sample(SPECIAL, 2))]
         each = place % 7 < 3
         fields = _arrays(near, choose) if each else [np.array([x]) for x in near]
-        invalid = Invalid(*choose.choices([*Reading], k=4))
+        invalid = InvalidReadings(*choose.choices([*Reading], k=4))
         a, b = (_lengths(name, each, valid if each else None, invalid) for name in "ab")
         rows = [
             tuple(
@@ -317,7 +317,7 @@ _REST = e.Arithmetic("mod", e.Call("abs", (_B,)), e.Negation(_SEVEN))
 """It has the sign of the right side."""
 
 
-def _lengths(name: str, each: bool, valid: e.Expression | None, invalid: Invalid) -> Signal:
+def _lengths(name: str, each: bool, valid: e.Expression | None, invalid: InvalidReadings) -> Signal:
     reduce, place = Reduce.MAX if each else None, Path(f"/{name}", ("field",), each=each)
     return Signal(name, place, ONE, "m", reduce=reduce, valid=valid, invalid=invalid)
 

@@ -15,7 +15,7 @@ from tests.each import each
 ROOT = Path(__file__).parent.parent
 ORDER = """
 monitors.kernel  monitors
-fretish.diagnostics  fretish.reading  fretish.mistakes  fretish  fretish.bindings
+fretish.diagnostics  fretish.reading  fretish.error_rules  fretish  fretish.bindings
 fretish.bindings.tables
 compiler.files  compiler.logic.ordering  compiler.logic.spelling  compiler.logic
 compiler.formalization  compiler.formalization.numbers

@@ -18,7 +18,7 @@ from compiler.logic.definition import holds
 from compiler.logic.formula import longest_bound
 from compiler.targets import ltl
 from fretish import syntax as s
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.rendering import visible
 from fretish.reading.recursion import with_recursion_limit
 

@@ -23,7 +23,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoes
 from jinja2.bccache import Bucket, FileSystemBytecodeCache
 from markupsafe import Markup
 
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 
 
 def template_root() -> Path:

@@ -21,15 +21,15 @@ from compiler.logic.printing import identifier
 from fretish.ambiguities import ambiguity_warnings
 from fretish.bindings.comparisons import is_measured
 from fretish.bindings.declarations import Declarations, Modality, Variable
-from fretish.bindings.definitions import Definitions, expanded, used
-from fretish.bindings.types import misuses, misuses_of_value
+from fretish.bindings.definitions import Definitions, expanded, used_definitions
+from fretish.bindings.types import type_errors, value_type_errors
 from fretish.checking import check_response_kinds, conditions, temporal_predicates, too_deep
 from fretish.clock import Clock, assumed_ticks, in_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Span
 from fretish.documents import RequirementEntry
 from fretish.expressions import Comparison, Expression, Truth, with_comparisons
-from fretish.parser import mistakes, parse
+from fretish.parser import find_errors, parse
 from fretish.reading.limits import with_budget
 from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import Sentence, with_expressions
@@ -57,9 +57,9 @@ def _formalized(
         return None, (_free_text(entry),)
     written = parse(entry.wording)
     if isinstance(written, Diagnostic):
-        return None, mistakes(entry.wording)
-    declarations = declarations.about(written.component) if declarations else None
-    definitions = used(written, declarations.definitions) if declarations else {}
+        return None, find_errors(entry.wording)
+    declarations = declarations.for_component(written.component) if declarations else None
+    definitions = used_definitions(written, declarations.definitions) if declarations else {}
     wrong = _misuses(written, definitions, declarations, entry.wording)
     if wrong:
         return None, wrong
@@ -94,8 +94,8 @@ def _misuses(
     if declarations is None:
         return ()
     variables = declarations.variables
-    inside = [misuses(each, variables, place) for each in conditions(written)]
-    values = [misuses_of_value(variables[name], variables) for name in definitions]
+    inside = [type_errors(each, variables, place) for each in conditions(written)]
+    values = [value_type_errors(variables[name], variables) for name in definitions]
     return tuple(dict.fromkeys(chain(*inside, *values)))
 
 
@@ -121,7 +121,7 @@ def unreadable_sentence(requirement: RequirementEntry) -> tuple[Diagnostic, ...]
     codes = {mistake.code for mistake in requirement.mistakes}
     if not codes or codes & _WITHOUT_SENTENCE or requirement.is_free_text:
         return ()
-    found = with_budget(wording.end - wording.start, wording, partial(mistakes, wording))
+    found = with_budget(wording.end - wording.start, wording, partial(find_errors, wording))
     return (found,) if isinstance(found, Diagnostic) else found
 
 

@@ -18,7 +18,7 @@ from fretish.bindings import comparisons
 from fretish.bindings.declarations import Aggregate, Declarations, Part, Proposition, Signal
 from fretish.bindings.definitions import expanded
 from fretish.bindings.expressions import ticks_back
-from fretish.bindings.words import words
+from fretish.bindings.words import resolve_words
 from fretish.checking import conditions
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
@@ -55,7 +55,7 @@ def _worded(sentence: Sentence, declarations: Declarations, place: Span) -> Sent
     mistakes: list[Diagnostic] = []
 
     def rewritten(expression: e.Expression) -> e.Expression:
-        worded = words(expression, signals, place)
+        worded = resolve_words(expression, signals, place)
         if isinstance(worded, Diagnostic):
             mistakes.append(worded)
             return expression

@@ -11,10 +11,10 @@ from functools import partial
 
 from compiler.files.text_files import read
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.fixes import Fix, applied
+from fretish.diagnostics.fixes import Fix, apply_fixes
 from fretish.diagnostics.source import Source, Span
 from fretish.documents import RequirementEntry, requirements
-from fretish.parser import mistakes
+from fretish.parser import find_errors
 from fretish.reading.limits import with_budget
 from fretish.reading.recursion import with_recursion_limit
 
@@ -55,7 +55,7 @@ def _fixed_file(source: Source) -> FixedFile:
         if not fixes:
             break
         all_fixes += fixes
-        source = Source(source.name, applied(source.span(), fixes))
+        source = Source(source.name, apply_fixes(source.span(), fixes))
     return FixedFile(source.name, source.text, tuple(all_fixes))
 
 
@@ -82,7 +82,7 @@ def _has_a_sentence(requirement: RequirementEntry) -> bool:
 
 def _safe_fixes_of_sentence(wording: Span) -> list[Fix]:
     """Those of one sentence; none where reading it would cost too much."""
-    found = with_budget(wording.end - wording.start, wording, partial(mistakes, wording))
+    found = with_budget(wording.end - wording.start, wording, partial(find_errors, wording))
     if isinstance(found, Diagnostic):
         return []
     fixes = (mistake.fix for mistake in found)

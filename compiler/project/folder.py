@@ -31,7 +31,7 @@ from compiler.project.stated_numbers import check_stated_numbers
 from fretish.bindings.declarations import SHARED, Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
-from fretish.documents import RequirementEntry, requirements, unread
+from fretish.documents import RequirementEntry, requirements, unreadable_file
 
 if TYPE_CHECKING:
     from compiler.project.parents import Parent
@@ -176,7 +176,7 @@ def _written(paths: Sequence[str]) -> list[RequirementEntry]:
     for path in paths:
         source = read(path)
         if isinstance(source, Diagnostic):
-            found.append(unread(path, source))
+            found.append(unreadable_file(path, source))
         else:
             found.extend(requirements(source)[0])
     return found

@@ -11,7 +11,7 @@ from compiler.files.text_files import read
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
-from fretish.parser import mistakes as of_sentence
+from fretish.parser import find_errors as of_sentence
 from fretish.parser import parse
 from fretish.printer import sentence
 from fretish.syntax import Sentence

@@ -24,7 +24,7 @@ from compiler.files.checked_json import parsed
 from compiler.project.lustre import fretish, lustre
 from fretish import expressions as e
 from fretish.bindings.declarations import Role
-from fretish.bindings.definitions import circle
+from fretish.bindings.definitions import find_cycle
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.diagnostics.source import Source
 from fretish.parser import parse, parse_value
@@ -305,7 +305,7 @@ def _without_circles(tables: Mapping[str, dict[str, Any]], source: Source) -> It
         value = parse_value(Source(name, table.get("value", "")).span())
         if not isinstance(value, Diagnostic):
             values[name] = value
-    while names := circle(values):
+    while names := find_cycle(values):
         for name in dict.fromkeys(names):
             table = tables[name]
             kept = {assignment_field(table["role"]): lustre(values.pop(name)) or ""}

@@ -13,7 +13,7 @@ from compiler.logic.printing import identifier
 from compiler.targets.interceptor_options import options as core
 from compiler.targets.interceptor_options import repetition, ticks
 from fretish import syntax as s
-from fretish.bindings.declarations import Declarations, Form, Requests
+from fretish.bindings.declarations import Declarations, InterceptorForm, Requests
 from fretish.printer import timing as printed
 
 CHANNELS = (
@@ -46,7 +46,7 @@ def loopless(requirement: FormalizedRequirement, declarations: Declarations | No
     """Why the file has no claim about the closed loop; None where it has one."""
     if declarations is None or declarations.interceptor is None:
         return "the bindings have no [interceptor], and the plain form waits for a command to stop"
-    if declarations.interceptor.form is Form.EVENT:
+    if declarations.interceptor.form is InterceptorForm.EVENT:
         return "the event form waits for a command to stop, so no delay bounds its answer"
     timing = requirement.sentence.timing
     if not (s.deadline(timing) or s.is_eventual(timing)):

@@ -6,10 +6,10 @@ from dataclasses import asdict
 
 from fretish.bindings.canonical import clock, digest
 from fretish.bindings.declarations import (
-    Assumed,
     Declarations,
-    Form,
     Interception,
+    InterceptorForm,
+    LoopAssumptions,
     Requests,
 )
 from monitors.interceptor import Options
@@ -22,7 +22,7 @@ def options(interception: Interception) -> Options:
     than n - 1 periods after it; a timeout of n ticks halts no later than n periods after the last
     message.
     """
-    if interception.form is Form.EVENT:
+    if interception.form is InterceptorForm.EVENT:
         return Options(0, 0, 0, 0, event_driven=True, latching=interception.latching)
     period = interception.period
     return Options(
@@ -55,7 +55,7 @@ def ticks(duration: int, period: int) -> int:
     return -(-duration // period)
 
 
-def repetition(assumption: Assumed, tick: int) -> int | None:
+def repetition(assumption: LoopAssumptions, tick: int) -> int | None:
     """Ticks after which a request that does not change is sent again; None: never.
 
     Args:

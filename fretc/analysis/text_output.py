@@ -9,12 +9,12 @@ from itertools import groupby
 from fretc.analysis.findings import Analysis, Component, Conflict, Inconsistency, Repair, Verdict
 from fretc.analysis.reasons import listed
 from fretish.bindings.declarations import Role
-from fretish.diagnostics import signs
-from fretish.diagnostics.signs import Sign
+from fretish.diagnostics import status_symbols as signs
+from fretish.diagnostics.status_symbols import StatusSymbol
 
 Line = tuple[str, str | None]
 """A line and its colour."""
-SIGNS: Mapping[Verdict, Sign] = {
+SIGNS: Mapping[Verdict, StatusSymbol] = {
     Verdict.UNREALIZABLE: signs.BAD,
     Verdict.NOT_CHECKED: signs.UNKNOWN,
     Verdict.REALIZABLE: signs.GOOD,

@@ -21,7 +21,9 @@ def audited_topics(project: Project) -> frozenset[str]:
         for requirement in active_requirements(project)
         if id(requirement.entry) not in refused
     ]
-    used = declarations.reading(name for requirement in auditable for name in requirement.watched)
+    used = declarations.restricted_to(
+        name for requirement in auditable for name in requirement.watched
+    )
     return frozenset(signal.path.topic for signal in used.signals.values())
 
 

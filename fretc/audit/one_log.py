@@ -69,7 +69,7 @@ def _needed(requirement: MonitoredRequirement) -> tuple[str, ...]:
 
 @cache_by_identity
 def _assumed(declarations: Declarations, requirement: MonitoredRequirement) -> tuple[str, ...]:
-    return declarations.reading(requirement.propositions).assumptions
+    return declarations.restricted_to(requirement.propositions).assumptions
 
 
 @cache_by_identity

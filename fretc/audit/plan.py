@@ -106,7 +106,7 @@ def planned(
         for requirement in requirements
     )
     refused = tuple(_refused(basis_of, entry, why) for entry, why in unauditable)
-    used = declarations.reading(
+    used = declarations.restricted_to(
         name for requirement in requirements for name in requirement.watched
     )
     digest = _digest(claims, refused, used, evaluation, integrity)
@@ -169,7 +169,7 @@ def keys(plan: Plan) -> Mapping[str, str]:
 
 def _letters(plan: Plan, claim: AuditedRequirement, propositions: Sequence[str]) -> list[object]:
     """All that a claim says, and what its propositions mean; places have no part in `repr`."""
-    read = plan.declarations.reading(propositions)
+    read = plan.declarations.restricted_to(propositions)
     return [
         claim.id,
         claim.sentence,

@@ -10,7 +10,7 @@ import click
 
 from fretc.terminal.output import BAD, INTERRUPTED, SHOWN, deliver, not_written, stop
 from fretc.terminal.progress import progress
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import visible
 

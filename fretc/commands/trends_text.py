@@ -14,9 +14,9 @@ from fretc.terminal.screen import Screen, fitted, padded
 from fretc.trends.changes import Change, Tone
 from fretc.trends.comparisons import Finding
 from fretc.trends.trends import Group, Item, Trends, arrived, gone, not_selected
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.rendering import visible
-from fretish.diagnostics.signs import Sign
+from fretish.diagnostics.status_symbols import StatusSymbol
 
 Line = tuple[Piece, ...]
 _BLANK: Line = (("", None),)
@@ -32,7 +32,7 @@ class _Section:
 
     title: str
     kinds: tuple[Change, ...]
-    sign: Sign
+    sign: StatusSymbol
     most: int
     """Lines of it."""
 
@@ -120,7 +120,7 @@ def _section(trends: Trends, section: _Section, screen: Screen) -> Iterator[Line
     yield from _more(items[section.most :])
 
 
-def _title(sign: Sign, count: int, title: str) -> Line:
+def _title(sign: StatusSymbol, count: int, title: str) -> Line:
     return ((f"{sign.glyph} {count} {title}", sign.colour),)
 
 
@@ -177,7 +177,7 @@ def _flaky(trends: Trends, screen: Screen) -> Iterator[Line]:
     yield from _more(items[4:])
 
 
-def _groups(groups: Sequence[Group], sign: Sign, title: str) -> Iterator[Line]:
+def _groups(groups: Sequence[Group], sign: StatusSymbol, title: str) -> Iterator[Line]:
     if not groups:
         return
     yield _BLANK

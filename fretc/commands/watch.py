@@ -165,7 +165,7 @@ def _planned(requirements: str, bindings: str | None) -> tuple[Project, Plan, Se
         stop(files)
     project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
     plan = plan_of(project, requirements)
-    if plan.declarations.clock.patience is None:
+    if plan.declarations.clock.effective_lateness is None:
         stop(_needs_lateness(plan))
     return project, plan, (*files, *companions(files), *([bindings] if bindings else []))
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from fretc.coverage.mutation import Difference, MutantBatch, MutationResult
 from fretc.coverage.mutation_record import written
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 
 Line = tuple[str, str | None]
 """A line and its colour."""

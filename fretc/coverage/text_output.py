@@ -17,8 +17,8 @@ from fretc.coverage.coverage import (
 )
 from fretc.coverage.directions import Directions, is_complete, unseen
 from fretish.bindings.amounts import seconds
-from fretish.diagnostics import signs
-from fretish.diagnostics.signs import Sign
+from fretish.diagnostics import status_symbols as signs
+from fretish.diagnostics.status_symbols import StatusSymbol
 
 Line = tuple[str, str | None]
 """A line and its colour."""
@@ -79,7 +79,7 @@ def _situation(one: RecordedSituation, runs: tuple[str, ...]) -> Line:
     return text, sign.colour
 
 
-def sign_of(standing: CoverageStatus) -> Sign:
+def sign_of(standing: CoverageStatus) -> StatusSymbol:
     """How a standing looks."""
     match standing:
         case CoverageStatus.SEEN:

@@ -20,7 +20,7 @@ from fretish.bindings.declarations import Signal, short_type
 from fretish.bindings.words import listed
 from fretish.clock import Clock, TimeSource
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
-from fretish.diagnostics.extras import install
+from fretish.diagnostics.extras import install_help
 from fretish.diagnostics.source import Span
 from fretish.reading.toml_text import as_key
 
@@ -291,7 +291,7 @@ def unknown_encoding(signal: Signal, why: str) -> Diagnostic:
             Code.MISSING_EXTRA,
             f"`{signal.path.topic}` cannot be read: {why}",
             signal.span,
-            install(why.extra),
+            install_help(why.extra),
         )
     return Diagnostic(
         Code.UNKNOWN_ENCODING,

@@ -188,7 +188,7 @@ class Stream:
         among = judged is not None and time <= judged
         if not among:
             self._ticking.arrive(topic, time)
-        span = late(time, arrival, self._declarations.clock.patience or 0)
+        span = late(time, arrival, self._declarations.clock.effective_lateness or 0)
         if span is not None:
             self._late.setdefault(topic, []).append(_Span(*span, counted=among))
         if not among or judged is None:

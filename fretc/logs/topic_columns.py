@@ -327,7 +327,7 @@ class Columns:
 
     def late(self) -> dict[str, Late]:
         """Of each bound topic the messages that were late; none where no lateness is declared."""
-        lateness = self.clock.patience
+        lateness = self.clock.effective_lateness
         if lateness is None or self.clock.time is TimeSource.LOG_TIME:
             return {}
         found = {

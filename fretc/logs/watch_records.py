@@ -137,7 +137,7 @@ def _fits(origin: int, columns: Columns) -> bool:
     read = [column for column in columns.topics.values() if column.bound and len(column.logs)]
     if clock.period is None or not read:
         return False
-    patience = clock.patience or 0
+    patience = clock.effective_lateness or 0
     arrivals = np.concatenate([np.array(column.logs, np.int64) for column in read])
     times = np.concatenate([column.stamps() for column in read])
     came_first = arrivals == arrivals.min()

@@ -22,7 +22,7 @@ from fretc.play.starts import MOST, Start
 from fretc.report.model.phrases import visible
 from fretc.report.page.html import Inset, hash_source
 from fretc.testing.suite import SCHEMA, Tested
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 from fretish.printer import expression
 from fretish.printer import sentence as printed
 from monitors.kernel.verdicts import Verdict

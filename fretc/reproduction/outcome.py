@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from fretish.diagnostics import signs
-from fretish.diagnostics.signs import Sign
+from fretish.diagnostics import status_symbols as signs
+from fretish.diagnostics.status_symbols import StatusSymbol
 
 FILE, ALL_RUNS, PROOFS, TOGETHER = "the file", "all runs", "proofs", "all together"
 """In the place of a run."""
@@ -22,7 +22,7 @@ class Finding(StrEnum):
     UNKNOWN = "not checked"
 
 
-SIGNS: Mapping[Finding, Sign] = {
+SIGNS: Mapping[Finding, StatusSymbol] = {
     Finding.STANDS: signs.GOOD,
     Finding.DIFFERS: signs.BAD,
     Finding.UNKNOWN: signs.UNKNOWN,

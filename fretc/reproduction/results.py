@@ -343,8 +343,8 @@ def _written_defaults(plan: Plan) -> Mapping[str, frozenset[str]]:
     return {
         claim.id: frozenset(
             default.text
-            for default in plan.declarations.reading(each.propositions).defaults
-            if default.written is not None
+            for default in plan.declarations.restricted_to(each.propositions).defaults
+            if default.is_explicit is not None
         )
         for claim, each in zip(plan.claims, monitored_requirements(plan), strict=True)
     }

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from fretish.diagnostics.rendering import visible
-from fretish.diagnostics.signs import SIGNS
+from fretish.diagnostics.status_symbols import STATUS_SYMBOLS
 
 _WIDTH = 80
 """Where standard output is no terminal."""
@@ -20,7 +20,7 @@ NARROWEST = 40
 _SHORTEST = 8
 """Columns of a title that still says something."""
 _LETTERS = {"\N{MULTIPLICATION SIGN}": "x", "\N{HORIZONTAL ELLIPSIS}": "."} | {
-    sign.glyph: sign.letter for sign in SIGNS
+    sign.glyph: sign.letter for sign in STATUS_SYMBOLS
 }
 
 

@@ -8,10 +8,10 @@ from fretc.analysis.reasons import listed
 from fretc.analysis.text_output import Line, drawn
 from fretc.testing.suite import Fate, Met, Mutated, Obligation, Suite, Test
 from fretish.bindings.declarations import Role
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 from monitors.kernel.verdicts import Verdict
 
-_SIGNS: Mapping[Verdict, signs.Sign] = {
+_SIGNS: Mapping[Verdict, signs.StatusSymbol] = {
     Verdict.SATISFIED: signs.GOOD,
     Verdict.VIOLATED: signs.BAD,
     Verdict.PENDING: signs.OPEN,

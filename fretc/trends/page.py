@@ -16,8 +16,8 @@ from fretc.trends.changes import RED, Change
 from fretc.trends.charts import chart, strip
 from fretc.trends.comparisons import Comparison, Finding
 from fretc.trends.trends import Group, Item, Trends, arrived, gone, not_selected
-from fretish.diagnostics import signs
-from fretish.diagnostics.signs import Sign
+from fretish.diagnostics import status_symbols as signs
+from fretish.diagnostics.status_symbols import StatusSymbol
 
 _MOST_RED, _MOST = 500, 150
 """Rows of a list; those left out are counted, with their requirements."""
@@ -32,7 +32,7 @@ class _List:
     title: str
     about: str
     kinds: tuple[Change, ...]
-    sign: Sign
+    sign: StatusSymbol
 
 
 _LISTS = (

@@ -10,8 +10,8 @@ from itertools import groupby
 from typing import assert_never
 
 from compiler.logic.claims import Layer, Proof, Result, Trace
-from fretish.diagnostics import signs
-from fretish.diagnostics.signs import Sign
+from fretish.diagnostics import status_symbols as signs
+from fretish.diagnostics.status_symbols import StatusSymbol
 from monitors.kernel.verdicts import Truth
 
 Line = tuple[str, str | None]
@@ -125,7 +125,7 @@ def _numbers(proofs: Sequence[Proof]) -> Mapping[str, int]:
     return {text: number for number, text in enumerate(texts, 1)}
 
 
-SIGNS: Mapping[Result, Sign] = {
+SIGNS: Mapping[Result, StatusSymbol] = {
     Result.COUNTEREXAMPLE: signs.BAD,
     Result.NOT_CHECKED: signs.UNKNOWN,
     Result.VACUOUS: signs.EMPTY,

@@ -75,7 +75,7 @@ class Session:
         """Nothing has come yet; the clock of the plan declares a lateness, where it needs one."""
         self._plan = plan
         self._clock = plan.declarations.clock
-        patience = self._clock.patience
+        patience = self._clock.effective_lateness
         assert patience is not None, "a clock by stamps has a lateness"
         self._patience = patience
         self._judges = Judges(plan)

@@ -1,6 +1,6 @@
-"""Numbers and times for a reader: in declared units, with the digits that mean something.
+"""Format numbers and times for a reader: in declared units, with significant digits only.
 
-Audits count in base units, whatever unit the bindings declare; people think in the declared ones.
+Audits compute in base units; readers expect the units that the bindings declare.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from fretish.bindings.declarations import Signal
 from fretish.units import base_name
 
 _DIGITS = 3
-"""Significant digits of a measured number, where nothing asks for more."""
+"""Default number of significant digits of a measured number."""
 _WHOLE = 7
-"""So many digits before the point are shown all."""
+"""Numbers with at most this many digits before the point are not rounded to fewer."""
 _MOST_DIGITS = 17
-"""So many digits distinguish all 64-bit floats."""
+"""Digits that distinguish any two 64-bit floats."""
 _LARGEST = Fraction(float_info.max)
 _PLAIN = 10**15
-"""Below it numbers have no exponent."""
+"""Smaller numbers are written without an exponent."""
 _NAME = re.compile(r"[A-Za-z_]\w*")
 Number = TypeVar("Number", float, float | None, float | str | None)
 
@@ -34,13 +34,13 @@ Number = TypeVar("Number", float, float | None, float | str | None)
 
 
 def value(number: float | str | None, unit: str, bounds: Sequence[float] = ()) -> str:
-    """A measured number: `0.0318 m`, `unknown`; an infinite one as it is written, `+inf`.
+    """A measured number as text: `0.0318 m`, `unknown`, `+inf`.
 
     Args:
-        number: in the unit; None: unknown.
-        unit: as it is shown; empty for a plain number.
-        bounds: numbers that appear exactly beside it: it gets as many digits as show whether it
-            equals each of them, and on which side of each it lies.
+        number: in `unit`; None: unknown; a text is returned unchanged.
+        unit: the unit as displayed; empty for a plain number.
+        bounds: numbers that are displayed exactly beside it. The text has enough digits to show
+            whether the number is below, equal to or above each of them.
     """
     if number is None or isinstance(number, str):
         return "unknown" if number is None else number
@@ -53,14 +53,14 @@ def value(number: float | str | None, unit: str, bounds: Sequence[float] = ()) -
         if digits == _MOST_DIGITS
         or (
             isfinite(float(text))
-            and all(_side(float(text), each) == _side(number, each) for each in bounds)
+            and all(_side(float(text), bound) == _side(number, bound) for bound in bounds)
         )
     )
     return f"{text} {unit}".rstrip()
 
 
 def exact(number: float, unit: str) -> str:
-    """A bound, with all digits that it was written with: `0.05 m`, `1.23456 m`."""
+    """A bound with all digits of its source: `0.05 m`, `1.23456 m`."""
     if not isfinite(number):
         return value(number, unit)
     text = next(
@@ -73,10 +73,10 @@ def exact(number: float, unit: str) -> str:
 
 
 def margin(distance: float, unit: str, bound: float) -> str:
-    """A distance to a bound: its digits end where those of a value beside the bound would.
+    """A distance to a bound, with the same number of decimals as a value near the bound.
 
-    The difference of two near numbers has as many decimals as they have, and fewer digits. A
-    distance never looks like none.
+    The difference of two nearly equal numbers has fewer significant digits than they have. A
+    distance that is not 0 is never displayed as 0.
     """
     finite = distance and bound and isfinite(distance) and isfinite(bound)
     lost = floor(log10(abs(bound))) - floor(log10(distance)) if finite else 0
@@ -85,7 +85,7 @@ def margin(distance: float, unit: str, bound: float) -> str:
 
 
 def _least_digits(number: float) -> int:
-    """All digits before the point, as long as these are no more than a reader takes in."""
+    """All digits before the point, up to `_WHOLE`; at least `_DIGITS`."""
     size = floor(log10(abs(number))) + 1 if number else 1
     return max(_DIGITS, size) if size <= _WHOLE else _DIGITS
 
@@ -106,8 +106,8 @@ def decimal(number: float, thousands: str = "") -> str:
     """At most three decimals, and no zeros at the end: `39.8`, `0.001`, `2`.
 
     Args:
-        number: any.
-        thousands: what stands between groups of three digits.
+        number: any number.
+        thousands: the separator between groups of three digits.
     """
     if abs(number) >= 10**7:
         return f"{number:.6g}"
@@ -121,31 +121,31 @@ def seconds(number: float) -> str:
 
 
 def duration(number: float, bounds: Sequence[float] = ()) -> str:
-    """How long something took: `304 ms`, `39.8 s`, `0 s`; with the digits of a measured number.
+    """A measured duration: `304 ms`, `39.8 s`, `0 s`; rounded as by `value`.
 
     Args:
         number: seconds.
-        bounds: seconds that appear exactly beside it, as of `value`.
+        bounds: limits in seconds that are displayed exactly beside it, as in `value`.
     """
     unit, places = _time_unit(number)
     return value(_moved(number, places), unit, [_moved(bound, places) for bound in bounds])
 
 
 def exact_duration(number: float) -> str:
-    """A limit of time in seconds, with all digits that it was written with: `300 ms`, `1.5 s`."""
+    """A time limit in seconds, with all digits of its source: `300 ms`, `1.5 s`."""
     unit, places = _time_unit(number)
     return exact(_moved(number, places), unit)
 
 
 def _time_unit(number: float) -> tuple[str, int]:
-    """Seconds, or the unit in which it is one at least, also when it is rounded; 0 in seconds."""
+    """The largest unit in which the rounded number is at least 1, and its decimal shift."""
     size = abs(number) or 1.0
     units = (("s", 0), ("ms", 3), ("us", 6), ("ns", 9))
-    return next((each for each in units if size >= 0.9995 * 10.0 ** -each[1]), units[-1])
+    return next((unit for unit in units if size >= 0.9995 * 10.0 ** -unit[1]), units[-1])
 
 
 def _moved(number: float, places: int) -> float:
-    """The number with its point moved: of its shortest text, so that 0.3 s are 300 ms."""
+    """The number times `10**places`, computed on its shortest text: 0.3 s are exactly 300 ms."""
     return float(Decimal(repr(float(number))).scaleb(places))
 
 
@@ -165,11 +165,11 @@ def instant(ns: int | None) -> str:
 
 
 def declared_unit(signal: str, base: str, declared: Mapping[str, Signal]) -> tuple[str, Fraction]:
-    """The unit in which a signal is shown, and how many base units it has.
+    """The unit in which a signal is displayed, and its size in base units.
 
     Args:
-        signal: its name.
-        base: the base unit that its numbers are in.
+        signal: the name of the signal.
+        base: the base unit of its numbers.
         declared: the signals of the bindings.
     """
     declaration = declared.get(signal)
@@ -179,11 +179,11 @@ def declared_unit(signal: str, base: str, declared: Mapping[str, Signal]) -> tup
 
 
 def shared_unit(term: str, base: str, declared: Mapping[str, Signal]) -> tuple[str, Fraction]:
-    """The unit in which a term is shown: that of its signals, where they have the same one.
+    """The unit in which a term is displayed: the common unit of its signals, else the base unit.
 
     Args:
-        term: as it is written, such as `abs(vx)`.
-        base: the base unit that its numbers are in.
+        term: the text of the term, such as `abs(vx)`.
+        base: the base unit of its numbers.
         declared: the signals of the bindings.
     """
     candidates = {
@@ -195,9 +195,9 @@ def shared_unit(term: str, base: str, declared: Mapping[str, Signal]) -> tuple[s
 
 
 def scaled(number: Number, factor: Fraction) -> Number:
-    """A number of base units as one of units that have so many of them, rounded once.
+    """A number in base units, converted to a unit of `factor` base units, and rounded once.
 
-    One beyond the range of 64-bit floats is infinite.
+    A result outside the range of 64-bit floats is infinite.
     """
     if not isinstance(number, float | int) or factor == 1 or not isfinite(number):
         return number

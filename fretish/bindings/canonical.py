@@ -1,7 +1,7 @@
-"""What bindings mean, as plain values: the same for all ways of writing the same.
+"""The canonical form of bindings, as plain values: equal meanings give equal values.
 
-Numbers are exact fractions in base units, durations nanoseconds, defaults are filled in. So `50 cm`
-and `0.5 m` are one, and so are a default and the same value written out.
+Numbers are exact fractions in base units, durations are nanoseconds, and defaults are filled in. So
+`50 cm` equals `0.5 m`, and a default equals the same value written out.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def digest(value: Any) -> str:
 
 
 def clock(declared: Clock) -> Any:
-    """What a tick is; how durations are rounded shows in the formulas of those that are."""
+    """The clock. `rounding` is left out: its effect is visible in the formulas."""
     where = [declared.period, declared.topic, declared.phase]
     by_arrival = declared.time is TimeSource.LOG_TIME or declared.lateness is None
     waits = [] if by_arrival else [declared.lateness]
@@ -40,17 +40,17 @@ def clock(declared: Clock) -> Any:
 
 
 def bound(declarations: Declarations, names: Iterable[str]) -> Any:
-    """The meaning of propositions in logs: their expressions, and the signals that they read."""
+    """The named propositions: their expressions, and the signals that they read."""
     propositions = [declarations.propositions[n] for n in names if n in declarations.propositions]
     read = {signal for proposition in propositions for signal in proposition.signals}
     return {
-        "proposition": {each.name: [*proposition_fields(each).values()] for each in propositions},
+        "proposition": {p.name: [*proposition_fields(p).values()] for p in propositions},
         "signal": {name: signal_fields(declarations.signals[name]) for name in read},
     }
 
 
 def described(declarations: Declarations | None, names: Iterable[str]) -> Any:
-    """The documentation of propositions, for people and other tools; no log depends on it."""
+    """The documentation fields of propositions; no verdict depends on them."""
     propositions = declarations.propositions if declarations else {}
     return {
         name: [
@@ -64,7 +64,7 @@ def described(declarations: Declarations | None, names: Iterable[str]) -> Any:
 
 
 def proposition_fields(proposition: Proposition) -> dict[str, Any]:
-    """The meaning of each field on which verdicts depend."""
+    """The canonical value of each field of a proposition that verdicts depend on."""
     return {
         "expr": expression(proposition.expression),
         "agg": str(proposition.aggregate),
@@ -73,7 +73,10 @@ def proposition_fields(proposition: Proposition) -> dict[str, Any]:
 
 
 def signal_fields(signal: Signal) -> dict[str, Any]:
-    """The same of a signal; `outline` is the meaning of `footprint` and `sensor`."""
+    """The canonical value of each field of a signal that verdicts depend on.
+
+    `outline` combines `footprint` and `sensor`.
+    """
     outline = signal.reduce is Reduce.OUTLINE
     invalid = signal.invalid
     meaning = {
@@ -98,9 +101,9 @@ def signal_fields(signal: Signal) -> dict[str, Any]:
 
 
 def _values(signal: Signal) -> Any:
-    """The words with their numbers in the log; None: those of the message's definition.
+    """Each word with its number in the log, sorted; None: the message definition has the number.
 
-    The order of the words means nothing.
+    The order in which the bindings list the words has no meaning.
     """
     numbers = signal.numbers or [None] * len(signal.values)
     return sorted([word, number] for word, number in zip(signal.values, numbers, strict=True))
@@ -111,9 +114,9 @@ def expression(tree: e.Expression, *, plain: bool = True) -> Any:
     """An expression of the bindings as nested lists, numbers exact and in base units.
 
     Args:
-        tree: what is written.
-        plain: whether a plain number is the same as a quantity without a dimension. It is not in
-            `valid`, which is read in the unit of the field: `35 %` is 35 of a field in percent.
+        tree: the expression.
+        plain: whether a plain number equals a dimensionless quantity. In `valid` it does not,
+            because `valid` is in the unit of the field: `35 %` is 35 in a field in percent.
     """
     match tree:
         case e.Truth(value):
@@ -149,6 +152,6 @@ def _quantity(digits: str, name: str, *, plain: bool) -> Any:
 
 
 def parameter(text: str) -> Any:
-    """A number that a requirement states, with its unit: exact; as it is written, if it is none."""
+    """The exact value and dimension of a stated quantity; the text itself if it is no quantity."""
     exact = units.quantity(text)
     return " ".join(text.split()) if exact is None else [list(exact[0]), str(exact[1])]

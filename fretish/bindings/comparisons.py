@@ -1,7 +1,7 @@
-"""Comparisons of sentences, over the signals of the bindings.
+"""Units of numbers in the comparisons of sentences.
 
-A bare number is in the unit of the signal that it is compared with or added to, as in FRET, where
-variables have no units. A unit in a sentence is converted into that, exactly.
+A bare number has the unit of the signal that it is compared with or added to, as in FRET, where
+variables have no units. A number with a unit is converted exactly into that unit.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ FUNCTIONS = {
     "maxReal": "max", "maxInt": "max", "minReal": "min", "minInt": "min",
     "preReal": "pre", "preInt": "pre",
 }  # fmt: skip
-"""What a function of sentences is called in bindings."""
+"""Function in a sentence → the same function in bindings."""
 
 
-class _MistakeError(Exception):
+class _ComparisonError(Exception):
     """Carries a diagnostic out of the recursion."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
@@ -47,24 +47,24 @@ class _MistakeError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _Measure:
-    """In which unit the numbers of an expression are."""
+    """The unit of the numbers in an expression."""
 
     name: str
-    """The unit as it is written; empty for plain numbers."""
+    """The unit as written; empty for plain numbers."""
     unit: Unit
     measured: bool
-    """Whether a signal says so; a quantity is converted."""
+    """Whether a signal determines the unit; if not, quantities are converted."""
     mixed: bool = False
-    """Whether signals in several units of one dimension meet."""
+    """Whether the expression combines signals in different units of one dimension."""
     vague: bool = False
-    """Whether nobody means a bare number in it: one in cm/m."""
+    """Whether a bare number in this unit is implausible, as in cm/m."""
 
 
 _PLAIN = _Measure("", ONE, measured=False)
 
 
 def is_measured(expression: e.Expression, signals: Mapping[str, Signal]) -> bool:
-    """Whether every name in it is a signal, and everything computed is known in bindings."""
+    """Whether every name is a signal, and bindings support every operation in the expression."""
     parts = list(e.parts(expression))
     names = {part.id for part in parts if isinstance(part, e.Name)}
     calls = {part.name for part in parts if isinstance(part, e.Call)}
@@ -74,22 +74,22 @@ def is_measured(expression: e.Expression, signals: Mapping[str, Signal]) -> bool
 
 
 def _is_computable(part: e.Expression) -> bool:
-    """Whether a power is one of bindings, and a call has the arguments that it has there."""
+    """Whether bindings support this power or call, with this number of arguments."""
     match part:
         case e.Arithmetic("^", base, exponent):
             return is_base(base) and _exponent(exponent) is not None
-        case e.Call(name, args) if FUNCTIONS.get(name) in _COUNTS:
-            return len(args) == _COUNTS[FUNCTIONS[name]]
+        case e.Call(name, args) if FUNCTIONS.get(name) in _ARITY:
+            return len(args) == _ARITY[FUNCTIONS[name]]
         case _:
             return True
 
 
-_COUNTS = {"abs": 1, "pre": 2}
-"""How many numbers a function takes."""
+_ARITY = {"abs": 1, "pre": 2}
+"""Function → number of its arguments."""
 
 
 def _exponent(written: e.Expression) -> int | None:
-    """A number of few digits that stands there, or None."""
+    """The exponent, if it is a literal from 1 to `MOST_EXPONENT`; else None."""
     match written:
         case e.Number(digits) if _is_number(digits):
             exact = number(digits)
@@ -101,15 +101,15 @@ def _exponent(written: e.Expression) -> int | None:
 def in_own_units(
     comparison: e.Comparison, signals: Mapping[str, Signal], place: Span
 ) -> e.Comparison | Diagnostic:
-    """The comparison with `20 %` as a bare number in the unit of the signal that it meets.
+    """The comparison with each quantity (`20 %`) as a bare number in the unit of its signal.
 
-    It is what FRET, formulas and monitors read. Where signals in several units of one dimension
-    meet, a quantity stays what it is.
+    FRET, formulas and monitors use this form. If the comparison combines signals in different
+    units of one dimension, its quantities keep their units.
 
     Args:
-        comparison: of a sentence, `is_measured`.
-        signals: what is declared.
-        place: where to point when a part has no place of its own.
+        comparison: a comparison of a sentence for which `is_measured` is true.
+        signals: the declared signals.
+        place: the span of a diagnostic about a part without a span.
     """
     return _Writer(signals, place, bare=True).comparison(comparison)
 
@@ -117,57 +117,57 @@ def in_own_units(
 def bound(
     comparison: e.Comparison, signals: Mapping[str, Signal], place: Span
 ) -> e.Comparison | Diagnostic:
-    """The comparison in the language of bindings, where each number has its unit."""
-    found = _Writer(signals, place, bare=False).comparison(comparison)
-    if isinstance(found, Diagnostic):
-        return found
+    """The comparison as an expression of bindings, in which each number has its unit."""
+    rewritten = _Writer(signals, place, bare=False).comparison(comparison)
+    if isinstance(rewritten, Diagnostic):
+        return rewritten
     kinds = {name: signal.unit.dimension for name, signal in signals.items()}
-    wrong = binding.dimension(found, kinds, comparison.span or place)
-    return wrong if isinstance(wrong, Diagnostic) else found
+    dimension = binding.dimension(rewritten, kinds, comparison.span or place)
+    return dimension if isinstance(dimension, Diagnostic) else rewritten
 
 
 def is_mixed(comparison: e.Comparison, signals: Mapping[str, Signal], place: Span) -> bool:
-    """Whether signals in several units of one dimension meet: their bare numbers do not compare."""
+    """Whether the comparison combines signals in different units of one dimension."""
     return is_measured(comparison, signals) and _Writer(signals, place, bare=True).is_mixed(
         comparison
     )
 
 
 class _Writer:
-    """Rewrites the numbers of a comparison, each for the unit of its place."""
+    """Rewrites the numbers of a comparison into the units that their operands require."""
 
     def __init__(self, signals: Mapping[str, Signal], place: Span, *, bare: bool) -> None:
         self._signals = signals
         self._place = place
         self._bare = bare
         self._measures: dict[int, _Measure | None] = {}
-        """By the identity of a part: the hash of a tree takes as long as the tree is large."""
+        """`id(part)` → its unit. Hashing a tree would take time proportional to its size."""
 
     def comparison(self, comparison: e.Comparison) -> e.Comparison | Diagnostic:
         sides = (comparison.left, comparison.right)
         try:
-            common = self._common(sides)
-            left, right = (self._written(side, common) for side in sides)
-        except _MistakeError as error:
+            common = self._common_measure(sides)
+            left, right = (self._rewrite(side, common) for side in sides)
+        except _ComparisonError as error:
             return error.diagnostic
         return replace(comparison, left=left, right=right)
 
     def is_mixed(self, comparison: e.Comparison) -> bool:
-        """Whether both sides and all their parts are not in one unit of each dimension."""
+        """Whether signals of one dimension have different units."""
         try:
-            return self._common((comparison.left, comparison.right)).mixed
-        except _MistakeError:
+            return self._common_measure((comparison.left, comparison.right)).mixed
+        except _ComparisonError:
             return False
 
     # Units
 
     def _measure(self, part: e.Expression) -> _Measure | None:
-        """None for what is made of bare numbers alone."""
+        """The unit of a part; None if it consists of bare numbers only."""
         if id(part) not in self._measures:
-            self._measures[id(part)] = self._measured(part)
+            self._measures[id(part)] = self._compute_measure(part)
         return self._measures[id(part)]
 
-    def _measured(self, part: e.Expression) -> _Measure | None:
+    def _compute_measure(self, part: e.Expression) -> _Measure | None:
         match part:
             case e.Number():
                 return None
@@ -182,15 +182,15 @@ class _Writer:
                 return self._power(base, exponent)
             case _:
                 parts = e.children(part)
-                plain = all(self._measure(each) is None for each in parts)
-                return None if plain else self._common(parts)
+                plain = all(self._measure(operand) is None for operand in parts)
+                return None if plain else self._common_measure(parts)
 
     def _unit(self, name: str, span: Span | None) -> Unit:
-        """The unit of a quantity; F339 where a part of its name is a signal too."""
+        """The unit of a quantity; F339 if a part of its name is also a signal."""
         kinds = {id: signal.unit.dimension for id, signal in self._signals.items()}
         kind = binding.dimension(e.Quantity("1", name, span), kinds, self._place)
         if isinstance(kind, Diagnostic):
-            raise _MistakeError(kind)
+            raise _ComparisonError(kind)
         known = unit(name)
         assert known is not None, "the lexer knows all units"
         return known
@@ -199,7 +199,7 @@ class _Writer:
         first, second = self._measure(left), self._measure(right)
         if first is None and second is None:
             return None
-        a, b = _of_factor(first), _of_factor(second)
+        a, b = _factor_measure(first), _factor_measure(second)
         combined = times(a.unit, b.unit, 1 if op == "*" else -1)
         name = unit_product(a.name, b.name) if op == "*" else unit_quotient(a.name, b.name)
         both = bool(a.name and b.name)
@@ -216,15 +216,15 @@ class _Writer:
             name, combined = unit_product(name, first.name), times(combined, first.unit)
         return replace(first, name=name, unit=combined)
 
-    def _common(self, parts: Sequence[e.Expression]) -> _Measure:
-        """The unit of parts that are compared or added: that of the signals among them."""
+    def _common_measure(self, parts: Sequence[e.Expression]) -> _Measure:
+        """The common unit of parts that are compared or added: the unit of their signals."""
         measures = [(part, m) for part in parts if (m := self._measure(part)) is not None]
         if not measures:
             return _PLAIN
         _, first = measures[0]
         for part, other in measures:
             if other.unit.dimension != first.unit.dimension:
-                raise _MistakeError(_mismatch(first, other, self._span(part)))
+                raise _ComparisonError(_mismatch(first, other, self._span(part)))
         measured = [m for _, m in measures if m.measured]
         mixed = len({m.unit.factor for m in measured}) > 1 or any(m.mixed for m in measured)
         vague = any(m.vague for _, m in measures)
@@ -235,45 +235,45 @@ class _Writer:
 
     # Numbers
 
-    def _written(self, part: e.Expression, target: _Measure) -> e.Expression:
-        """The part, with its numbers in the target's unit."""
+    def _rewrite(self, part: e.Expression, target: _Measure) -> e.Expression:
+        """The part with its numbers converted into the target's unit."""
         if self._measure(part) is None:
             return self._constant(part, target)
         match part:
             case e.Quantity():
                 return self._quantity(part, target)
             case e.Negation(arg):
-                return replace(part, arg=self._written(arg, target))
+                return replace(part, arg=self._rewrite(arg, target))
             case e.Arithmetic("*" | "/", left, right):
-                return self._factors(part, left, right, target)
+                return self._rewrite_product(part, left, right, target)
             case e.Arithmetic("^"):
-                return self._raised(part, target)
+                return self._rewrite_power(part, target)
             case e.Arithmetic(_, left, right):
-                left, right = self._written(left, target), self._written(right, target)
+                left, right = self._rewrite(left, target), self._rewrite(right, target)
                 return replace(part, left=left, right=right)
             case e.Call(name, args):
                 called = name if self._bare else FUNCTIONS[name]
                 return replace(
-                    part, name=called, args=tuple(self._written(a, target) for a in args)
+                    part, name=called, args=tuple(self._rewrite(a, target) for a in args)
                 )
             case _:
                 return part
 
     def _constant(self, part: e.Expression, target: _Measure) -> e.Expression:
-        """What is made of bare numbers alone."""
-        for each in e.parts(part):
-            if isinstance(each, e.Number) and not _is_number(each.digits):
-                raise _MistakeError(too_long(self._span(each)))
+        """A part of bare numbers only, with the target's unit attached where bindings need it."""
+        for operand in e.parts(part):
+            if isinstance(operand, e.Number) and not _is_number(operand.digits):
+                raise _ComparisonError(too_long(self._span(operand)))
         zero = isinstance(part, e.Number) and number(part.digits) == 0
         if (target.mixed or target.vague) and not zero:
-            raise _MistakeError(_which_unit(self._span(part), target))
+            raise _ComparisonError(_ambiguous_unit(self._span(part), target))
         if self._bare:
             return part
-        part = _in_bindings(part)
+        part = _spell_in_bindings(part)
         if not target.name:
             return part
         if unit(target.name) is None:
-            raise _MistakeError(_which_unit(self._span(part), target))
+            raise _ComparisonError(_ambiguous_unit(self._span(part), target))
         if isinstance(part, e.Number):
             return e.Quantity(part.digits, target.name, part.span)
         if isinstance(part, e.Negation):
@@ -286,40 +286,38 @@ class _Writer:
         factor = self._unit(quantity.unit, quantity.span).factor / target.unit.factor
         return plain(number(quantity.digits) * factor, quantity.span)
 
-    def _factors(
+    def _rewrite_product(
         self, part: e.Arithmetic, left: e.Expression, right: e.Expression, target: _Measure
     ) -> e.Expression:
-        """Each signal in its own unit, each quantity in its base unit.
+        """A product or quotient: signals keep their units, quantities get base units.
 
-        A product of quantities is converted as a whole.
+        A product of quantities only is converted as a whole.
         """
-        if self._stays(part, target):
+        if self._keeps_units(part, target):
             return part
         product = replace(
             part,
             left=self._factor(left),
             right=self._factor(right),
         )
-        return self._converted(product, part, target)
+        return self._convert(product, part, target)
 
-    def _stays(self, part: e.Expression, target: _Measure) -> bool:
-        """Whether it keeps its units: a quantity where signals in several units meet."""
+    def _keeps_units(self, part: e.Expression, target: _Measure) -> bool:
+        """Whether quantities keep their units because signals with different units are combined."""
         own = self._measure(part)
         return self._bare and target.mixed and own is not None and not own.measured
 
-    def _raised(self, part: e.Arithmetic, target: _Measure) -> e.Expression:
-        """A power of what is in its own unit, converted as a whole."""
-        if self._stays(part, target):
+    def _rewrite_power(self, part: e.Arithmetic, target: _Measure) -> e.Expression:
+        """A power: the base keeps its unit, and the result is converted."""
+        if self._keeps_units(part, target):
             return part
-        power = replace(part, left=self._written(part.left, self._measure(part.left) or _PLAIN))
+        power = replace(part, left=self._rewrite(part.left, self._measure(part.left) or _PLAIN))
         if not self._bare:  # bindings write exponents with digits alone
             power = replace(power, right=e.Number(str(_exponent(part.right))))
-        return self._converted(power, part, target)
+        return self._convert(power, part, target)
 
-    def _converted(
-        self, product: e.Arithmetic, part: e.Arithmetic, target: _Measure
-    ) -> e.Expression:
-        """What was written for a part, in the target's unit where nothing is measured in it."""
+    def _convert(self, product: e.Arithmetic, part: e.Arithmetic, target: _Measure) -> e.Expression:
+        """The rewritten part, converted to the target's unit if it contains no signal."""
         own = self._measure(part)
         assert own is not None
         if not self._bare or own.measured or own.unit == target.unit:
@@ -328,15 +326,15 @@ class _Writer:
         return e.Arithmetic("*", product, ratio, part.span)
 
     def _factor(self, part: e.Expression) -> e.Expression:
-        """Nothing says what a bare number is that is added to a quantity there."""
+        """An operand of a product. The unit of a bare number added to a quantity is ambiguous."""
         measure = self._measure(part)
-        target = _of_factor(measure)
+        target = _factor_measure(measure)
         added = measure is not None and not measure.measured
-        return self._written(part, replace(target, vague=target.vague or added))
+        return self._rewrite(part, replace(target, vague=target.vague or added))
 
 
-def _of_factor(measure: _Measure | None) -> _Measure:
-    """In which unit a factor is: a quantity is in its base unit, `50 %` is a half."""
+def _factor_measure(measure: _Measure | None) -> _Measure:
+    """The unit of a factor: quantities are in base units, so `50 %` is 0.5."""
     if measure is None:
         return _PLAIN
     if measure.measured:
@@ -348,7 +346,7 @@ def _of_factor(measure: _Measure | None) -> _Measure:
 
 
 def plain(exact: Fraction, span: Span | None = None) -> e.Expression:
-    """A number as FRETish writes it: a decimal where there is one, else a quotient."""
+    """An exact number as FRETish text allows it: a finite decimal, else a quotient."""
     rest, digits = exact.denominator, 0
     for prime in (2, 5):
         while rest % prime == 0:
@@ -363,9 +361,9 @@ def plain(exact: Fraction, span: Span | None = None) -> e.Expression:
     return e.Number(f"{whole}.{fraction}" if fraction else whole, span)
 
 
-def _in_bindings(part: e.Expression) -> e.Expression:
-    """What is made of bare numbers alone, as bindings spell it."""
-    parts = [_in_bindings(each) for each in e.children(part)]
+def _spell_in_bindings(part: e.Expression) -> e.Expression:
+    """An expression of bare numbers with the function names and exponents of bindings."""
+    parts = [_spell_in_bindings(operand) for operand in e.children(part)]
     match e.with_children(part, parts):
         case e.Call(name, _) as call:
             return replace(call, name=FUNCTIONS.get(name, name))
@@ -383,7 +381,7 @@ def _is_number(digits: str) -> bool:
     return True
 
 
-def _words(measure: _Measure) -> str:
+def _describe(measure: _Measure) -> str:
     if measure.unit.dimension == DIMENSIONLESS:
         return "a number without a unit"
     return f"a quantity in {measure.name}"
@@ -392,17 +390,17 @@ def _words(measure: _Measure) -> str:
 def _mismatch(left: _Measure, right: _Measure, place: Span) -> Diagnostic:
     return Diagnostic(
         Code.UNIT_MISMATCH,
-        f"{_words(left)} cannot be compared with or added to {_words(right)}",
+        f"{_describe(left)} cannot be compared with or added to {_describe(right)}",
         place,
         help="a bare number is in the unit of the signal beside it",
     )
 
 
-def _which_unit(place: Span, target: _Measure) -> Diagnostic:
+def _ambiguous_unit(place: Span, target: _Measure) -> Diagnostic:
     plain = target.unit.dimension == DIMENSIONLESS
     return Diagnostic(
         Code.WHICH_UNIT,
-        "this number has no unit, and what is beside it has several",
+        "this number has no unit, and its unit is ambiguous",
         place,
-        help="write it in percent: 2 is `200 %`" if plain else "give it its unit: `5 m/s`",
+        help="write it in percent: 2 is `200 %`" if plain else "write its unit: `5 m/s`",
     )

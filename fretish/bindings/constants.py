@@ -1,4 +1,4 @@
-"""Numbers that stand in expressions, computed exactly: `10 cm / 2` is 5 cm."""
+"""Exact values of constant expressions: `10 cm / 2` is 5 cm."""
 
 from __future__ import annotations
 
@@ -16,13 +16,12 @@ Exact = tuple[units.Dimension, Fraction]
 
 
 def constants(expression: e.Expression) -> set[Exact]:
-    """Every number in the expression.
+    """The values of all constants in the expression.
 
-    What is computed of numbers alone is one number, and `-5 cm` may be stated with its sign or
-    without.
+    A constant sub-expression is one value. `-5 cm` gives two: with and without its sign.
     """
     numbers: set[Exact] = set()
-    measured = _measured(expression)
+    measured = _non_constant_parts(expression)
     waiting = [expression]
     while waiting:
         part = waiting.pop()
@@ -36,8 +35,8 @@ def constants(expression: e.Expression) -> set[Exact]:
     return numbers
 
 
-def _measured(expression: e.Expression) -> set[int]:
-    """The `id` of each part that is a word, has a name in it, or looks back."""
+def _non_constant_parts(expression: e.Expression) -> set[int]:
+    """The `id` of each part that is not constant: a word, a `pre`, or a part with a name."""
     measured: set[int] = set()
     for part in reversed([*e.parts(expression)]):  # operands before their operators
         own = isinstance(part, e.Word | e.Name) or binding.looks_back(part)
@@ -47,7 +46,7 @@ def _measured(expression: e.Expression) -> set[int]:
 
 
 def _constant(expression: e.Expression) -> Exact | None:
-    """What is computed of numbers alone, of no measured part; None for a truth."""
+    """The value of a constant part; None for a truth value or a division by zero."""
     dimension = binding.dimension(expression, {}, Source("", "").span())
     assert not isinstance(dimension, Diagnostic), "the reader of bindings refuses the expression"
     value = number(expression) if dimension is not None else None
@@ -56,7 +55,7 @@ def _constant(expression: e.Expression) -> Exact | None:
 
 @lru_cache(1024)
 def quantity(digits: str, name: str, read_in: units.Unit) -> Fraction:
-    """A quantity in a unit, or in a power of it: 4 m^2 are 40 000 beside numbers in cm."""
+    """The value of a quantity in a unit or a power of it: 4 m^2 are 40 000 cm^2."""
     own_unit = units.unit(name)
     assert own_unit is not None, "the parser refuses unknown units"
     powers = (1, 0, 2, 3, -1, -2)
@@ -65,7 +64,7 @@ def quantity(digits: str, name: str, read_in: units.Unit) -> Fraction:
 
 
 def number(expression: e.Expression) -> Fraction | None:
-    """A number without names, in base units; None where it divides by zero."""
+    """The value of a constant expression in base units; None if it divides by zero."""
     match expression:
         case e.Number(digits):
             return Fraction(digits)
@@ -87,12 +86,12 @@ def number(expression: e.Expression) -> Fraction | None:
 
 
 def computed(op: e.ArithmeticOperator, left: Fraction, right: Fraction) -> Fraction | None:
-    """`left op right`; None where it divides by zero.
+    """The value of `left op right`; None for a division by zero.
 
     `left mod right` has the sign of `right`.
 
     Raises:
-        ValueError: the exponent of a power is not small and whole, or the power too large.
+        ValueError: the exponent is not a whole number in range, or the power is too large.
     """
     match op:
         case "+":
@@ -116,18 +115,18 @@ _MOST_BITS = 1 << 16
 
 
 def whole_exponent(exponent: Fraction) -> int:
-    """The exponent of a power.
+    """The exponent of a power as an integer.
 
     Raises:
-        ValueError: it is no whole number from 1 to `e.MOST_EXPONENT`.
+        ValueError: it is not a whole number from 1 to `e.MOST_EXPONENT`.
     """
     if exponent.denominator != 1 or not 1 <= exponent <= e.MOST_EXPONENT:
-        raise ValueError(f"an exponent is a whole number from 1 to {e.MOST_EXPONENT}")
+        raise ValueError(f"an exponent must be a whole number from 1 to {e.MOST_EXPONENT}")
     return int(exponent)
 
 
 def called(name: str, values: list[Fraction]) -> Fraction:
-    """`abs`, `min` or `max` of numbers."""
+    """The value of `abs`, `min` or `max`."""
     match name:
         case "abs":
             return abs(values[0])
@@ -136,4 +135,4 @@ def called(name: str, values: list[Fraction]) -> Fraction:
         case "max":
             return max(values)
         case _:
-            raise ValueError(f"bindings have no `{name}`")
+            raise ValueError(f"bindings have no function `{name}`")

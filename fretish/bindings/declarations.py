@@ -1,7 +1,7 @@
 """`bindings.toml` → clock, signals and propositions.
 
-Two layers: signals (numbers with units, or words, read from messages) feed propositions (truth
-values, what a sentence names).
+Signals are numbers with units, or words, read from messages. Propositions are truth values: Boolean
+expressions over signals, which sentences name.
 """
 
 from __future__ import annotations
@@ -23,31 +23,31 @@ from fretish.units import Unit
 
 
 class Reduce(StrEnum):
-    """How a signal's array becomes one number."""
+    """How an array field becomes one number."""
 
     MIN = "min"
     MAX = "max"
     MEAN = "mean"
     OUTLINE = "outline"
-    """Least distance from the robot's outline to the points of a laser scan."""
+    """The least distance between the robot's outline and the points of a laser scan."""
 
 
 class Reading(StrEnum):
-    """What an element outside of the valid range means."""
+    """How an element that is not a valid measurement is interpreted."""
 
     DROP = "drop"
-    """The element says nothing; the others decide."""
+    """The element is ignored."""
     FAR = "far"
-    """Nothing is there: +inf."""
+    """No object in range: +inf."""
     NEAR = "near"
-    """Something is there, too near to measure: -inf, or no distance at all."""
+    """An object too near to measure: -inf, or a clearance of 0."""
     UNKNOWN = "unknown"
     """The whole sample is unknown."""
 
 
 @dataclass(frozen=True, slots=True)
-class Invalid:
-    """What readings that are no measurement mean (REP 117)."""
+class InvalidReadings:
+    """How each kind of invalid reading is interpreted (REP 117)."""
 
     nan: Reading = Reading.UNKNOWN
     positive_infinity: Reading = Reading.UNKNOWN
@@ -56,7 +56,7 @@ class Invalid:
     """A finite number outside of `valid`."""
 
 
-REP_117 = Invalid(Reading.DROP, Reading.FAR, Reading.NEAR, Reading.DROP)
+REP_117 = InvalidReadings(Reading.DROP, Reading.FAR, Reading.NEAR, Reading.DROP)
 """ROS Enhancement Proposal 117: -inf is too near, +inf is nothing in range, NaN is an error."""
 
 
@@ -71,7 +71,7 @@ class Path:
     """True for `[:]`: all elements of the array."""
 
     def __str__(self) -> str:
-        """As it is written in the bindings."""
+        """The path as written in the bindings."""
         index = "[:]" if self.each else "" if self.index is None else f"[{self.index}]"
         return ".".join((self.topic, *self.fields)) + index
 
@@ -82,7 +82,7 @@ _PATH = re.compile(
 
 
 def path(text: str) -> Path | None:
-    """Read `/scan.ranges[:]`, `/odom.twist.twist.linear.x`, `/joints.position[3]`."""
+    """Parse `/scan.ranges[:]`, `/odom.twist.twist.linear.x` or `/joints.position[3]`."""
     match = _PATH.fullmatch(text)
     if match is None:
         return None
@@ -114,16 +114,15 @@ class Aggregate(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """A number, or a word, over time, read from one field of one topic.
+    """A number or a word over time, read from one field of one topic.
 
-    `values` are the words that an enumerated signal may be: its samples are their places, from 0
-    on. `numbers` are those by which the messages mean the words, one for each; empty: the field
-    holds the words themselves, or the message's definition says which number each one is.
-    `footprint` are the corners of the robot's outline and `sensor` is the pose of the sensor
-    (x, y in metres, yaw in radians), both in the robot's frame; for `Reduce.OUTLINE` only.
-    `max_age` is in nanoseconds; None: a sample counts until the next one. `role` is for people and
-    other tools; None: nothing says it. `aggregate` is that of the comparisons of a sentence that
-    read it; a proposition has its own.
+    `values` are the words of an enumerated signal; a sample is the index of its word. `numbers`
+    are the numbers of these words in messages, in the same order; empty: the field holds the words,
+    or the message definition has the numbers. `footprint` (corners of the robot's outline) and
+    `sensor` (pose of the sensor: x, y in metres, yaw in radians) are in the robot's frame, and only
+    for `Reduce.OUTLINE`. `max_age` is in nanoseconds; None: a sample counts until the next one.
+    `role` is None if it is not declared. `aggregate` applies to comparisons in sentences; a
+    proposition has its own.
     """
 
     name: str
@@ -133,7 +132,7 @@ class Signal:
     type: str | None = None
     reduce: Reduce | None = None
     valid: Expression | None = None
-    invalid: Invalid = Invalid()
+    invalid: InvalidReadings = InvalidReadings()
     max_age: int | None = None
     role: Role | None = None
     aggregate: Aggregate = Aggregate.LAST
@@ -145,12 +144,12 @@ class Signal:
 
     @property
     def scale(self) -> Fraction:
-        """Factor from samples to base units; a clearance is in base units already."""
+        """Factor from the field's unit to base units; a clearance is in base units already."""
         return Fraction(1) if self.reduce is Reduce.OUTLINE else self.unit.factor
 
 
 class Modality(StrEnum):
-    """What an agent has to do with a proposition, in AJPF's words."""
+    """How an agent relates to a proposition: a modality of AJPF's property language."""
 
     BELIEF = "B"
     """The agent believes it."""
@@ -168,8 +167,8 @@ class Modality(StrEnum):
 class Proposition:
     """A truth value over time: an expression over signals.
 
-    `on_unknown` is what the proposition is taken to be where its signals are unknown: None
-    (it stays unknown), or a truth value, which is then an assumption of every verdict.
+    `on_unknown` is its value while its signals are unknown. None: it is unknown, too. A truth value
+    is an assumption of every verdict.
     """
 
     name: str
@@ -181,12 +180,12 @@ class Proposition:
     on_unknown: bool | None = None
     modality: Modality = Modality.BELIEF
     action: str = ""
-    """What an agent does to make it true; empty: `do_` and its name."""
+    """The action that makes it true; empty: `do_` and its name."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
     def signals(self) -> tuple[str, ...]:
-        """The names of the signals that it reads, in the order of their first use."""
+        """The names of the signals in the expression, in order of first use."""
         return _named(self.expression)
 
 
@@ -197,7 +196,7 @@ def _named(expression: Expression) -> tuple[str, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A name of the sentences, as FRET's glossary has it; bound or not."""
+    """A variable of sentences, with the fields of FRET's glossary."""
 
     name: str
     component: str = ""
@@ -207,41 +206,41 @@ class Variable:
     """`input`, `output`, `internal`, `mode`, `function`, or nothing."""
     text: str = ""
     fret: Mapping[str, Any] = field(default_factory=dict)
-    """What FRET keeps of it and fretc does not use."""
+    """FRET's other fields, which fretc does not use."""
     modality: Modality = Modality.BELIEF
     action: str = ""
-    """What an agent does to make it true; empty: `do_` and its name."""
+    """The action that makes it true; empty: `do_` and its name."""
     value: Expression | None = None
-    """What it stands for in every sentence: FRET's assignment, in the words of FRETish."""
+    """The expression that replaces it in every sentence (FRET's assignment), in FRETish."""
     of: Mapping[str, Variable] = field(default_factory=dict)
-    """What it is in sentences about these components instead, each as a whole."""
+    """Component → the complete definition that replaces this one in its sentences."""
     span: Span | None = field(default=None, compare=False, repr=False)
-    """Where `value` stands."""
+    """The span of `value`."""
 
 
-class Form(StrEnum):
-    """When an interceptor speaks."""
+class InterceptorForm(StrEnum):
+    """When an interceptor publishes."""
 
     TIMER = "timer"
-    """With each tick of its own timer, at once on a request, and when a command comes."""
+    """At each tick of its own timer, at once on a stop request, and when a command arrives."""
     EVENT = "event"
-    """Only when a command comes: the node of the Safe-ROS paper."""
+    """Only when a command arrives: the node of the Safe-ROS paper."""
 
 
 @dataclass(frozen=True, slots=True)
 class Interception:
     """`[interceptor]`: the node between the planner and the wheels.
 
-    Durations in nanoseconds. `hold` 0: a stop ends with its release; a timeout of 0: the channel
-    is not watched; `period` 0: no timer, in the event form only.
+    Durations are in nanoseconds. `hold` 0: a stop ends with its release. A timeout of 0: silence on
+    the channel has no effect. `period` 0: no timer, only with `Form.EVENT`.
     """
 
     stop: str
     """The topic of stop requests, std_msgs/Bool."""
     command: str
-    """The planner's, geometry_msgs/Twist."""
+    """The topic of the planner's commands, geometry_msgs/Twist."""
     output: str
-    """The wheels', geometry_msgs/Twist."""
+    """The topic of the commands to the wheels, geometry_msgs/Twist."""
     scan: str | None = None
     """The topic of the sensor, sensor_msgs/LaserScan."""
     period: int = 0
@@ -249,51 +248,51 @@ class Interception:
     stop_timeout: int = 0
     scan_timeout: int = 0
     command_timeout: int = 0
-    form: Form = Form.TIMER
+    form: InterceptorForm = InterceptorForm.TIMER
     latching: bool = False
     ros: int = 2
-    """1 or 2: which ROS the emitted node runs on."""
+    """1 or 2: the ROS version of the emitted node."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
 class Requests(StrEnum):
-    """When the safety function sends what it wants."""
+    """When the safety function sends its stop request."""
 
     LEVEL = "level"
     """At every tick."""
     EDGE = "edge"
-    """Only where it changes."""
+    """Only when it changes."""
 
 
 class Planner(StrEnum):
-    """When commands come."""
+    """When the planner sends commands."""
 
     ANY = "any"
-    """Now and then, or never."""
+    """At arbitrary ticks, or never."""
     EVERY_TICK = "every tick"
 
 
 @dataclass(frozen=True, slots=True)
-class Assumed:
-    """`[assume]`: what a proof about the closed loop takes for granted. Times in nanoseconds."""
+class LoopAssumptions:
+    """`[assume]`: the assumptions of a proof about the closed loop. Times in nanoseconds."""
 
     stands: str
-    """The proposition that is true once the wheels have had zero for `braking`."""
+    """The proposition that is true after the wheels have received zero for `braking`."""
     latency: int
-    """A stop request takes no longer from the safety function to the interceptor."""
+    """The longest time of a stop request from the safety function to the interceptor."""
     braking: int
     lost: int = 0
-    """At most so many messages of the safety function are lost in a row."""
+    """The largest number of consecutive messages of the safety function that may be lost."""
     requests: Requests = Requests.LEVEL
     planner: Planner = Planner.ANY
     heartbeat: int = 0
-    """On change only: it is sent again after so long without a message, or earlier; 0: never."""
+    """With `Requests.EDGE`: the request is repeated at least this often; 0: never."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Map:
-    """`[map]`: where the robot is, for the pictures of a report; no verdict depends on it."""
+class MapCoordinates:
+    """`[map]`: the robot's coordinates, for the maps of a report; no verdict depends on them."""
 
     x: Signal
     y: Signal
@@ -301,33 +300,33 @@ class Map:
 
 @dataclass(frozen=True, slots=True)
 class LabelSource:
-    """Where a label of a run comes from: the metadata of its log, or the path of it."""
+    """The source of a label of a run: the metadata or the path of its log."""
 
     is_path: bool
     text: str
-    """`build.version`: record and key; or a pattern (`fretish.reading.name_patterns`)."""
+    """Record and key (`build.version`), or a path pattern (`fretish.reading.name_patterns`)."""
 
 
 Part = tuple[str, str]
 """`("signal", "vx")`, `("proposition", "near")`, `("clock", "")`, `("map", "")`."""
 SHARED = ("interceptor", "assume", "environment", "map", "run")
-"""Tables that belong to no single requirement, and that some commands alone read: `[interceptor]`,
-`[assume]`, `[[assume.requirement]]`, `[map]` and `[run.label]`."""
+"""Tables that belong to no single requirement: `[interceptor]`, `[assume]`,
+`[[assume.requirement]]`, `[map]` and `[run.label]`. Only some commands read them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Default:
-    """Something that is assumed of a part, in words: a default, or a choice of the bindings."""
+    """An assumption about a part, as a phrase: a default, or a choice of the bindings."""
 
     part: Part
     text: str
-    written: bool | None = None
-    """Whether a default is written in the bindings all the same; None: it cannot be written."""
+    is_explicit: bool | None = None
+    """Whether the bindings state the default explicitly; None: it cannot be stated."""
 
 
 @dataclass(frozen=True, slots=True)
 class Declarations:
-    """Everything that the bindings declare, but for the tables that have a mistake."""
+    """All declarations of the bindings, without the tables that have an error."""
 
     source: Source
     clock: Clock
@@ -336,35 +335,35 @@ class Declarations:
     variables: Mapping[str, Variable] = field(default_factory=dict)
     defaults: tuple[Default, ...] = ()
     interceptor: Interception | None = None
-    assumed: Assumed | None = None
+    assumed: LoopAssumptions | None = None
     mistakes: Mapping[Part, tuple[Diagnostic, ...]] = field(default_factory=dict)
-    """Each signal, proposition and shared table that is declared and cannot be used, and why; the
-    mistakes of a signal are those of the propositions that read it, too."""
-    map: Map | None = None
+    """Declared but unusable signals, propositions and shared tables → their errors. The errors of a
+    signal are also errors of the propositions that read it."""
+    map: MapCoordinates | None = None
     labels: Mapping[str, tuple[LabelSource, ...]] = field(default_factory=dict)
-    """`[run.label]`: each label of runs, with its sources; the first that says something counts."""
+    """`[run.label]`: label → its sources; the first source with a value counts."""
     fret: tuple[Mapping[str, Any], ...] = ()
-    """`[[fret.variable]]`: FRET's records of variables that are none here; nothing reads them."""
+    """`[[fret.variable]]`: FRET's records of variables that fretc does not use."""
     environment: tuple[RequirementEntry, ...] = ()
-    """`[[assume.requirement]]`: what the environment is taken to keep, where requirements are
-    asked whether they can be kept together; no verdict on a log depends on it."""
+    """`[[assume.requirement]]`: assumptions about the environment, for realizability analysis. No
+    verdict on a log depends on them."""
 
     @property
     def signal_names(self) -> tuple[str, ...]:
-        """Every signal that is declared, with or without a mistake."""
+        """The names of all declared signals, with or without errors."""
         return (*self.signals, *(name for kind, name in self.mistakes if kind == "signal"))
 
     @property
     def definitions(self) -> Mapping[str, Expression]:
-        """What variables stand for."""
+        """Variable → the expression that replaces it."""
         return {
             name: variable.value
             for name, variable in self.variables.items()
             if variable.value is not None
         }
 
-    def about(self, component: str) -> Declarations:
-        """The same with the variables as they are in sentences about a component."""
+    def for_component(self, component: str) -> Declarations:
+        """The declarations for sentences about a component, with the variables of the component."""
         own = {
             name: each.of[component]
             for name, each in self.variables.items()
@@ -372,8 +371,8 @@ class Declarations:
         }
         return replace(self, variables={**self.variables, **own}) if own else self
 
-    def reading(self, propositions: Iterable[str]) -> Declarations:
-        """The same without the signals that none of the propositions reads."""
+    def restricted_to(self, propositions: Iterable[str]) -> Declarations:
+        """The declarations without the signals that none of these propositions reads."""
         bound = [self.propositions[name] for name in propositions if name in self.propositions]
         read = {signal for proposition in bound for signal in proposition.signals}
         parts = {("clock", "")}
@@ -387,8 +386,8 @@ class Declarations:
 
     @property
     def assumptions(self) -> tuple[str, ...]:
-        """Implicit defaults, and the declared values of unknown propositions, in words."""
-        return tuple(default.text for default in self.defaults if not default.written)
+        """The implicit defaults, and the declared values of unknown propositions, as phrases."""
+        return tuple(default.text for default in self.defaults if not default.is_explicit)
 
 
 def short_type(name: str) -> str:

@@ -1,7 +1,7 @@
-"""Variables that stand for something else: constants, and what FRET calls assignments.
+"""Replace variables that have a `value`: constants, and FRET's assignments.
 
-`[variable.limit] value = "1.5 m/s"`: in a sentence `limit` is 1.5 m/s. What is put in has the place
-of the name, so that every place of a sentence is in its own text.
+With `[variable.limit] value = "1.5 m/s"`, a sentence with `limit` means 1.5 m/s. The value gets the
+span of the name, so that every span of a sentence is in its own text.
 """
 
 from __future__ import annotations
@@ -19,28 +19,28 @@ from fretish.reading.recursion import MOST, with_recursion_limit
 from fretish.syntax import Sentence
 
 Definitions = Mapping[str, e.Expression]
-"""What names stand for; none by way of itself."""
+"""Name → the expression that replaces it, without cycles."""
 
 MOST_PARTS = 10_000
-"""Of a sentence with everything put in: a hundred definitions that each double would be endless."""
+"""Largest size of an expanded sentence: 100 definitions could each double it."""
 
 
-def circle(definitions: Definitions) -> tuple[str, ...]:
-    """Names that stand for one another, from the first one back to it; empty where none do."""
+def find_cycle(definitions: Definitions) -> tuple[str, ...]:
+    """The names of a cyclic definition, the first repeated at the end; empty if there is none."""
     done: set[str] = set()
     for name in definitions:
-        path = _circle_from(name, definitions, done)
+        path = _cycle_from(name, definitions, done)
         if path:
             return path
     return ()
 
 
-def _circle_from(start: str, definitions: Definitions, done: set[str]) -> tuple[str, ...]:
-    """A circle that can be reached; adds to `done` what leads to none."""
+def _cycle_from(start: str, definitions: Definitions, done: set[str]) -> tuple[str, ...]:
+    """A cycle that `start` leads to; adds to `done` the names that lead to none."""
     path = {start: None}
-    waiting = [_needs(start, definitions)]
+    waiting = [_dependencies(start, definitions)]
     while waiting:
-        name = next((each for each in waiting[-1] if each not in done), None)
+        name = next((id for id in waiting[-1] if id not in done), None)
         if name is None:
             done.add(path.popitem()[0])
             waiting.pop()
@@ -49,50 +49,52 @@ def _circle_from(start: str, definitions: Definitions, done: set[str]) -> tuple[
             return (*names[names.index(name) :], name)
         else:
             path[name] = None
-            waiting.append(_needs(name, definitions))
+            waiting.append(_dependencies(name, definitions))
     return ()
 
 
-def _needs(name: str, definitions: Definitions) -> Iterator[str]:
-    """The names that it stands for directly, as far as they stand for something themselves."""
+def _dependencies(name: str, definitions: Definitions) -> Iterator[str]:
+    """The defined names in the definition of a name."""
     if name in definitions:
         yield from dict.fromkeys(
-            each.id for each in e.names(definitions[name]) if each.id in definitions
+            used.id for used in e.names(definitions[name]) if used.id in definitions
         )
 
 
-def used(sentence: Sentence, definitions: Definitions) -> Definitions:
-    """Those that the sentence needs, each after what it needs itself."""
-    found: dict[str, e.Expression] = {}
+def used_definitions(sentence: Sentence, definitions: Definitions) -> Definitions:
+    """The definitions that the sentence needs, each after the definitions it depends on."""
+    ordered: dict[str, e.Expression] = {}
     for expression in conditions(sentence):
         for name in e.names(expression):
-            for each in _order(name.id, definitions, found):
-                found[each] = definitions[each]
-    return found
+            for id in _dependency_order(name.id, definitions, ordered):
+                ordered[id] = definitions[id]
+    return ordered
 
 
-def _order(start: str, definitions: Definitions, done: Mapping[str, object]) -> list[str]:
-    """The name and all that it needs, from the inside out."""
-    found: dict[str, None] = {}
-    path = [(start, _needs(start, definitions))] if start in definitions else []
+def _dependency_order(
+    start: str, definitions: Definitions, done: Mapping[str, object]
+) -> list[str]:
+    """The name and the names it depends on, dependencies first."""
+    ordered: dict[str, None] = {}
+    path = [(start, _dependencies(start, definitions))] if start in definitions else []
     while path:
-        name, needs = path[-1]
-        inner = next((each for each in needs if each not in found and each not in done), None)
+        name, dependencies = path[-1]
+        inner = next((id for id in dependencies if id not in ordered and id not in done), None)
         if inner is not None:
-            path.append((inner, _needs(inner, definitions)))
+            path.append((inner, _dependencies(inner, definitions)))
             continue
         path.pop()
         if name not in done:
-            found[name] = None
-    return list(found)
+            ordered[name] = None
+    return list(ordered)
 
 
 def expanded(sentence: Sentence, needed: Definitions) -> Sentence | Diagnostic:
-    """The sentence with what its names stand for; F115 or F670 where that is too much.
+    """The sentence with its variables replaced by their values; F115 or F670 if it is too large.
 
     Args:
         sentence: as written.
-        needed: what it uses, in the order of `used`.
+        needed: the result of `used`.
     """
     if not needed:
         return sentence
@@ -100,11 +102,11 @@ def expanded(sentence: Sentence, needed: Definitions) -> Sentence | Diagnostic:
     depths: dict[str, int] = {}
     for name, value in needed.items():
         sizes[name], depths[name] = _size(value, sizes), _depth(value, depths)
-    if sum(_size(each, sizes) for each in conditions(sentence)) > MOST_PARTS:
+    if sum(_size(condition, sizes) for condition in conditions(sentence)) > MOST_PARTS:
         return _too_large(sentence.span)
-    if max(_depth(each, depths) for each in conditions(sentence)) > MOST:
+    if max(_depth(condition, depths) for condition in conditions(sentence)) > MOST:
         return too_deep(sentence)
-    return s.with_expressions(sentence, partial(_put_in, values=needed))
+    return s.with_expressions(sentence, partial(_substitute, values=needed))
 
 
 def _size(tree: e.Expression, sizes: Mapping[str, int]) -> int:
@@ -123,18 +125,18 @@ def _depth(tree: e.Expression, depths: Mapping[str, int]) -> int:
 
 
 @with_recursion_limit
-def _put_in(tree: e.Expression, values: Definitions) -> e.Expression:
-    """The expression with the values of its names, and of the names in these."""
+def _substitute(tree: e.Expression, values: Definitions) -> e.Expression:
+    """The expression with all defined names replaced, also within their values."""
     if isinstance(tree, e.Name):
-        return _placed(tree, tree.span, values) if tree.id in values else tree
-    return e.with_children(tree, [_put_in(part, values) for part in e.children(tree)])
+        return _with_span(tree, tree.span, values) if tree.id in values else tree
+    return e.with_children(tree, [_substitute(part, values) for part in e.children(tree)])
 
 
-def _placed(tree: e.Expression, span: Span | None, values: Definitions) -> e.Expression:
-    """The expression as if it stood there, from the outside in: each part is made once."""
+def _with_span(tree: e.Expression, span: Span | None, values: Definitions) -> e.Expression:
+    """The expanded expression with `span` as the span of each part; each part is built once."""
     while isinstance(tree, e.Name) and tree.id in values:
         tree = values[tree.id]
-    placed = e.with_children(tree, [_placed(part, span, values) for part in e.children(tree)])
+    placed = e.with_children(tree, [_with_span(part, span, values) for part in e.children(tree)])
     match placed:
         case e.Name() | e.Number() | e.Quantity() | e.Negation() | e.Call():
             return replace(placed, span=span)
@@ -147,7 +149,7 @@ def _placed(tree: e.Expression, span: Span | None, values: Definitions) -> e.Exp
 def _too_large(place: Span | None) -> Diagnostic:
     return Diagnostic(
         Code.TOO_LARGE,
-        f"with what its names stand for the sentence has more than {MOST_PARTS} parts",
+        f"with the values of its variables the sentence has more than {MOST_PARTS} parts",
         place,
-        help="let names stand for less, or bind some of them by a proposition",
+        help="shorten the values of variables, or bind some of them as propositions",
     )

@@ -1,6 +1,6 @@
-"""Expressions of bindings: text → `Expression`, and their dimensions.
+"""Parse the expressions of bindings, and compute their dimensions.
 
-A small language of its own, never Python's: signals, numbers with units, words in quotes,
+They are a small language, not Python: signals, numbers with units, words in quotes,
 comparisons, `and`/`or`/`not`, `abs`, `min`, `max`, `pre` and `... for 200 ms`.
 """
 
@@ -36,18 +36,18 @@ Kind = Dimension | None
 
 
 def parse(text: Span) -> e.Expression | Diagnostic:
-    """Read one expression, all of it; spans of the tree point into the text's source."""
+    """Parse the whole text as one expression; spans of the tree refer to the text's source."""
     try:
-        return cast(e.Expression, _Build(text).transform(_lark().parse(text.text)))
+        return cast(e.Expression, _TreeBuilder(text).transform(_lark().parse(text.text)))
     except UnexpectedInput as error:
         return _unexpected(error, text)
     except VisitError as error:
-        if isinstance(error.orig_exc, _UnitError):
+        if isinstance(error.orig_exc, _ExpressionError):
             return error.orig_exc.diagnostic
         raise
 
 
-class _UnitError(Exception):
+class _ExpressionError(Exception):
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
         self.diagnostic = diagnostic
@@ -68,7 +68,7 @@ def _parts(children: list[Any]) -> list[Any]:
 
 
 @v_args(inline=False)
-class _Build(Transformer_NonRecursive[Token, Any]):
+class _TreeBuilder(Transformer_NonRecursive[Token, Any]):
     def __init__(self, text: Span) -> None:
         super().__init__()
         self._text = text
@@ -88,7 +88,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
             text = str(token)
             before = len(text) - len(text.lstrip())
             place = self._span(token).part(before, len(text))
-            raise _UnitError(_bad_duration(text.strip(), place))
+            raise _ExpressionError(_bad_duration(text.strip(), place))
         return e.Persistence(arg, duration)
 
     def either(self, children: list[Any]) -> e.Expression:
@@ -126,7 +126,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         split = next(i for i, c in enumerate(text) if _begins_unit(text, i, c))
         name = text[split:].strip()
         if unit(name) is None:
-            raise _UnitError(unknown_unit(name, self._span(children[0])))
+            raise _ExpressionError(unknown_unit(name, self._span(children[0])))
         return e.Quantity(text[:split].strip(), name, self._span(children[0]))
 
     def number(self, children: list[Token]) -> e.Expression:
@@ -147,7 +147,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
 
 def _begins_unit(text: str, i: int, c: str) -> bool:
-    """Whether the unit begins here; the `e` of `1e3` does not begin one."""
+    """Whether the unit of a quantity begins at index `i`; the `e` of `1e3` is not a unit."""
     exponent = c in "eE" and text[i + 1 : i + 2].lstrip("+-")[:1].isdigit()
     signed = c in "eE" and text[i + 1 : i + 2] in ("+", "-") and text[i + 2 : i + 3].isdigit()
     return (c.isalpha() or c == "%") and not exponent and not signed
@@ -156,15 +156,15 @@ def _begins_unit(text: str, i: int, c: str) -> bool:
 def dimension(
     expression: e.Expression, kinds: Mapping[str, Kind], place: Span
 ) -> Kind | Diagnostic:
-    """What the expression is: a number of some dimension, or a truth value (None).
+    """The dimension of the expression; None for a truth value; F305-F309 if it has errors.
 
-    A word counts as the plain number that its signal has instead; where one may stand, `words`
-    knows.
+    A word counts as a plain number, the index of its value. `resolve_words` checks where a word is
+    allowed.
 
     Args:
         expression: the expression.
-        kinds: what each name in scope is.
-        place: where to point when a part has no place of its own.
+        kinds: name → its dimension, or None for a truth value.
+        place: the span of a diagnostic about a part without a span.
     """
     match expression:
         case e.Truth():
@@ -192,13 +192,13 @@ def dimension(
             if name not in FUNCTIONS:
                 return _unknown_function(name, span or place)
             if name == "abs" and len(args) != 1:
-                return _wrong_kind("`abs` takes one number", expression, span or place)
+                return _kind_error("`abs` takes one number", expression, span or place)
             if name == "pre" and len(args) != 2:
                 why = "`pre` takes the value at the first tick, and a number: `pre(0 m/s, speed)`"
-                return _wrong_kind(why, expression, span or place)
+                return _kind_error(why, expression, span or place)
             if ticks_back(expression) > MOST_TICKS_BACK:
-                why = f"it looks back by more than {MOST_TICKS_BACK} ticks"
-                return _wrong_kind(why, expression, span or place)
+                why = f"`pre` looks back by more than {MOST_TICKS_BACK} ticks"
+                return _kind_error(why, expression, span or place)
             return _numbers(list(args), kinds, span or place)
         case _:
             return _truths(e.children(expression), kinds, place)
@@ -214,24 +214,24 @@ def _truths(
         if isinstance(arg, e.Name) and kind == DIMENSIONLESS:
             continue  # 1 is true, and 0 is false
         if kind is not None:
-            return _wrong_kind("a truth value is needed, and this is a number", arg, place)
+            return _kind_error("a truth value is needed, and this is a number", arg, place)
     return None
 
 
 def _numbers(
     args: list[e.Expression], kinds: Mapping[str, Kind], place: Span
 ) -> Dimension | Diagnostic:
-    """The dimension that all of them share."""
+    """The common dimension of the operands."""
     common: Dimension | None = None
     for arg in args:
         kind = dimension(arg, kinds, place)
         if isinstance(kind, Diagnostic):
             return kind
         if kind is None:
-            return _wrong_kind("a number is needed, and this is a truth value", arg, place)
+            return _kind_error("a number is needed, and this is a truth value", arg, place)
         if common is not None and kind != common:
             return _mismatch(
-                f"{_in_words(common)} cannot be compared with or added to {_in_words(kind)}",
+                f"{_describe(common)} cannot be compared with or added to {_describe(kind)}",
                 arg,
                 place,
             )
@@ -264,27 +264,27 @@ def _power(
     exact = Fraction(exponent.digits) if isinstance(exponent, e.Number) else Fraction(0)
     times = int(exact)
     if times != exact or not 1 <= times <= e.MOST_EXPONENT:
-        message, part = f"an exponent is a whole number from 1 to {e.MOST_EXPONENT}", exponent
+        message, part = f"an exponent must be a whole number from 1 to {e.MOST_EXPONENT}", exponent
     elif not is_base(base):
-        message, part = "a power of this may grow too large", base
+        message, part = "a power of this expression may become too large", base
     else:
-        return tuple(times * each for each in dimension)
+        return tuple(times * power for power in dimension)
     return Diagnostic(
         Code.BAD_EXPRESSION,
         message,
         getattr(part, "span", None) or place,
-        help="write such as `x^2`, `10^3`, and a product for a power of a power",
+        help="write, for example, `x^2` or `10^3`; for a power of a power write a product",
     )
 
 
 def is_base(base: e.Expression) -> bool:
-    """Whether its powers stay small: it is one number, or measured and no power itself."""
+    """Whether the expression may be the base of a power: a number, or a signal term without `^`."""
     if not any(e.names(base)):
         return isinstance(base, e.Number | e.Quantity)
     return not any(isinstance(part, e.Arithmetic) and part.op == "^" for part in e.parts(base))
 
 
-def _in_words(dimension: Dimension) -> str:
+def _describe(dimension: Dimension) -> str:
     name = base_name(dimension)
     return f"a quantity in {name}" if name else "a number without a unit"
 
@@ -298,7 +298,7 @@ def _mismatch(message: str, part: e.Expression, place: Span) -> Diagnostic:
     )
 
 
-def _wrong_kind(message: str, part: e.Expression, place: Span) -> Diagnostic:
+def _kind_error(message: str, part: e.Expression, place: Span) -> Diagnostic:
     return Diagnostic(
         Code.BAD_EXPRESSION,
         message,
@@ -308,7 +308,7 @@ def _wrong_kind(message: str, part: e.Expression, place: Span) -> Diagnostic:
 
 
 MOST_TICKS_BACK = 16
-"""How deep `pre` may stand within itself."""
+"""The largest nesting depth of `pre`."""
 
 
 _PRE = frozenset({"pre", "preReal", "preInt"})
@@ -316,15 +316,15 @@ _PRE = frozenset({"pre", "preReal", "preInt"})
 
 @cache_by_identity
 def looks_back(part: e.Expression) -> bool:
-    """Whether it is a call of `pre`."""
+    """Whether the part is a call of `pre`, `preReal` or `preInt`."""
     return isinstance(part, e.Call) and part.name in _PRE
 
 
 @cache_by_identity
 def ticks_back(expression: e.Expression) -> int:
-    """By how many ticks its value looks back: calls of `pre` within each other.
+    """How many ticks its value looks back: the nesting depth of `pre`.
 
-    In a sentence it is called `preReal` or `preInt`.
+    In a sentence `pre` is called `preReal` or `preInt`.
     """
     deepest = 0
     waiting = [(expression, 0)]
@@ -337,7 +337,7 @@ def ticks_back(expression: e.Expression) -> int:
 
 
 def is_truth(expression: e.Expression) -> bool:
-    """Whether it is true or false by its outermost operator; a name may be either."""
+    """Whether the outermost operator gives a truth value; False for names and calls."""
     numbers = (e.Number, e.Quantity, e.Word, e.Negation, e.Arithmetic, e.Call, e.Name)
     return not isinstance(expression, numbers)
 
@@ -348,9 +348,9 @@ def plain_percents(
     """F338 for each comparison of a signal in percent with a plain number above 1.
 
     Args:
-        expression: an expression whose dimensions are right.
+        expression: an expression with consistent dimensions.
         percents: the names of the signals in percent.
-        place: where to point when the number has no place of its own.
+        place: the span of a diagnostic about a number without a span.
     """
     for part in e.children(expression):
         yield from plain_percents(part, percents, place)
@@ -364,7 +364,8 @@ def plain_percents(
         if Fraction(limit.digits) > 1:
             yield Diagnostic(
                 Code.PLAIN_PERCENT,
-                f"`{', '.join(sorted(measured))}` is in %, and {limit.digits} is no percentage: it "
+                f"`{', '.join(sorted(measured))}` is in %, and {limit.digits} is not a "
+                "percentage: it "
                 f"is {limit.digits} times 100 %",
                 limit.span or place,
                 help=f"write `{limit.digits} %`",
@@ -375,7 +376,7 @@ def plain_percents(
 def _bad_duration(text: str, span: Span) -> Diagnostic:
     return Diagnostic(
         Code.UNKNOWN_UNIT,
-        f"`{text}` is no duration",
+        f"`{text}` is not a duration",
         span,
         help="write `for 200 ms`; units are ns, us, ms, s, min, h",
     )
@@ -395,18 +396,18 @@ def _unknown_name(id: str, kinds: Mapping[str, Kind], span: Span) -> Diagnostic:
 def _ambiguous(name: str, part: str, span: Span) -> Diagnostic:
     return Diagnostic(
         Code.AMBIGUOUS_UNIT,
-        f"`{part}` in `{name}` may be a unit or what is declared as `{part}`",
+        f"`{part}` in `{name}` is ambiguous: a unit, or the declared `{part}`",
         span,
-        help=f"give `{part}` a name that is no unit; a quotient may be written `(2 m) / {part}`",
+        help=f"rename `{part}`; to divide by it, write `(2 m) / {part}`",
     )
 
 
 def _unknown_function(name: str, span: Span) -> Diagnostic:
     return Diagnostic(
         Code.UNKNOWN_NAME,
-        f"`{name}` is no function of bindings",
+        f"unknown function `{name}`",
         span,
-        help=f"there are {', '.join(FUNCTIONS)}",
+        help=f"bindings have the functions {', '.join(FUNCTIONS)}",
     )
 
 
@@ -414,9 +415,9 @@ def _unexpected(error: UnexpectedInput, text: Span) -> Diagnostic:
     if text.text.startswith("TODO"):
         return Diagnostic(
             Code.BAD_EXPRESSION,
-            "the expression is still to be written",
+            "the expression is not written yet",
             text,
-            help="say when the proposition is true, such as `min_range < 5 cm`",
+            help="write when the proposition is true, such as `min_range < 5 cm`",
         )
     at = error.pos_in_stream
     length = 1
@@ -430,5 +431,5 @@ def _unexpected(error: UnexpectedInput, text: Span) -> Diagnostic:
         Code.BAD_EXPRESSION,
         message,
         span,
-        help="write such as `min_range < 5 cm`, `abs(v) < 0.01 m/s and ready for 200 ms`",
+        help="write, for example, `min_range < 5 cm` or `abs(v) < 0.01 m/s and ready for 200 ms`",
     )

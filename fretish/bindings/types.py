@@ -1,7 +1,7 @@
-"""Variables are used as their declared type allows: FRET's `boolean`, `integer`, `double`, ...
+"""Check that variables are used as their declared type allows: `boolean`, `integer`, `double`, ...
 
-Only what is certainly wrong is a mistake: a truth value that is compared with a number, a whole
-number that is to be equal to 2.5. A type that is none of these is not looked at.
+Only certain errors are reported, such as a truth value that is compared with a number, or an
+integer that is compared with 2.5. Types that are not FRET's are ignored.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ Variables = Mapping[str, Variable]
 
 
 class Kind(Enum):
-    """What a variable or a part of an expression is."""
+    """The kind of value of a variable or of a part of an expression."""
 
     TRUTH = auto()
     NUMBER = auto()
     WHOLE = auto()
     """A whole number."""
     NATURAL = auto()
-    """A whole number, and not below 0."""
+    """A whole number of at least 0."""
 
     @property
     def is_number(self) -> bool:
@@ -46,32 +46,36 @@ _KINDS = (
 
 
 def kind(type_name: str) -> Kind | None:
-    """What a variable of FRET's type is; None for any other type."""
+    """The kind of a FRET data type; None for any other type."""
     name = " ".join(type_name.lower().split())
-    return next((found for form, found in _KINDS if re.fullmatch(form, name)), None)
+    return next((value_kind for pattern, value_kind in _KINDS if re.fullmatch(pattern, name)), None)
 
 
-def misuses(expression: e.Expression, variables: Variables, place: Span) -> Iterator[Diagnostic]:
-    """F344 for each place of a truth value where a variable is used against its type.
+def type_errors(
+    expression: e.Expression, variables: Variables, place: Span
+) -> Iterator[Diagnostic]:
+    """F344 for each use of a variable in a Boolean expression that its type does not allow.
 
     Args:
-        expression: a truth value.
-        variables: that are declared, each with its type.
-        place: where to point when a part has no place of its own.
+        expression: a Boolean expression.
+        variables: the declared variables.
+        place: the span of a diagnostic about a part without a span.
     """
     yield from _Check(variables, place).truth(expression)
 
 
-def misuses_of_value(variable: Variable, variables: Variables) -> Iterator[Diagnostic]:
-    """F344 where a variable stands for what is not of its type, and for misuses within that."""
+def value_type_errors(variable: Variable, variables: Variables) -> Iterator[Diagnostic]:
+    """F344 if the value of a variable does not have its type, and for each misuse in the value."""
     value, place = variable.value, variable.span
     assert value is not None
     assert place is not None
     check = _Check(variables, place)
     declared, actual = kind(variable.type), check.kind(value)
     if declared is not None and actual is not None and declared.is_number != actual.is_number:
-        yield _misuse(
-            f"is declared {variable.type}, and stands for a {_words(actual)}", variable.name, place
+        yield _type_error(
+            f"is declared {variable.type}, and its value is a {_kind_name(actual)}",
+            variable.name,
+            place,
         )
     elif declared is not None:
         yield from check.fits(variable.name, declared, value)
@@ -84,18 +88,18 @@ _NUMBERS = frozenset("preInt preReal absReal absInt maxReal maxInt minReal minIn
 
 
 class _Check:
-    """Walks over an expression with what each part has to be."""
+    """Checks an expression with the kind that each part must have."""
 
     def __init__(self, variables: Variables, place: Span) -> None:
         self._variables = variables
         self._place = place
 
     def truth(self, tree: e.Expression) -> Iterator[Diagnostic]:
-        """What is wrong with a part that is a truth value."""
+        """The errors of a part that must be a truth value."""
         match tree:
             case e.Name(id, span):
                 if (declared := self._declared(id)) is not None and declared.is_number:
-                    yield self._wanted("truth value", id, span)
+                    yield self._wrong_kind("truth value", id, span)
             case e.Comparison():
                 yield from self._comparison(tree)
             case e.Call(name, args):
@@ -105,11 +109,11 @@ class _Check:
                     yield from self.truth(part)
 
     def number(self, tree: e.Expression) -> Iterator[Diagnostic]:
-        """What is wrong with a part that is a number."""
+        """The errors of a part that must be a number."""
         match tree:
             case e.Name(id, span):
                 if self._declared(id) is Kind.TRUTH:
-                    yield self._wanted("number", id, span)
+                    yield self._wrong_kind("number", id, span)
             case e.Call(name, args):
                 yield from self._arguments(name, args)
             case _:
@@ -117,7 +121,7 @@ class _Check:
                     yield from self.number(part)
 
     def kind(self, tree: e.Expression) -> Kind | None:
-        """What a part is; None where that is not certain."""
+        """The kind of a part; None if it is not certain."""
         match tree:
             case e.Name(id):
                 return self._declared(id)
@@ -129,21 +133,21 @@ class _Check:
                 return Kind.TRUTH
 
     def fits(self, id: str, declared: Kind, value: e.Expression) -> Iterator[Diagnostic]:
-        """F344 where a whole number would have to be a constant that is none."""
+        """F344 if a constant that an integer variable is compared with is not in its range."""
         exact = self._constant(value)
         if exact is None or declared not in (Kind.WHOLE, Kind.NATURAL):
             return
         if exact.denominator != 1:
-            why = "a whole number, and never"
+            why = "not a whole number"
         elif exact < 0 and declared is Kind.NATURAL:
-            why = "never below 0, and so never"
+            why = "below 0"
         else:
             return
         place = getattr(value, "span", None) or self._place
-        yield _misuse(f"is declared {self._type(id)}: {why} {printed(value)}", id, place)
+        yield _type_error(f"is declared {self._type(id)}, and {printed(value)} is {why}", id, place)
 
     def _comparison(self, tree: e.Comparison) -> Iterator[Diagnostic]:
-        """Two truth values may be equal, but for that numbers are compared."""
+        """Truth values can be compared by `=` and `!=`; every other comparison needs numbers."""
         kinds = [self.kind(side) for side in (tree.left, tree.right)]
         if tree.op not in ("=", "!=") or any(k is not None and k.is_number for k in kinds):
             yield from self.number(tree.left)
@@ -154,7 +158,7 @@ class _Check:
                     yield from self.fits(name.id, declared, other)
 
     def _arguments(self, name: str, args: tuple[e.Expression, ...]) -> Iterator[Diagnostic]:
-        """What functions take that are not FRETish's own is theirs."""
+        """Check the arguments of a call; a function that is not FRETish's accepts any kind."""
         for i, arg in enumerate(args):
             last = i == len(args) - 1
             if name in _TRUTHS or (name in _LAST_TRUTH and last):
@@ -171,7 +175,7 @@ class _Check:
         return self._variables[id].type if id in self._variables else ""
 
     def _constant(self, tree: e.Expression) -> Fraction | None:
-        """A number that is written as such, or a name that stands for one."""
+        """The value of a literal, or of a variable whose value is one; else None."""
         match tree:
             case e.Number(digits):
                 try:
@@ -187,16 +191,16 @@ class _Check:
             case _:
                 return None
 
-    def _wanted(self, what: str, id: str, span: Span | None) -> Diagnostic:
+    def _wrong_kind(self, what: str, id: str, span: Span | None) -> Diagnostic:
         why = f"is declared {self._type(id)}, and a {what} is needed here"
-        return _misuse(why, id, span or self._place)
+        return _type_error(why, id, span or self._place)
 
 
-def _words(kind: Kind) -> str:
+def _kind_name(kind: Kind) -> str:
     return "truth value" if kind is Kind.TRUTH else "number"
 
 
-def _misuse(why: str, id: str, place: Span) -> Diagnostic:
+def _type_error(why: str, id: str, place: Span) -> Diagnostic:
     return Diagnostic(
         Code.VARIABLE_TYPE,
         f"`{id}` {why}",

@@ -1,7 +1,7 @@
-"""Everything fretc can say about its input: a code, a place, a way out.
+"""Diagnostics: code, message, span and help; and the table of all codes.
 
-A user's mistake is a `Diagnostic`, returned. One function per message lives beside the check
-that needs it; the codes live here, because a number is for life: never moved, never reused.
+A user's mistake is returned as a `Diagnostic`. The function that makes it is beside the check that
+needs it. The numbers of codes are permanent: never moved, never reused.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Severity(StrEnum):
 
 
 class Code(Enum):
-    """Every message that fretc can give: its stable number and what it is about.
+    """Every code of a message: its permanent number and its summary.
 
     F1 syntax, F2 meaning, F3 bindings, units and clock, F4 logs, F5 traceability,
     F6 targets, F9 use of the command.
@@ -38,25 +38,25 @@ class Code(Enum):
     NO_SENTENCE = ("F106", "there is no sentence")
     MISSPELT = ("F107", "a key word of FRETish is misspelt")
     BAD_DURATION = ("F108", "a duration is not a whole number of a known unit")
-    RESERVED = ("F109", "a reserved word stands where a name should")
+    RESERVED = ("F109", "a reserved word is used as a name")
     BAD_PROBABILITY = ("F110", "the probability is out of range")
     MISSING_COMPONENT = ("F111", "the component is missing")
-    WRONG_KIND = ("F112", "a number stands where a truth value should, or the other way round")
+    WRONG_KIND = ("F112", "a number is used as a truth value, or a truth value as a number")
     UNCLOSED_HEADER = ("F113", "the header has no closing `+++`")
     TOO_DEEP = ("F115", "the sentence is nested too deep")
     NAME_CLASH = ("F116", "two names become one in formulas")
-    SEVERAL_SENTENCES = ("F117", "a second sentence stands without a line `+++` before it")
+    SEVERAL_SENTENCES = ("F117", "a second sentence has no line `+++` before it")
     FREE_TEXT = ("F114", "free text is kept and not formalized")
 
     DUPLICATE_ID = ("F201", "two requirements have the same id")
     PREDICATE_NOT_FORMALIZED = (
         "F202",
-        "a temporal predicate looks one way in time only",
+        "one of the formulas cannot express a temporal predicate",
     )
     EDGE_TRIGGER = ("F204", "`when` and `if` trigger where the condition becomes true")
     NO_TIMING = ("F205", "no timing means eventually")
-    SHORT_SCOPE = ("F206", "a deadline behind the end of its scope requires nothing")
-    FIRST_RUN_ONLY = ("F207", "`after` looks at the first stretch of its mode only")
+    SHORT_SCOPE = ("F206", "a deadline after the end of its scope requires nothing")
+    FIRST_RUN_ONLY = ("F207", "`after` uses only the first stretch of its mode")
     BEFORE_NOTHING = ("F208", "`before` requires nothing when its mode holds at the start")
     NEVER_DECIDED = ("F203", "no run can ever decide the requirement")
     OWN_TRIGGER = ("F209", "a requirement is triggered by what its component commands")
@@ -72,39 +72,39 @@ class Code(Enum):
     BAD_EXPRESSION = ("F308", "the expression of a binding cannot be read")
     UNKNOWN_NAME = ("F309", "an expression names something that is not declared")
     PARAMETER_DRIFT = ("F310", "the requirement and its binding state different numbers")
-    BLIND_ZONE = ("F311", "the bound lies where the sensor cannot see")
+    BLIND_ZONE = ("F311", "the bound lies where the sensor reports no values")
     NO_CLOCK = ("F312", "the sentence names a unit of time, but no clock says what a tick is")
     MESSAGE_CLOCK = ("F313", "a clock that ticks by message cannot count seconds")
     NEVER_CHANGED = ("F314", "a proposition never changed in the logs")
-    SLOW_TOPIC = ("F315", "a topic comes less often than the bindings need it")
+    SLOW_TOPIC = ("F315", "a topic sends fewer messages than there are ticks")
     UNKNOWN_BETWEEN = ("F318", "a signal is unknown between the messages of its topic")
     BAD_MODALITY = ("F316", "the modality of a proposition cannot be emitted")
 
     SAME_TOPIC = ("F320", "two ends of the interceptor are one topic")
     BELOW_PERIOD = ("F321", "a duration is shorter than a tick of the interceptor's timer")
-    NO_TIMER = ("F322", "an interceptor without a timer is asked to measure time")
+    NO_TIMER = ("F322", "an interceptor without a timer cannot measure time")
     NO_INTERCEPTOR = ("F323", "the bindings declare no interceptor")
 
     BAD_PHASE = ("F337", "the phase of the clock is not within a tick")
-    BAD_LATENESS = ("F355", "the lateness of the clock is no duration that a watch can wait")
-    PLAIN_PERCENT = ("F338", "a plain number stands beside a signal in percent")
-    WHICH_UNIT = ("F350", "a bare number stands beside signals in several units")
-    UNIT_IN_SENTENCE = ("F352", "a number of a sentence has a unit, which FRET does not know")
+    BAD_LATENESS = ("F355", "the lateness of the clock is not a duration of at most a minute")
+    PLAIN_PERCENT = ("F338", "a plain number is compared with a signal in percent")
+    WHICH_UNIT = ("F350", "the unit of a bare number is ambiguous")
+    UNIT_IN_SENTENCE = ("F352", "a number in a sentence has a unit, which FRET cannot read")
     SEVERAL_AGGREGATES = (
         "F353",
-        "samples of a tick combine in several ways",
+        "the signals of a comparison have different `agg`",
     )
     NO_ROLE = ("F354", "a variable has no declared role")
     PROSE_DRIFT = ("F351", "title or text state another number than the requirement")
     DEFINITION_CIRCLE = ("F342", "the values of variables form a cycle")
     DOUBLE_DEFINITION = ("F343", "a name is defined in two ways")
-    VARIABLE_TYPE = ("F344", "a variable is used against its type")
-    AMBIGUOUS_UNIT = ("F339", "a part of a unit is the name of a signal too")
-    UNKNOWN_WORD = ("F340", "a word is none of the values of its signal")
-    AMBIGUOUS_WORD = ("F341", "a word is the name of a signal too")
+    VARIABLE_TYPE = ("F344", "a variable is used against its declared type")
+    AMBIGUOUS_UNIT = ("F339", "a part of a unit is also the name of a signal")
+    UNKNOWN_WORD = ("F340", "a word is not in the `values` of its signal")
+    AMBIGUOUS_WORD = ("F341", "a value of a signal is also the name of another signal")
 
     UNREADABLE_LOG = ("F401", "the log cannot be read")
-    NOT_A_LOG = ("F402", "the file is not an MCAP log")
+    NOT_A_LOG = ("F402", "the file is not a log")
     TRUNCATED_LOG = ("F403", "the log ends in the middle")
     DAMAGED_CHUNK = ("F404", "a part of the log is damaged")
     NO_TOPIC = ("F405", "a topic of the bindings is not in the log")
@@ -117,28 +117,31 @@ class Code(Enum):
     BAD_MESSAGE = ("F412", "a message cannot be decoded")
     SPLIT_LOG = ("F413", "a run in several files cannot be read, or is not read, as one")
     LOST_PART = ("F414", "a file of a run in several files is lost")
-    BAG_FORMAT = ("F415", "the format of the log cannot show what MCAP shows")
-    ZERO_STAMP = ("F416", "messages of a topic have a zero for a time")
+    BAG_FORMAT = ("F415", "the format of the log cannot detect all damage")
+    ZERO_STAMP = ("F416", "messages of a topic have the time zero")
     CLOCK_JUMP = ("F417", "the clock of a topic jumps")
     MIXED_CLOCKS = ("F418", "the stamps of two topics are of different clocks")
     PROCESS_KILLED = ("F419", "the process that audited the log was killed")
     STILL_CLOCK = ("F420", "the clock of a topic stands still")
     SEVERAL_TYPES = ("F421", "a topic has messages of several types")
     REINDEXED = ("F422", "a reindexed bag has lost its last messages")
-    FOREIGN_VALUE = ("F423", "samples are none of the values that their signal may have")
-    NO_TRUTH = ("F424", "samples that stand for a truth value are neither 0 nor 1")
+    FOREIGN_VALUE = ("F423", "samples are not in the `values` of their signal")
+    NO_TRUTH = ("F424", "samples of a truth value are neither 0 nor 1")
 
     PHASE_DEPENDENT = ("F425", "a verdict depends on the phase of the ticks")
     PHASES_NOT_JUDGED = ("F426", "a verdict was not computed for all phases of the ticks")
     PHASE_PROPOSED = ("F427", "another phase of the ticks gives the same verdicts with more margin")
     NO_WAY = ("F428", "the map has nothing to draw")
-    LATE_MESSAGES = ("F429", "messages came later than ticks wait for them")
-    GRID_OF_WATCH = ("F432", "the grid of ticks is that of the watch that recorded the log")
-    FOREIGN_GRID = ("F433", "the log names a grid of ticks that does not fit it")
+    LATE_MESSAGES = ("F429", "messages arrived later than `lateness` allows")
+    GRID_OF_WATCH = ("F432", "the ticks begin where those of the recording watch began")
+    FOREIGN_GRID = ("F433", "the log names a beginning of the ticks that does not match it")
     MISSED = ("F434", "the watch that recorded the log has missed messages")
     GROWN = ("F431", "a log grew while it was read")
-    LOG_OUT_OF_TIME = ("F440", "the audit of a log took longer than it may")
-    AUDIT_OUT_OF_TIME = ("F441", "the time of an audit was over before all logs were judged")
+    LOG_OUT_OF_TIME = ("F440", "the audit of a log took longer than allowed")
+    AUDIT_OUT_OF_TIME = (
+        "F441",
+        "the time limit of an audit was reached before all logs were audited",
+    )
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")
@@ -162,54 +165,54 @@ class Code(Enum):
     PARENTS_IN_A_CIRCLE = ("F526", "parents of requirements form a cycle")
     REACHES_NO_HAZARD = ("F527", "the parents of a requirement lead to no hazard")
     MISSPELT_METHOD = ("F528", "a planned method is misspelt")
-    UNREVIEWED_VIOLATION = ("F529", "a lock would accept a violation that was not named")
+    UNREVIEWED_VIOLATION = ("F529", "a lock would accept a violated requirement")
     MERGED_VARIABLE = ("F530", "two variables of an export become one")
     RENAMED = ("F531", "a requirement of an export has another id now")
     RETIRED_SINCE_REVIEW = ("F540", "a requirement was retired since its review")
     OUTDATED_RESULT = ("F541", "a lock would accept an outdated result")
-    UNKNOWN_LOG = ("F542", "a lock would accept a verdict on a log that nothing identifies")
+    UNKNOWN_LOG = ("F542", "a lock would accept a verdict on a log without a SHA-256")
     IDLE_WAIVER = ("F543", "a waiver covers nothing")
     NOT_REVIEWED = ("F544", "a requirement was never reviewed, and others were")
-    BAD_ACCEPTANCE = ("F549", "an acceptance can answer no warning")
-    IDLE_ACCEPTANCE = ("F550", "an acceptance answers no warning that is there")
+    BAD_ACCEPTANCE = ("F549", "an acceptance names no warning that can be accepted")
+    IDLE_ACCEPTANCE = ("F550", "an acceptance matches no present warning")
     BAD_LABEL = ("F551", "a label of runs is wrong")
     LABEL_CONFLICT = ("F552", "a run has several values of one label")
     NO_LABEL = ("F553", "a run has no value of a label")
     NOT_COMPARABLE = ("F560", "audits cannot be compared")
-    UNREALIZABLE = ("F561", "requirements cannot be kept together")
-    NOT_ANALYZED = ("F562", "it is not known whether requirements can be kept together")
+    UNREALIZABLE = ("F561", "requirements are not realizable together")
+    NOT_ANALYZED = ("F562", "it is not known whether requirements are realizable together")
     BAD_MANIFEST = ("F545", "the manifest cannot be read")
-    OTHER_TEXTS = ("F546", "the texts of a review are not those of its fingerprints")
+    OTHER_TEXTS = ("F546", "the texts of a review do not match its fingerprints")
     BAD_SIGNERS = ("F548", "the list of signers cannot be read")
     BAD_SIGNATURES = ("F556", "signatures cannot be read")
     BROKEN_SIGNATURE = ("F557", "a signature does not verify")
-    NOT_SIGNED = ("F558", "something is not signed by the key that is asked for")
-    IDLE_SIGNATURE = ("F559", "a signature does not count for what it is about")
+    NOT_SIGNED = ("F558", "a required signature is missing")
+    IDLE_SIGNATURE = ("F559", "a signature does not cover the present content")
     SEVERAL_VERDICTS = ("F555", "audits of one log have several verdicts of a requirement")
     NO_SUCH_REQUIREMENT = ("F515", "there is no requirement or message code of that name")
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")
-    BAD_MONITOR = ("F602", "the file is no generated monitor")
-    BAD_PROPERTY = ("F603", "AJPF would read a property in another way than it is written")
-    NOT_PROVED = ("F604", "the form for AJPF is not proved equal to the requirement")
+    BAD_MONITOR = ("F602", "the file is not a generated monitor")
+    BAD_PROPERTY = ("F603", "AJPF would misread a property")
+    NOT_PROVED = ("F604", "the formula for AJPF is not proved equivalent to the requirement")
     WEAKENED = ("F605", "the emitted file is weaker than the requirement")
     NO_TIME_TO_REACT = ("F606", "no agent that takes time to react satisfies the property")
-    STATE_ZERO = ("F607", "the property demands something of the first state")
-    BAD_AGENT = ("F610", "MCAPL would read an agent in another way than it is written")
-    BEYOND_MODEL = ("F611", "the agent uses what the model of agents does not have")
+    STATE_ZERO = ("F607", "the property requires something of the first state")
+    BAD_AGENT = ("F610", "MCAPL would misread an agent")
+    BEYOND_MODEL = ("F611", "the agent uses an unsupported part of Gwendolen")
     OTHER_AGENT = ("F612", "a property is about another agent than the given one")
-    BAD_PERCEPT = ("F613", "a percept cannot be drawn by the environment")
-    NOT_KEPT = ("F614", "the agent that would be generated does not keep the requirement")
-    OVER_RESPONDS = ("F615", "the agent that is generated responds more often than is demanded")
+    BAD_PERCEPT = ("F613", "a proposition cannot be a percept")
+    NOT_KEPT = ("F614", "the generated agent would violate the requirement")
+    OVER_RESPONDS = ("F615", "the generated agent responds more often than required")
     BAD_AJPF_RESULT = ("F616", "a result of AJPF cannot be read")
     FOREIGN_AJPF_RESULT = ("F617", "a result of AJPF belongs to no current requirement")
-    NOT_OF_ALL = ("F618", "an output for all requirements cannot be made for some of them")
+    NOT_OF_ALL = ("F618", "an output for all requirements cannot include some of them")
     TOO_LARGE = ("F670", "the output would be too large")
 
     SHORT_HOLD = ("F630", "the interceptor holds zero no longer than messages may be lost")
-    UNWATCHED = ("F631", "the interceptor does not notice that a channel is silent")
-    EVENT_DRIVEN = ("F632", "the interceptor speaks only when a command comes")
-    LATCHING = ("F633", "the interceptor's first stop is for ever")
+    UNWATCHED = ("F631", "the interceptor does not detect silence on a channel")
+    EVENT_DRIVEN = ("F632", "the interceptor publishes only when a command arrives")
+    LATCHING = ("F633", "the interceptor's first stop is permanent")
     NO_ATTRIBUTION = ("F634", "a package has no maintainer or licence")
 
     NO_SUCH_FILE = ("F901", "there is no such file")
@@ -218,7 +221,7 @@ class Code(Enum):
     NOT_TEXT = ("F904", "the file is not UTF-8 text")
     NOT_WRITTEN = ("F905", "the output cannot be written")
     UNKNOWN_COMMAND = ("F906", "there is no such command")
-    BAD_USAGE = ("F907", "the command is used in a wrong way")
+    BAD_USAGE = ("F907", "the options or arguments are wrong")
     MISSING_EXTRA = ("F908", "an optional part of fretc is not installed")
     NOTHING_TO_DO = ("F909", "there is nothing to do")
     NO_FLEET = ("F910", "the fleet cannot be reached")
@@ -226,7 +229,7 @@ class Code(Enum):
     BUSY = ("F912", "another audit writes the same evidence")
     BAD_QUERY = ("F913", "the query cannot be answered")
     BAD_SCENARIO = ("F914", "the scenario of a simulation cannot be run")
-    NO_KEY = ("F920", "the user has no key, so nothing is kept of a stopped audit")
+    NO_KEY = ("F920", "the user has no key, so results of an interrupted audit are not kept")
     FOREIGN_PLACE = ("F921", "evidence names a log outside the permitted places")
     TOO_COSTLY = ("F930", "the input needs more CPU time or memory than allowed")
     NOTICE_FAILED = ("F922", "the command of `--notify` did not take the summary")
@@ -254,18 +257,18 @@ class Code(Enum):
 
     @property
     def number(self) -> str:
-        """`F104`: stable for life."""
+        """The permanent number: `F104`."""
         return str(self.value[0])
 
     @property
     def summary(self) -> str:
-        """What the code is about, in one phrase."""
+        """A phrase that summarizes the code."""
         return str(self.value[1])
 
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One mistake or warning: what is wrong, where, and what to do."""
+    """An error, warning or note: what is wrong, where, and how to fix it."""
 
     code: Code
     message: str
@@ -273,41 +276,42 @@ class Diagnostic:
     help: str | None = None
     severity: Severity = Severity.ERROR
     paste: str = ""
-    """Lines to put into a file as they are, which `help` speaks of."""
+    """Lines that `help` says to paste into a file."""
     subject: str = ""
-    """The topic or the hazard that a warning is about, by which it can be accepted."""
+    """The topic or hazard of a warning, by which it can be accepted."""
     accepted: str = ""
-    """The reason for which the project accepts a warning; it stays one, and is shown."""
+    """The reason why the project accepts a warning, which is displayed nevertheless."""
     fix: Fix | None = None
-    """What `help` says, where that is another text in the place of a span."""
+    """The fix in `help` as a value, if it replaces a span by a text."""
 
     @property
     def is_error(self) -> bool:
-        """Whether it stops the command."""
+        """Whether the diagnostic is an error, which stops the command."""
         return self.severity is Severity.ERROR
 
     @property
     def is_open(self) -> bool:
-        """Whether it is a warning that nobody has accepted."""
+        """Whether the diagnostic is a warning that was not accepted."""
         return self.severity is Severity.WARNING and not self.accepted
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
-    """Whether any of them is an error."""
+    """Whether any diagnostic is an error."""
     return any(diagnostic.is_error for diagnostic in diagnostics)
 
 
 def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """The known word that is nearest to a misspelt one, if one is near.
+    """The known word that is most similar to a misspelt one, or None.
 
-    It has the same numbers and operators: `battery < 10` is another claim than `battery < 20`.
+    Only words with the same numbers and operators are suggested: `battery < 10` and `battery < 20`
+    are different claims.
 
     Args:
-        word: what was written.
-        known: what may be written.
-        cutoff: how near, from 0 (anything) to 1 (equal), as `difflib` measures it.
+        word: the misspelt word.
+        known: the correct words.
+        cutoff: the least similarity, from 0 (any) to 1 (equal), as `difflib` measures it.
     """
-    from difflib import get_close_matches  # where something is misspelt
+    from difflib import get_close_matches  # Imported here to make the start faster.
 
     by_folded = {name.casefold(): name for name in known if _claim(name) == _claim(word)}
     near = get_close_matches(word.casefold(), by_folded, n=1, cutoff=cutoff)
@@ -315,6 +319,6 @@ def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | No
 
 
 def _claim(word: str) -> list[str]:
-    """The numbers and operators of a word, in its order."""
-    found: list[str] = re.findall(r"\d+|[<>=!&|]+", word)
-    return [part.lstrip("0") if part.isdigit() else part for part in found]
+    """The numbers and operators in a word, in order."""
+    parts: list[str] = re.findall(r"\d+|[<>=!&|]+", word)
+    return [part.lstrip("0") if part.isdigit() else part for part in parts]

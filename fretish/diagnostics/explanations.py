@@ -1,7 +1,7 @@
-"""What a code means, why it matters, and how to fix it: data in `fretish/codes/*.toml`.
+"""The explanations of all codes: cause, fix and example, from `fretish/diagnostics/codes/*.toml`.
 
-An example is a text that gives the code (`wrong`) and the same one fixed. It is a requirement file
-(`kind = "fret"`, the default; `declared` are the bindings beside it) or a bindings file.
+An example has a text that gives the code (`wrong`) and the same text fixed. Each is a requirement
+file (`kind = "fret"`, the default; `declared` holds its bindings) or a bindings file.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from fretish.diagnostics.diagnostic import Code
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """The cause of a code, its remedy, and an example."""
+    """The cause of a code, its fix, and an example."""
 
     cause: str
     fix: str
     kind: str = "fret"
-    """`fret` or `bindings`: which file the example is."""
+    """The kind of file of the example: `fret` or `bindings`."""
     wrong: str = ""
-    """Empty where there is no example."""
+    """The text that gives the code; empty if there is no example."""
     fixed: str = ""
     declared: str = ""
-    """The bindings that the example stands beside."""
+    """The bindings of the example."""
     accept: str = ""
-    """What a warning of the code is about, and so how it is accepted: a key of `ACCEPTANCES`.
+    """The subject of a warning, a key of `ACCEPTANCES`, which determines where it is accepted.
 
-    Empty where it cannot be: an error, and a warning that a verdict may be wrong, unknown, or about
-    something else, have to be fixed; a change since a review has to be reviewed.
+    Empty if it cannot be accepted: errors, warnings that a verdict may be wrong, unknown or about
+    something else, and changes since a review.
     """
 
 
@@ -42,31 +42,31 @@ ACCEPTANCES = {
     "hazard": ("fretc.toml", '[accept]\n{0} = {{ "HAZ-1" = "the reason" }}'),
     "project": ("fretc.toml", '[accept]\n{0} = "the reason"'),
 }
-"""Where a warning is accepted, and what is written there, by what it is about."""
+"""Subject of a warning → the file in which it is accepted, and the text to write there."""
 
 
 @cache
 def explanations() -> dict[str, Explanation]:
-    """All of them, by the number of the code."""
+    """Number of a code → its explanation."""
     kinds = dict.fromkeys(code.number[1] for code in Code)
     return {number: each for kind in kinds for number, each in _of_kind(kind).items()}
 
 
 def explanation(code: Code) -> Explanation:
-    """That of one code: those of other kinds are not read."""
+    """The explanation of one code; only the file with this code is read."""
     return _of_kind(code.number[1])[code.number]
 
 
 @cache
 def _of_kind(kind: str) -> dict[str, Explanation]:
-    """Those of the codes whose number begins with a digit, from the file of that digit."""
+    """The explanations of the codes whose number begins with this digit."""
     (file,) = (Path(__file__).parent / "codes").glob(f"{kind}_*.toml")
     tables = tomllib.loads(file.read_text(encoding="utf-8"))
     return {number: Explanation(**fields) for number, fields in tables.items()}
 
 
 def text(code: Code) -> str:
-    """What the terminal shows."""
+    """The explanation of a code as text for the terminal."""
     explanation = explanations().get(code.number)
     blocks = [f"{code.number}  {code.summary}\n"]
     if explanation is None:
@@ -107,7 +107,7 @@ def _example(name: str, example: str) -> str:
 
 
 def as_record(code: Code) -> dict[str, Any]:
-    """`{code, summary, cause, fix, example}`; null where there is none."""
+    """The explanation as JSON: `{code, summary, cause, fix, example}`; absent parts are null."""
     explanation = explanations().get(code.number)
     example = None
     if explanation is not None and explanation.wrong:

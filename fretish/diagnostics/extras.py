@@ -1,4 +1,4 @@
-"""Optional parts of fretc: whether what one needs is installed, and how to install it."""
+"""Optional dependencies of fretc: check them, and say how to install them."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
 
 
-def install(extra: str) -> str:
-    """How to get an optional part of fretc."""
+def install_help(extra: str) -> str:
+    """The help text that says how to install an extra."""
     return (
         f"install the extra: pip install 'fretc[{extra}]' (in a checkout: pip install '.[{extra}]')"
     )
@@ -19,20 +19,20 @@ def install(extra: str) -> str:
 def missing_extra(
     need: str, packages: Sequence[str], extra: str, place: Span | None = None
 ) -> Diagnostic:
-    """F908.
+    """F908 for missing packages.
 
     Args:
-        need: what is asked for, and its verb: `signatures need`.
-        packages: those that it lacks.
-        extra: the one that installs them.
-        place: where it is asked for, if that is a place of a file.
+        need: the feature and a verb: `signatures need`.
+        packages: the missing packages.
+        extra: the extra that installs them.
+        place: the span that needs the feature, if there is one.
     """
     *some, last = [f"`{name}`" for name in packages]
     names = f"{', '.join(some)} and {last}" if some else last
-    return Diagnostic(Code.MISSING_EXTRA, f"{need} {names}", place, install(extra))
+    return Diagnostic(Code.MISSING_EXTRA, f"{need} {names}", place, install_help(extra))
 
 
 def unless_installed(need: str, packages: Sequence[str], extra: str) -> Diagnostic | None:
-    """F908 where one of these packages is not installed; none of them is imported."""
+    """F908 if one of the packages is not installed; the check imports none of them."""
     absent = [name for name in packages if find_spec(name) is None]
     return missing_extra(need, absent, extra) if absent else None

@@ -1,4 +1,4 @@
-"""What to write in the place of a mistake, as a value: a person reads it, a program applies it."""
+"""Fixes: replacements of spans that are displayed as help, or applied by `check --fix`."""
 
 from __future__ import annotations
 
@@ -10,70 +10,68 @@ from fretish.diagnostics.source import Source, Span
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """Another text in the place of a span."""
+    """The replacement of a span by a text."""
 
     span: Span
-    """What is replaced; empty where something is put in."""
+    """The replaced span; empty for an insertion."""
     text: str
-    """Empty where the span is left out."""
+    """The new text; empty for a removal."""
     is_safe: bool = False
-    """Whether it can say nothing but what the author means: `fretc check --fix` applies it."""
+    """Whether the author can only mean this text; `fretc check --fix` applies safe fixes."""
 
     @property
     def help(self) -> str:
-        """The fix in words: an order where it is safe, a question where it is not."""
+        """The fix as help text: an instruction if it is safe, otherwise a question."""
         text, replaced = _plain(self.text), _plain(self.span.text)
         if not text:
-            return (
-                f"leave `{replaced}` out" if self.is_safe else f"should `{replaced}` be left out?"
-            )
+            return f"remove `{replaced}`" if self.is_safe else f"should `{replaced}` be removed?"
         return f"write `{text}`" if self.is_safe else f"did you mean `{text}`?"
 
     @property
     def change(self) -> str:
-        """What it does, for the user who applied it."""
+        """The applied fix as text: ``replaced `a` by `b` ``."""
         text, replaced = _plain(self.text), _plain(self.span.text)
         if not replaced:
-            return f"put `{text}` in"
-        return f"wrote `{text}` for `{replaced}`" if text else f"left `{replaced}` out"
+            return f"inserted `{text}`"
+        return f"replaced `{replaced}` by `{text}`" if text else f"removed `{replaced}`"
 
 
 def _plain(text: str) -> str:
-    """On one line."""
+    """The text on one line."""
     return " ".join(text.split())
 
 
 @dataclass(frozen=True, slots=True)
 class FixedText:
-    """A part of a text with fixes applied, and what each of its places was before."""
+    """A span with fixes applied, which maps positions back to the original text."""
 
     original: Span
     fixes: tuple[Fix, ...] = ()
-    """In the order of the text; none overlaps another one."""
+    """In the order of the text; they do not overlap."""
 
     @property
     def span(self) -> Span:
-        """The fixed text, in a source of its own that has the same name."""
-        return Source(self.original.source.name, applied(self.original, self.fixes)).span()
+        """The fixed text as a new source with the same name."""
+        return Source(self.original.source.name, apply_fixes(self.original, self.fixes)).span()
 
     def place(self, span: Span) -> Span:
-        """What a span of the fixed text was in the original one."""
+        """The span in the original text of a span in the fixed text."""
         last = max(span.start, span.end - 1)
         start, end = self._original(span.start)[0], self._original(last)[1]
         empty = span.start == span.end
         return Span(self.original.source, start, start if empty else max(start, end))
 
     def touches(self, span: Span) -> bool:
-        """Whether a span of the original text has a part in common with a fix."""
+        """Whether a span of the original text overlaps a fix."""
         return any(m.span.start < span.end and span.start < m.span.end for m in self.fixes)
 
     def with_fix(self, fix: Fix) -> FixedText:
-        """One more of them, at its place in the original text."""
+        """The text with one more fix, whose span is in the original text."""
         fixes = sorted((*self.fixes, fix), key=lambda m: (m.span.start, m.span.end))
         return FixedText(self.original, tuple(fixes))
 
     def _original(self, at: int) -> tuple[int, int]:
-        """Where the character at a place of the fixed text began and ended in the original."""
+        """The start and end in the original text of a character of the fixed text."""
         place = self.original.start + at
         for fix in self.fixes:
             if place < fix.span.start:
@@ -84,19 +82,19 @@ class FixedText:
         return place, place + 1
 
 
-def left_out(span: Span, *, is_safe: bool = False) -> Fix:
-    """Without the span and the white space behind it."""
+def removal(span: Span, *, is_safe: bool = False) -> Fix:
+    """The fix that removes a span and the white space after it."""
     rest = span.source.text[span.end :]
     blank = len(rest) - len(rest.lstrip(" \t"))
     return Fix(Span(span.source, span.start, span.end + blank), "", is_safe)
 
 
-def applied(text: Span, fixes: Sequence[Fix]) -> str:
-    """The text with each fix in its place.
+def apply_fixes(text: Span, fixes: Sequence[Fix]) -> str:
+    """The text with all fixes applied.
 
     Args:
-        text: what is fixed.
-        fixes: within it, in its order; none overlaps another one.
+        text: the span to fix.
+        fixes: fixes within the span, in order, without overlaps.
     """
     return "".join(_pieces(text, fixes))
 

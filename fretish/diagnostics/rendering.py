@@ -1,4 +1,4 @@
-"""Diagnostics as text for a person and as JSON for a program."""
+"""Render diagnostics as text and as JSON."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from fretish.diagnostics.source import Span
 
 _TAB = " " * 4
 _WIDTH = 160
-"""Of a longer line the reader sees a part, from a little before the caret on."""
+"""The largest width of a source line; of a longer line the part around the caret is shown."""
 
 
 class Part(StrEnum):
-    """A part of a diagnostic that a terminal may show in a colour of its own."""
+    """A part of a diagnostic that a terminal may display in its own colour."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -26,16 +26,16 @@ class Part(StrEnum):
 
 
 Paint = Callable[[str, Part], str]
-"""Gives a text its colour."""
+"""Function that adds the colour of a part to a text."""
 
 
 def plain(text: str, part: Part) -> str:
-    """No colour."""
+    """The text without colour."""
     return text
 
 
 def render(diagnostic: Diagnostic, paint: Paint = plain) -> str:
-    """Several lines: code and message, place, the line with a caret, and the fix."""
+    """A diagnostic as several lines: code and message, position, source line with caret, help."""
     if diagnostic.accepted:
         return _accepted(diagnostic, paint)
     part = Part(diagnostic.severity.value)
@@ -52,7 +52,7 @@ def render(diagnostic: Diagnostic, paint: Paint = plain) -> str:
 
 
 def _accepted(diagnostic: Diagnostic, paint: Paint) -> str:
-    """The reason in the place of the fix; nobody has to look at the line again."""
+    """An accepted warning: with the reason instead of the help, and without the source line."""
     head = paint(f"{diagnostic.code.number} accepted:", Part.NOTE)
     lines = [f"{head} {visible(diagnostic.message)}"]
     if diagnostic.span is not None:
@@ -61,14 +61,14 @@ def _accepted(diagnostic: Diagnostic, paint: Paint) -> str:
 
 
 def render_all(diagnostics: Iterable[Diagnostic], paint: Paint = plain) -> str:
-    """One block each, with an empty line between."""
+    """All diagnostics, separated by empty lines."""
     return "\n\n".join(render(diagnostic, paint) for diagnostic in diagnostics)
 
 
 def as_json(diagnostic: Diagnostic) -> dict[str, Any]:
-    """`{code, severity, message, file, line, column, help}`; absent places are null.
+    """The JSON `{code, severity, message, file, line, column, help}`; absent values are null.
 
-    `help` ends with what is to be pasted.
+    `help` ends with the lines to paste.
     """
     span = diagnostic.span
     help_ = "\n\n".join(text for text in (diagnostic.help, diagnostic.paste) if text)
@@ -103,7 +103,7 @@ def _place(span: Span, paint: Paint, part: Part) -> list[str]:
 
 
 def visible(text: str) -> str:
-    """Control characters would move the caret or the user's terminal: show them as escapes."""
+    """The text with control characters as escapes, so that they cannot affect the terminal."""
     return "".join(
         _TAB if character == "\t" else character if character.isprintable() else _escape(character)
         for character in text

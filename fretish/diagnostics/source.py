@@ -1,4 +1,4 @@
-"""Texts that users wrote, and places in them."""
+"""Source texts, and spans in them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from functools import lru_cache
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A text with the name under which the user knows it (a file's path, `<stdin>`)."""
+    """A text with its name: a file's path, or `<stdin>`."""
 
     name: str
     text: str = field(repr=False)
@@ -29,7 +29,7 @@ class Span:
 
     @property
     def text(self) -> str:
-        """The characters themselves."""
+        """The characters of the span."""
         return self.source.text[self.start : self.end]
 
     @property
@@ -44,7 +44,7 @@ class Span:
 
     @property
     def line_text(self) -> str:
-        """The whole first line, without its end."""
+        """The whole first line, without the line end."""
         starts = _line_starts(self.source.text)
         end = starts[self.line] if self.line < len(starts) else len(self.source.text)
         return self.source.text[starts[self.line - 1] : end].rstrip("\r\n")
@@ -60,5 +60,5 @@ class Span:
 
 @lru_cache(8)
 def _line_starts(text: str) -> list[int]:
-    """Cached: each diagnostic asks for it, for its line and its column."""
+    """The index of the first character of each line; cached for `line` and `column`."""
     return [0, *(i + 1 for i, character in enumerate(text) if character == "\n")]

@@ -1,7 +1,7 @@
-"""Parsers of grammars, with their tables kept beside them.
+"""Parsers for grammars, with precomputed parse tables.
 
-Lark takes 0.3 s to make the tables of FRETish, and 0.02 s to read them. Tables are used where they
-were made of this very grammar by this version of Lark. They hold no code: they are JSON.
+Lark takes 0.3 s to compute the tables of FRETish, and 0.02 s to load them. Stored tables are used
+if they belong to the same grammar and version of Lark. They are JSON and contain no code.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ class Grammar:
     package: str
     name: str
     options: Mapping[str, Any]
-    """Of Lark."""
+    """Options for Lark."""
     addition: str = field(default="", repr=False)
-    """More of the grammar, behind what is in the file."""
+    """Grammar rules that are appended to the file."""
 
     def parser(self) -> Lark:
-        """The parser."""
+        """The parser, from the stored tables if they are current."""
         kept = self._kept()
         return self._new() if kept is None else Lark.load(_with_numbers(kept))
 
     @property
     def is_kept(self) -> bool:
-        """Whether there are tables of this very grammar, by this version of Lark."""
+        """Whether the stored tables belong to this grammar and this version of Lark."""
         return self._kept() is not None
 
     @property
@@ -48,7 +48,7 @@ class Grammar:
         return f"{self.name}.tables.gz"
 
     def tables(self) -> bytes:
-        """What that file has to hold."""
+        """The contents of the file of tables, computed from the grammar."""
         data, memo = self._new().memo_serialize([TerminalDef, Rule])
         text = json.dumps({"key": self._key(), "data": data, "memo": memo})
         return gzip.compress(text.encode(), mtime=0)
@@ -78,7 +78,7 @@ class Grammar:
 
 
 def _with_numbers(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables, with the numbers that are keys: JSON has texts there."""
+    """The tables with integer keys, which JSON stores as texts."""
     data = dict(tables["data"])
     table = data["parser"]["parser"]
     data["parser"]["parser"] = {**table, "states": _numbered(table["states"])}

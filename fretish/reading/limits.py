@@ -1,9 +1,8 @@
-"""What reading a text or a log may cost: processor time and memory, by its size.
+"""Limits of CPU time and memory for reading a text or a log, by its size.
 
-Files are untrusted, and a small one may ask for hours or for all the memory there is. A
-clock of the process's own time looks in while something is read, and ends it where it has taken
-more than a text or a log of its size ever needs. What one call of a library may take at once is
-bounded where it is called; this is for all that is slow or grows step by step.
+Files are untrusted, and a small file can cause hours of CPU time or exhaust the memory. A timer of
+the process checks the costs while a file is read, and interrupts reading if they exceed the limit
+for its size. Single library calls that could exceed it at once have their own limits.
 """
 
 from __future__ import annotations
@@ -23,47 +22,47 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
 
 SECONDS = 3.0
-"""Processor time for a text of any size."""
+"""CPU seconds allowed for a text of any size."""
 _BYTES_A_SECOND = 200_000
-"""A text may take one more second for each so many bytes."""
+"""Bytes of the text for each additional CPU second."""
 MEMORY = 300 * 2**20
-"""Bytes of memory that reading a text of any size may add to the process."""
+"""Bytes of memory allowed for a text of any size."""
 _MEMORY_A_BYTE = 100
-"""Reading may add so many more bytes of memory for each byte of the text."""
+"""Additional bytes of memory allowed for each byte of the text."""
 _LOOK = 0.05
-"""CPU seconds between two looks."""
+"""CPU seconds between two checks."""
 
 R = TypeVar("R")
 
 
 class ExceededError(BaseException):
-    """Reading has taken more than it may; the text says of what.
+    """Reading has exceeded a limit, which the text of the error names.
 
-    No `Exception`: where a library may raise anything, this is not to be taken for its own.
+    It is not an `Exception`, so that no handler of library errors catches it.
     """
 
 
 @dataclass(slots=True)
 class _Budget:
-    """What is left to be used: absolute, of the process."""
+    """Limits in absolute values of the process: CPU seconds and resident bytes."""
 
     seconds: float
     memory: int
 
 
 _budgets: list[_Budget] = []
-"""The one that counts now, if there is one."""
+"""The active budget, if there is one."""
 
 
 @contextmanager
 def budget(size: int) -> Iterator[None]:
-    """A block that may cost no more than reading a text of so many bytes.
+    """Context that limits a block to the costs of reading `size` bytes.
 
-    Within another one its bytes are added to that. Only the main thread can be interrupted: in any
-    other nothing is counted.
+    A nested budget extends the outer one. Only the main thread can be interrupted; other threads
+    have no limit.
 
     Raises:
-        ExceededError: it takes more.
+        ExceededError: the block exceeds a limit.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -74,7 +73,7 @@ def budget(size: int) -> Iterator[None]:
         return
     _budgets.append(_Budget(time.process_time() + SECONDS, _resident() + MEMORY))
     extend_budget(size)
-    signal.signal(signal.SIGPROF, _look)  # stays: a signal that comes late finds no budget
+    signal.signal(signal.SIGPROF, _look)  # Not reset: a late signal finds no budget.
     signal.siginterrupt(signal.SIGPROF, False)
     signal.setitimer(signal.ITIMER_PROF, _LOOK, _LOOK)
     try:
@@ -85,19 +84,19 @@ def budget(size: int) -> Iterator[None]:
 
 
 def extend_budget(size: int) -> None:
-    """So many bytes more are read within the present budget, if there is one."""
+    """Extend the active budget, if there is one, by the costs of `size` bytes."""
     for current in _budgets:
         current.seconds += size / _BYTES_A_SECOND
         current.memory += size * _MEMORY_A_BYTE
 
 
 def with_budget(size: int, place: Span, reading: Callable[[], R]) -> R | Diagnostic:
-    """The result of the call; F930 where it costs more than reading so many bytes may.
+    """The result of the call; F930 if it exceeds the budget for `size` bytes.
 
     Args:
-        size: bytes that are read.
-        place: what is read, as the user knows it.
-        reading: the call.
+        size: the number of bytes to read.
+        place: the span for the diagnostic.
+        reading: the function to call.
     """
     inner = bool(_budgets)
     try:
@@ -112,12 +111,12 @@ def with_budget(size: int, place: Span, reading: Callable[[], R]) -> R | Diagnos
 
 
 def exceeded(error: ExceededError, place: Span | None = None) -> Diagnostic:
-    """F930."""
+    """F930 for an exceeded limit."""
     return Diagnostic(
         Code.TOO_COSTLY,
-        f"it would take {error}: far more than anything of its size needs",
+        f"reading it takes {error}, far more than input of its size needs",
         place,
-        help="it was written to be costly, or is damaged; divide it if it is not",
+        help="the input is malicious or damaged; if it is sound, split it",
     )
 
 
@@ -133,5 +132,5 @@ _PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
 def _resident() -> int:
-    """Bytes of memory that the process has now."""
+    """The resident memory of the process in bytes."""
     return int(Path("/proc/self/statm").read_bytes().split()[1]) * _PAGE

@@ -1,7 +1,7 @@
-"""Patterns of names: `{scenario}-{seed}.mcap` against the end of a path.
+"""Match the end of a path with a pattern such as `{scenario}-{seed}.mcap`.
 
-`{name}` stands for one character or more, `*` for any number, neither for a slash. Each takes as
-much as it can, from left to right. The time is that of pattern times name, whatever both are.
+`{name}` matches one or more characters, `*` any number, neither a slash. From left to right, each
+matches as much as possible. The time is proportional to the length of the pattern times the path.
 """
 
 from __future__ import annotations
@@ -13,22 +13,22 @@ from functools import lru_cache
 
 _TOKEN = re.compile(r"\{(?P<name>[A-Za-z][A-Za-z0-9_-]*)\}|(?P<star>\*)|(?P<text>[^{}*]+)")
 _LONGEST, _LONGEST_PART = 200, 1000
-"""Characters of a pattern, and of a part of a path that it is compared with."""
+"""The largest number of characters of a pattern, and of a part of a path."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Token:
     text: str
-    """What stands there exactly; of a place the name, nothing of `*`."""
+    """The literal text; the name of a `{name}`; empty for `*`."""
     least: int | None = None
-    """Of a place the least number of characters; None of a text."""
+    """The least number of matched characters; None for a literal text."""
 
 
 _Part = tuple[_Token, ...]
 
 
 def names(pattern: str) -> tuple[str, ...] | str:
-    """The names in a pattern, or what is wrong with it."""
+    """The names in a pattern, or the reason why it is wrong."""
     parts = _parts(pattern)
     if isinstance(parts, str):
         return parts
@@ -36,66 +36,68 @@ def names(pattern: str) -> tuple[str, ...] | str:
 
 
 def match(pattern: str, path: str) -> Mapping[str, str] | None:
-    """What each name of a pattern stands for in a path; None where the path does not match.
+    """Name in the pattern → the text it matches in a path; None if the path does not match.
 
     Args:
-        pattern: a sound one; it is compared with as many parts of the path as it has itself.
-        path: with slashes.
+        pattern: a correct pattern; it is matched with as many last parts of the path as it has.
+        path: a path with slashes.
     """
     parts = _parts(pattern)
     assert not isinstance(parts, str), parts
     texts = path.split("/")[-len(parts) :]
     if len(texts) < len(parts) or any(len(text) > _LONGEST_PART for text in texts):
         return None
-    found: dict[str, str] = {}
+    values: dict[str, str] = {}
     for part, text in zip(parts, texts, strict=True):
-        one = _match(part, text)
-        if one is None:
+        part_values = _match(part, text)
+        if part_values is None:
             return None
-        found |= one
-    return found
+        values |= part_values
+    return values
 
 
 @lru_cache(maxsize=64)
 def _parts(pattern: str) -> tuple[_Part, ...] | str:
-    """The parts between slashes, or what is wrong."""
+    """The parts between slashes, or the reason why the pattern is wrong."""
     if not 0 < len(pattern) <= _LONGEST:
         return f"a pattern has 1 to {_LONGEST} characters"
     parts = []
     for written in pattern.split("/"):
-        tokens = [_token(found) for found in _TOKEN.finditer(written)]
-        if not tokens or sum(len(found[0]) for found in _TOKEN.finditer(written)) < len(written):
-            return "between slashes there are texts, `*` and `{name}`, and nothing else"
+        tokens = [_token(token_match) for token_match in _TOKEN.finditer(written)]
+        if not tokens or sum(len(token_match[0]) for token_match in _TOKEN.finditer(written)) < len(
+            written
+        ):
+            return "between slashes only text, `*` and `{name}` are allowed"
         parts.append(tuple(tokens))
     named = [token.text for part in parts for token in part if token.least == 1]
     twice = next((name for name in named if named.count(name) > 1), None)
-    return f"`{{{twice}}}` stands twice in it" if twice else tuple(parts)
+    return f"`{{{twice}}}` is there twice" if twice else tuple(parts)
 
 
-def _token(found: re.Match[str]) -> _Token:
-    if found["text"] is not None:
-        return _Token(found["text"])
-    return _Token(found["name"] or "", 0 if found["star"] else 1)
+def _token(token_match: re.Match[str]) -> _Token:
+    if token_match["text"] is not None:
+        return _Token(token_match["text"])
+    return _Token(token_match["name"] or "", 0 if token_match["star"] else 1)
 
 
 def _match(part: _Part, text: str) -> dict[str, str] | None:
     fits = _fits(part, text)
     if not fits[0][0]:
         return None
-    found, at = {}, 0
+    values, at = {}, 0
     for token, after in zip(part, fits[1:], strict=True):
         if token.least is None:
             at += len(token.text)
             continue
         end = max(end for end in range(at + token.least, len(text) + 1) if after[end])
         if token.least:
-            found[token.text] = text[at:end]
+            values[token.text] = text[at:end]
         at = end
-    return found
+    return values
 
 
 def _fits(part: _Part, text: str) -> list[list[bool]]:
-    """Row i, column k: whether the tokens from i on match all of the text from k on."""
+    """Row i, column k: whether the tokens from i on match the whole text from k on."""
     size = len(text)
     rows = [[False] * size + [True]]
     for token in reversed(part):

@@ -1,4 +1,4 @@
-"""The order in which people count: R2 comes before R10; and of diagnostics, by their places."""
+"""Sort names in natural order (R2 before R10), and diagnostics by position."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ Key = tuple[tuple[str | tuple[int, str], ...], str]
 
 
 def natural(name: str) -> Key:
-    """What to sort by: digits that follow each other are one number.
+    """The sort key of a name: consecutive digits are one number.
 
-    The texts order equal numbers that are written differently (`R2`, `R02`).
+    Names with equal numbers (`R2`, `R02`) are ordered by their text.
     """
     parts = re.split("([0-9]+)", name)
     return tuple(_number(part) if i % 2 else part for i, part in enumerate(parts)), name
 
 
 def _number(digits: str) -> tuple[int, str]:
-    """As comparable as the number, however long it is."""
+    """A key that orders digit strings like their numbers, for any length."""
     shortest = digits.lstrip("0")
     return len(shortest), shortest
 
 
 def by_place(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """By file, line and column. First comes what has no place; equal places stay as they are."""
+    """Sort by file and position, in a stable order; diagnostics without a span come first."""
     return sorted(diagnostics, key=_place)
 
 

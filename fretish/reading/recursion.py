@@ -1,4 +1,4 @@
-"""Deep trees: passes over them recurse, and Python's own limit is too low for some sentences."""
+"""Raise Python's recursion limit for passes over deep trees."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
 MOST = 2500
-"""Levels of operators that a sentence may have: more than 1 000 nested parentheses."""
+"""The largest number of levels of operators in a sentence: over 1 000 nested parentheses."""
 _FRAMES = 30_000
 
 P = ParamSpec("P")
@@ -16,7 +16,7 @@ R = TypeVar("R")
 
 
 def with_recursion_limit(function: Callable[P, R]) -> Callable[P, R]:
-    """Let the function recurse over trees of `MOST` levels; the limit is put back after it."""
+    """Let the function recurse over trees of `MOST` levels; restore the limit afterwards."""
 
     @functools.wraps(function)
     def with_room(*args: P.args, **kwargs: P.kwargs) -> R:

@@ -1,4 +1,4 @@
-"""In which encoding Python reads a text."""
+"""The encoding in which Python reads a source text."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from io import BytesIO
 def is_utf8(text: str) -> bool:
     """Whether Python reads a file with this text in UTF-8, as fretc does.
 
-    Another encoding can make code of what is a comment here. Source: PEP 263.
+    With another encoding a comment could contain code. Source: PEP 263.
     """
     lines = text.replace("\r\n", "\n").replace("\r", "\n").encode()
     try:

@@ -1,4 +1,4 @@
-"""TOML with places: what `tomllib` reads, and where each key stands."""
+"""Parse TOML, and find the spans of keys and values."""
 
 from __future__ import annotations
 
@@ -32,30 +32,30 @@ _PART = re.compile(
         [ \t]*(?P<then>[\].])""",
     re.VERBOSE,
 )
-"""A part of a header's name, and whether another one follows."""
+"""A part of the name in a header, and whether another part follows."""
 _MOST_PARTS = 16
-"""Of a header's name that are looked at: no table of ours has as many."""
+"""The largest number of parts of a header that are used."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Header:
-    """`[a.b]`, or the `[a.` that it begins with."""
+    """A header `[a.b]`, or a prefix of its name."""
 
     name: tuple[int, int]
-    """Where its name stands."""
+    """Start and end of the name."""
     table: tuple[int, int]
-    """Where everything behind it stands, up to the next header."""
+    """Start and end of the table: from the header to the next one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tables:
-    """A TOML text and its values; `place` finds a key again."""
+    """A TOML text and its values, with the spans of keys and values."""
 
     text: Span
     data: Mapping[str, Any]
 
     def place(self, *path: str) -> Span:
-        """Where the last key of the path stands; the whole text's start where it is not found."""
+        """The span of the last key of the path; the start of the text if it is not found."""
         header = _headers(self.text.text).get(path)
         if header is not None:
             return self.text.part(*header.name)
@@ -67,7 +67,7 @@ class Tables:
         return self.text.part(*match.span("key")) if match else self.text.part(0, 0)
 
     def value(self, *path: str) -> Span:
-        """Where the value behind the last key of the path stands, up to the end of its line."""
+        """The span of the value of the last key of the path, up to the end of its line."""
         key = self.place(*path)
         match = _VALUE.match(key.source.text, key.end, self.text.end)
         if match is None:
@@ -76,7 +76,7 @@ class Tables:
         return Span(key.source, start, start + len(match["value"].rstrip()))
 
     def _inline(self, tables: list[str]) -> tuple[int, int]:
-        """Where the braces of an inline table stand."""
+        """Start and end of an inline table."""
         span = self.value(*tables)
         if not span.text.startswith("{"):
             return 0, 0
@@ -89,20 +89,20 @@ class Tables:
 
 @lru_cache(8)
 def _headers(text: str) -> Mapping[tuple[str, ...], _Header]:
-    """The first header that has a path or begins with it; the empty path stands for the root."""
-    begins = [match.span() for match in _HEADER.finditer(text)]
-    ends = [start for start, _ in begins[1:]] + [len(text)]
-    found: dict[tuple[str, ...], _Header] = {}
-    found[()] = _Header((0, 0), (0, begins[0][0] if begins else len(text)))
-    for (_, begin), end in zip(begins, ends, strict=False):
+    """Path → the first header that has or begins with this path; the empty path is the root."""
+    openings = [match.span() for match in _HEADER.finditer(text)]
+    ends = [start for start, _ in openings[1:]] + [len(text)]
+    headers: dict[tuple[str, ...], _Header] = {}
+    headers[()] = _Header((0, 0), (0, openings[0][0] if openings else len(text)))
+    for (_, begin), end in zip(openings, ends, strict=False):
         path: tuple[str, ...] = ()
         part = first = _PART.match(text, begin)
         while part is not None and first is not None and len(path) < _MOST_PARTS:
             path = (*path, part["text"] or part["literal"] or part["bare"] or "")
             name = first.start("name"), part.end("name")
-            found.setdefault(path, _Header(name, (part.end(), end)))
+            headers.setdefault(path, _Header(name, (part.end(), end)))
             part = _PART.match(text, part.end()) if part["then"] == "." else None
-    return found
+    return headers
 
 
 def _key(key: str) -> re.Pattern[str]:
@@ -112,12 +112,12 @@ def _key(key: str) -> re.Pattern[str]:
 
 
 def read(text: Span, code: Code, name: str) -> Tables | Diagnostic:
-    """Read TOML.
+    """Parse TOML.
 
     Args:
-        text: the TOML, somewhere in a source.
-        code: what to give where it is not TOML.
-        name: the name of the thing for the message: `the header`.
+        text: the span of the TOML.
+        code: the code of the diagnostic if it is not TOML.
+        name: the name of the text in the message: `the header`.
     """
     return with_budget(len(text.text), text.part(0, 0), lambda: _read(text, code, name))
 
@@ -125,7 +125,7 @@ def read(text: Span, code: Code, name: str) -> Tables | Diagnostic:
 def _read(text: Span, code: Code, name: str) -> Tables | Diagnostic:
     try:
         return Tables(text, tomllib.loads(text.text.replace("\r\n", "\n")))
-    except (ValueError, RecursionError) as error:  # TOML, or a number or nesting beyond Python's
+    except (ValueError, RecursionError) as error:  # Or beyond Python's limits.
         match = re.search(r"\(at line (\d+), column (\d+)\)", str(error))
         at = _offset(text.text, int(match[1]), int(match[2])) if match else len(text.text)
         reason = re.sub(r" \(at [^)]*\)", "", str(error))
@@ -133,7 +133,7 @@ def _read(text: Span, code: Code, name: str) -> Tables | Diagnostic:
             code,
             f"{name} is not TOML: {reason[:1].lower()}{reason[1:]}",
             text.part(at, min(at + 1, len(text.text))),
-            help='write `key = "value"`, one a line',
+            help='write `key = "value"`, one per line',
         )
 
 
@@ -144,17 +144,17 @@ def _offset(text: str, line: int, column: int) -> int:
 
 
 def as_key(name: str) -> str:
-    """The name as a key of TOML: in quotes where it needs them."""
+    """The name as a TOML key, in quotes if necessary."""
     return tomli_w.dumps({name: 0}).removesuffix(" = 0\n")
 
 
 def unknown_key(code: Code, key: str, allowed: Iterable[str], span: Span, where: str) -> Diagnostic:
-    """The key is not known: with the nearest one, or all of them."""
+    """The diagnostic of an unknown key; it suggests a similar one, or lists all."""
     names = tuple(allowed)
     near = suggestion(key, names)
     return Diagnostic(
         code,
-        f"`{key}` is no field of {where}",
+        f"unknown field `{key}` in {where}",
         span,
-        help=f"did you mean `{near}`?" if near else f"it may have {', '.join(names)}",
+        help=f"did you mean `{near}`?" if near else f"the fields are {', '.join(names)}",
     )

@@ -1,7 +1,7 @@
-"""Untrusted YAML, within bounds: its nodes are counted before they become values.
+"""Load untrusted YAML within limits: its nodes are counted before it is loaded.
 
-An alias stands for all that its anchor holds, so a few lines may stand for more nodes than memory
-has room for; and the library recurses over nested nodes, in C without any limit.
+An alias repeats all nodes of its anchor, so a few lines can expand to more nodes than fit into
+memory. The library also recurses over nested nodes, in C without a limit.
 """
 
 from __future__ import annotations
@@ -10,16 +10,16 @@ from typing import Any
 
 _MOST_LEVELS = 100
 _MOST_NODES = 20_000
-"""Whatever the text is."""
+"""Nodes that are allowed for any text."""
 _MOST_TIMES = 10
-"""Aliases may expand a text to so many times the nodes that stand in it."""
+"""The largest ratio of nodes after expansion of aliases to nodes in the text."""
 
 
 def loaded(text: str) -> Any:
-    """The value of a text in YAML.
+    """The value of a YAML text.
 
     Raises:
-        ValueError: it is no YAML, or means far more than is written.
+        ValueError: the text is not YAML, or exceeds a limit.
     """
     import yaml
 
@@ -28,14 +28,14 @@ def loaded(text: str) -> Any:
         _count(yaml, text, loader)
         return yaml.load(text, Loader=loader)
     except (yaml.YAMLError, RecursionError, TypeError, AttributeError) as error:
-        raise ValueError("it is no YAML") from error  # TypeError: a key that cannot be one
+        raise ValueError("it is not YAML") from error  # TypeError: an unhashable key.
 
 
 def _count(yaml: Any, text: str, loader: Any) -> None:
     """Compare the number of nodes after expansion of aliases with the number in the text.
 
     Raises:
-        ValueError: there are too many of them, or they are too deep.
+        ValueError: there are too many nodes, or they are nested too deep.
     """
     keys = _Keys()
     sizes: dict[str, int] = {}
@@ -46,7 +46,7 @@ def _count(yaml: Any, text: str, loader: Any) -> None:
         if isinstance(event, yaml.CollectionStartEvent):
             open_.append((event.anchor, size))
             if len(open_) > _MOST_LEVELS:
-                raise ValueError(f"more than {_MOST_LEVELS} levels are within each other")
+                raise ValueError(f"more than {_MOST_LEVELS} nested levels")
         elif isinstance(event, yaml.CollectionEndEvent):
             anchor, before = open_.pop()
             if anchor is not None:
@@ -55,23 +55,23 @@ def _count(yaml: Any, text: str, loader: Any) -> None:
             sizes[event.anchor] = 1
         size += sizes.get(event.anchor, 1) if isinstance(event, yaml.AliasEvent) else 1
         if size > max(_MOST_NODES, _MOST_TIMES * length):
-            raise ValueError("its aliases stand for far more than is written")
+            raise ValueError("its aliases expand to too many nodes")
 
 
 class _Keys:
-    """The keys of the mappings that are still open; of equal keys YAML's reader takes the last."""
+    """The keys of the open mappings, to find duplicates: YAML's reader would use the last one."""
 
     def __init__(self) -> None:
         self._open: list[set[str] | None] = []
         """The keys of each open mapping; None for a sequence."""
         self._next: list[bool] = []
-        """Whether the next node in it is a key."""
+        """Whether the next node of each open collection is a key."""
 
     def read(self, yaml: Any, event: Any) -> None:
         """Process one more event.
 
         Raises:
-            ValueError: a key comes twice in one mapping.
+            ValueError: a mapping has a duplicate key.
         """
         if isinstance(event, yaml.CollectionEndEvent):
             self._open.pop()

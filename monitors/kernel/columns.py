@@ -14,12 +14,12 @@ from typing import NamedTuple
 from monitors.kernel.verdicts import Truth, boolean
 
 LARGE = 1 << 19
-"""Ticks from which on a column is a block that the C library treats in another way."""
+"""Ticks from which the memory of a column is allocated differently; see `reuse_memory`."""
 
 
 @cache
 def reuse_memory() -> None:
-    """Let the C library keep the memory of large columns for the next ones.
+    """Let the C library reuse the memory of large columns.
 
     glibc asks the system for each block from 128 kB on, and gives it back at once, which costs more
     than to compute it. A larger block that has been freed raises this limit: see mallopt(3),
@@ -34,7 +34,7 @@ class Column(NamedTuple):
 
     true: int
     unknown: int
-    """No bit of it is one of `true`."""
+    """Disjoint from `true`."""
 
     def at(self, tick: int) -> Truth:
         """The truth value at one tick."""
@@ -59,7 +59,7 @@ _UNKNOWN = bytes.maketrans(b"\0\1\2", b"001")
 
 
 def code(value: Truth) -> int:
-    """The code of a truth value; anything else is a mistake of the caller."""
+    """The code of a truth value; any other value is an error of the caller."""
     if value is None:
         return 2
     if value is True or value is False:
@@ -77,7 +77,7 @@ class Tape:
         self.rest = b""
 
     def append(self, codes: bytes) -> None:
-        """Go on with one code a tick."""
+        """Append one code per tick."""
         codes = self.rest + codes
         size = len(codes) // 8
         true, unknown = column(codes[: 8 * size])
@@ -88,7 +88,7 @@ class Tape:
         self.rest = codes[8 * size :]
 
     def column(self) -> Column:
-        """All of it."""
+        """The complete column."""
         ticks, last = 8 * len(self.true), column(self.rest)
         return Column(
             int.from_bytes(self.true, "little") | last.true << ticks,
@@ -101,7 +101,7 @@ class Piece(NamedTuple):
 
     ticks: int
     codes: Sequence[bytes]
-    """Of each proposition, one a tick."""
+    """For each proposition, one code per tick."""
 
 
 def pieces_of(rows: Iterable[Sequence[Truth]]) -> Iterator[Piece]:
@@ -165,7 +165,7 @@ _STRETCH = 64
 
 
 def ticks_of(column: int) -> Iterator[int]:
-    """The ticks at which it is true, in order; the cost is that of its memory and of these."""
+    """The ticks at which the column is true, in order."""
     return itertools.chain.from_iterable(_tick_lists(column))
 
 
@@ -174,7 +174,7 @@ _BITS = tuple(tuple(bit for bit in range(8) if byte >> bit & 1) for byte in rang
 
 
 def _tick_lists(column: int) -> Iterator[list[int]]:
-    """The same in pieces: a list of ticks takes less time than a generator that yields each."""
+    """The ticks in lists, which is faster than a generator of single ticks."""
     data = column.to_bytes((column.bit_length() + 7) // 8, "little")
     for start in range(0, len(data), _PIECE_BYTES):
         piece = data[start : start + _PIECE_BYTES]
@@ -189,7 +189,7 @@ def first_of(column: int) -> int | None:
 
 
 def starts_of(column: int) -> int:
-    """True where it is, and was not at the tick before."""
+    """True at the ticks at which the column becomes true."""
     return column ^ column & column << 1
 
 

@@ -75,7 +75,7 @@ def judge(
 
 
 _CLOSED_PIPE = 141
-"""What a shell makes of SIGPIPE, which ends other programs there."""
+"""The exit status after SIGPIPE, as a shell reports it."""
 _FAULTS = (
     ArithmeticError,
     AttributeError,
@@ -185,7 +185,7 @@ def _in_words(runs: Sequence[tuple[int, int]]) -> str:
 
 
 def _why_no_data(outcome: Outcome) -> str:
-    """Why nothing is shown, though no demand can have been broken."""
+    """The reason why nothing is shown, although no obligation can have been violated."""
     if not outcome.ticks:
         return "the trace has no tick"
     return "unknown whether there was a trigger, or whether a demand is open at the end"

@@ -40,9 +40,9 @@ from monitors.kernel.verdicts import (
 
 @dataclass(frozen=True)
 class Outcome:
-    """One requirement over one whole trace; ticks count from 0, intervals include both ends.
+    """The result of one requirement on a whole trace; intervals of ticks include both ends.
 
-    `evaluate` gives its lists as `Listing`: nothing is made of what nobody reads.
+    `evaluate` gives the lists as `Listing`, which are computed when they are first read.
     """
 
     requirement: str
@@ -52,17 +52,17 @@ class Outcome:
     """FRET's verdict on the finite trace."""
     first_violation: int | None
     violations: Sequence[tuple[int, int]]
-    """Runs of ticks at which a demand was broken, or was overdue and still unanswered."""
+    """Intervals of ticks at which an obligation was violated, or was overdue without response."""
     unknown: Sequence[tuple[int, int]]
-    """Runs of ticks at which it cannot be known whether a demand was broken."""
+    """Intervals of ticks at which it is unknown whether an obligation was violated."""
     triggers: Sequence[int]
     answers: Sequence[tuple[int, int]]
-    """Trigger and first answer to it, where a demand waits for one and it came."""
+    """Trigger and first response of each obligation that was met."""
     open: Sequence[tuple[int, int | None]]
-    """Trigger and deadline (None: there is none) of each demand that is open at the end."""
+    """Trigger and deadline (None: no deadline) of each obligation that is open at the end."""
     uncertain: Sequence[int] = ()
-    """Triggers whose answer, or whose open demand, may be another where propositions are unknown;
-    of all others it is the same whatever the unknown values were."""
+    """Triggers whose response or open obligation depends on unknown values; all others do not
+    depend on them."""
 
     def as_json(self) -> dict[str, Any]:
         """Plain values, in a fixed order of keys."""
@@ -110,7 +110,7 @@ def evaluate(
 def stepped(
     monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict = INCONCLUSIVE
 ) -> tuple[Outcome, ...]:
-    """The same as `evaluate`, by stepping the monitor from tick 0 over every tick.
+    """The outcomes, as from `evaluate`, by stepping the monitor from tick 0 over every tick.
 
     Args, raises: as for `evaluate`.
     """
@@ -155,12 +155,12 @@ class _Record:
         self._tapes = [Tape() for _ in monitor.REQUIREMENTS for _ in Signals._fields]
 
     def append(self, codes: bytes) -> None:
-        """Go on with all signals of some ticks, one tick after the other."""
+        """Append the signals of further ticks, tick by tick."""
         for place, tape in enumerate(self._tapes):
             tape.append(codes[place :: len(self._tapes)])
 
     def columns(self) -> Iterator[Signals[int]]:
-        """Those of each requirement."""
+        """The signals of each requirement."""
         columns = (tape.column().true for tape in self._tapes)
         return map(Signals, *[columns] * len(Signals._fields))
 
@@ -206,7 +206,7 @@ def _at(column: int, tick: int) -> bool:
 
 @dataclass(frozen=True)
 class _Demands:
-    """What becomes of each demand: columns with a bit at its trigger.
+    """The result of each obligation: columns with a bit at its trigger.
 
     A demand waits as long as one may be open, up to the first answer that is certain.
     """
@@ -221,18 +221,18 @@ class _Demands:
 
     @cached_property
     def answered(self) -> int:
-        """It waits for an answer, which comes in time."""
+        """The obligations that were met in time."""
         return self.triggers & until(self._waits, self.must_answer, self._most)
 
     @cached_property
     def open(self) -> int:
-        """It waits at the end, and its deadline has not passed."""
+        """The obligations that are open at the end, before their deadline."""
         first = max(_last_run(self._waits, self.ticks), self.ticks - self._most)
         return self.triggers >> first << first
 
     @cached_property
     def uncertain(self) -> int:
-        """It is answered or open, and does not wait up to there for certain."""
+        """The met or open obligations that were possibly not pending until then."""
         waits = self.must_owed ^ self.must_owed & self.may_answer
         first = _last_run(waits, self.ticks)
         certain = until(waits, self.must_answer, self._most) & self.answered
@@ -240,16 +240,16 @@ class _Demands:
 
     @property
     def _waits(self) -> int:
-        """The ticks at which a demand may be open, and no answer is certain."""
+        """The ticks at which an obligation may be open, and no response is certain."""
         return self.may_owed ^ self.may_owed & self.must_answer
 
     @property
     def _most(self) -> int:
-        """How many ticks it can wait within the trace."""
+        """How many ticks an obligation can be pending within the trace."""
         return self.ticks if self.horizon is None else min(self.horizon, self.ticks)
 
     def answers(self) -> Iterator[tuple[int, int]]:
-        """Trigger and answer: that is the first one from the trigger on."""
+        """Trigger and response, which is the first one from the trigger on."""
         answers, answer = ticks_of(self.must_answer), -1
         for trigger in ticks_of(self.answered):
             while answer < trigger:
@@ -257,11 +257,11 @@ class _Demands:
             yield trigger, answer
 
     def deadlines(self) -> Iterator[tuple[int, int | None]]:
-        """Trigger and deadline of each demand that is open."""
+        """Trigger and deadline of each open obligation."""
         for trigger in ticks_of(self.open):
             yield trigger, None if self.horizon is None else trigger + self.horizon
 
 
 def _last_run(column: int, ticks: int) -> int:
-    """The first tick from which on it is true up to the end; `ticks` where it is not."""
+    """The first tick from which the column is true up to the end; `ticks` if there is none."""
     return (column ^ (1 << ticks) - 1).bit_length()

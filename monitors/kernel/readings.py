@@ -1,4 +1,4 @@
-"""Numbers of one tick: variables as they are given, constants as they are written.
+"""Arithmetic of one tick: variables as given, constants as written.
 
 A constant is a fraction until it meets a number that was given; there it becomes the nearest number
 of its kind: of 32-bit floats or of 64-bit floats. Beside whole numbers from 2^53 on it stays what
@@ -24,11 +24,11 @@ Reading = float | None
 """A number as it is computed with, never NaN. An `int` has 2^53 or more, with or without a sign."""
 
 DOUBLES_END = 2**53
-"""From here on 64-bit floats do not hold every whole number."""
+"""The least number from which 64-bit floats do not represent every whole number."""
 _HALVES_END = 2**52
-"""From here on 64-bit floats hold whole numbers only."""
+"""The least number from which 64-bit floats are whole numbers."""
 _WHOLE_END = 2**64
-"""From here on no whole number is recorded."""
+"""The least whole number that is not recorded."""
 
 
 class Single(float):
@@ -38,7 +38,7 @@ class Single(float):
 
 
 class Wide(float):
-    """A float that was chosen beside an `int`: constants are to it what they are to that."""
+    """A float chosen by `min` or `max` beside an `int`; constants treat both alike."""
 
     __slots__ = ()
 
@@ -170,7 +170,7 @@ def truth_value(value: object, name: str) -> Truth:
 
 
 def word(value: object, name: str, words: tuple[str, ...]) -> str | None:
-    """One of several words; None is unknown.
+    """A word of an enumeration, after a check; None is unknown.
 
     Raises:
         TypeError: it is no text.
@@ -197,7 +197,7 @@ _COMPARE: Mapping[str, Callable[[float, float], bool]] = {
     "!=": operator.ne,
 }
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "!=": "!="}
-"""What says the same when both sides are exchanged."""
+"""Comparison operator → the equivalent operator for exchanged sides."""
 
 
 def compared(left: Term, sign: str, right: Term) -> Truth:
@@ -228,7 +228,7 @@ def is_word(value: str | None, sign: str, other: str | None) -> Truth:
 
 
 def _plain(term: float | Constant) -> float:
-    """As a 64-bit float."""
+    """The value as a 64-bit float."""
     if isinstance(term, Constant):
         return term.double
     return _double(term) if isinstance(term, int) else float(term)
@@ -324,7 +324,7 @@ def in_base(value: Reading, scale: Constant) -> Reading:
 
 
 def first(term: Term) -> Reading:
-    """What comes before the first tick: a constant as the nearest number."""
+    """The value before the first tick: a constant becomes the nearest number."""
     if not isinstance(term, Constant):
         return term
     is_whole = term.exact.denominator == 1

@@ -1,10 +1,10 @@
-"""The base of every generated monitor: two rails, stepped tick by tick.
+"""The base class of generated monitors: two rails, stepped tick by tick.
 
-What holds for certain and what may hold are two runs of the same code: a rail. Every operator is
-monotone in the propositions and in their negations, so each rail is stepped by itself, and an
-unknown counts as false on the one and as true on the other. While nothing has been unknown both
-are one. Source: Kleene, Introduction to Metamathematics, 1952, section 64 (strong three-valued
-logic).
+A rail is generated code that computes two-valued signals. A monitor has two instances: one computes
+certain values (`must`, an unknown counts as false), the other possible values (`may`, an unknown
+counts as true). This is correct because every operator is monotone in the propositions and in their
+negations. As long as no value was unknown, one instance serves for both. Source: Kleene,
+Introduction to Metamathematics, 1952, section 64 (strong three-valued logic).
 """
 
 import hashlib
@@ -32,20 +32,20 @@ A = TypeVar("A")
 
 
 class Marks(NamedTuple):
-    """Ticks that a rail remembers of one requirement; -1: none."""
+    """Ticks that a rail stores for one requirement; -1: none."""
 
     broken: int
-    """The first tick at which a demand was broken."""
+    """The first tick at which an obligation was violated."""
     doomed: int
-    """The first tick at which demands were open that nothing can meet."""
+    """The first tick at which open obligations became impossible to meet."""
     last: int
     """The last trigger."""
     open: int
-    """The trigger of the oldest demand that is open; of the latest where a new one replaces it."""
+    """The trigger of the oldest open obligation; of the latest if a new one replaces it."""
 
     @property
     def violated(self) -> int:
-        """The tick at which the violation is certain; -1: it is not."""
+        """The tick at which the violation is certain; -1: not violated."""
         ticks = [tick for tick in (self.broken, self.doomed) if tick >= 0]
         return min(ticks, default=-1)
 
@@ -55,21 +55,21 @@ class Rail(Protocol):
 
     __slots__: tuple[str, ...]
     CELLS: ClassVar[tuple[str, ...]]
-    """The slots that what follows depends on; the others only remember."""
+    """The slots on which later signals depend; the others only store ticks."""
     doubt: bool
     tick: int
 
     def __init__(self, doubt: bool = False) -> None:
-        """Before the first tick."""
+        """Start before the first tick; unknowns count as `doubt`."""
 
     def advance(self, rows: Iterable[Sequence[Any]]) -> bool:
-        """Step every row; whether all was known in them."""
+        """Step over all rows; whether all their values were known."""
 
     def signals(self) -> tuple[Signals[bool], ...]:
         """The signals of the last tick, for each requirement."""
 
     def marks(self) -> tuple[Marks, ...]:
-        """What is remembered, for each requirement."""
+        """The stored ticks of each requirement."""
 
 
 class _Run:
@@ -144,18 +144,18 @@ class Window:
         self.first = self._after(oldest)
         if self.first is None:
             self.last = None
-        if oldest is self.turn:  # it leads to all runs of the other window
+        if oldest is self.turn:  # The other window needs the runs after it.
             self.turn = self.branch = None
 
     def copy(self) -> "Window":
-        """As it is now; only one of both can go on."""
+        """A copy in the same state; only one of both can be stepped further."""
         other = Window(self.lo, self.hi)
         for name in self.__slots__:
             setattr(other, name, getattr(self, name))
         return other
 
     def fork(self) -> "Window":
-        """As it is now; both can go on. A fork has none of its own."""
+        """A copy in the same state; both can be stepped further. A fork cannot be forked."""
         assert self.turn is None
         other = self.copy()
         other.turn = self.last
@@ -175,7 +175,7 @@ class Window:
         return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self._runs())
 
     def is_like(self, other: "Window") -> bool:
-        """Both have one state; their clocks agree. What a fork shares is not looked at again."""
+        """Whether two windows with equal clocks have equal states; shared runs are skipped."""
         mine, theirs, shared = self.first, other.first, other.turn
         youngest = (self.start, self.end), (other.start, other.end)
         if mine is None or theirs is None:
@@ -190,12 +190,12 @@ class Window:
         return mine is theirs is None and youngest[0] == youngest[1]
 
     def _same(self, one: tuple[int, int], other: tuple[int, int]) -> bool:
-        """Both are one run, as far as the window reaches."""
+        """Whether two runs are equal within the window."""
         reach = self.now - self.hi
         return one[1] == other[1] and max(one[0], reach) == max(other[0], reach)
 
     def restore(self, state: Sequence[Sequence[int]]) -> None:
-        """Go back to a state."""
+        """Restore a state."""
         self._clear()
         self.now = self.hi
         for oldest, youngest in state:
@@ -209,7 +209,7 @@ _NONE = -2
 
 
 class Standing(NamedTuple):
-    """The verdict on a requirement if the trace ended now, and what it rests on."""
+    """The verdict on a requirement if the trace ended now, and its reasons."""
 
     requirement: str
     verdict: Verdict
@@ -217,13 +217,13 @@ class Standing(NamedTuple):
     """FRET's verdict on the finite trace up to here."""
     first_violation: int | None
     open: int | None
-    """The trigger of the demand that is open for certain: of the oldest, or of the latest where a
+    """The trigger of the obligation that is certainly open: of the oldest, or of the latest if a
     new one replaces it (`for`, `next`)."""
     deadline: int | None
-    """The last tick at which that can be decided; None where there is no deadline."""
+    """The last tick at which this obligation can be decided; None if it has no deadline."""
     owed: Truth
-    """Whether a demand begins at this tick or is open after it: a driver stops unless it is False.
-    None before the first tick, and where an unknown value decides it."""
+    """Whether an obligation begins at this tick or is open after it. The robot must stop unless it
+    is False. None before the first tick, and if it depends on an unknown value."""
 
 
 _PIECE, _FEW, _SOON = 4096, 64, 64
@@ -238,15 +238,15 @@ class Monitor:
     """SHA-256 of the generated code: a state fits no other."""
     REQUIREMENTS: ClassVar[tuple[Requirement, ...]]
     PROPOSITIONS: ClassVar[Mapping[str, str]]
-    """Each proposition with its parameter of `step`."""
+    """Proposition → its parameter of `step`."""
     LITERALS: ClassVar[tuple[tuple[str, str, bool], ...]]
-    """Each parameter of `columns`, with its proposition, and False where it is negated."""
+    """Each parameter of `columns`, its proposition, and False if it is negated."""
     RAIL: ClassVar[type[Rail]]
     verdicts: Callable[..., tuple[Verdict, ...]]
-    """Of each requirement, whatever follows: satisfied or violated; or pending."""
+    """The LTL3 verdict on each requirement: satisfied, violated or pending."""
     columns: Callable[..., tuple[Signals[int], ...]]
-    """The signals of whole traces, for each requirement: of `every`, the column that is true at
-    every tick, and a keyword for each of `LITERALS`."""
+    """The signals of each requirement on whole traces. Arguments: `every`, the column that is true
+    at every tick, and a keyword for each of `LITERALS`."""
 
     def __init__(self) -> None:
         self._values = _picked(tuple(self.PROPOSITIONS.values()))
@@ -305,7 +305,7 @@ class Monitor:
         return tuple(map(_standing, self.REQUIREMENTS, *zip(*readings, strict=True)))
 
     def standings_after(self, rows: Iterable[Row | Mapping[str, Truth]]) -> tuple[Standing, ...]:
-        """The standings if these rows came, too; the monitor stays where it is.
+        """The standings after further rows, without stepping the monitor.
 
         Raises:
             KeyError, TypeError, ValueError: as `advance` does.
@@ -313,7 +313,7 @@ class Monitor:
         return self._after(rows, self.standings)
 
     def owed_after(self, rows: Iterable[Row | Mapping[str, Truth]]) -> tuple[Truth, ...]:
-        """The `owed` of each of these standings, for less.
+        """The `owed` of each of `standings_after(rows)`, but cheaper.
 
         Raises:
             KeyError, TypeError, ValueError: as `advance` does.
@@ -335,7 +335,7 @@ class Monitor:
             vars(self).update(kept)
 
     def _fork(self) -> None:
-        """From now on what may hold differs from what holds for certain."""
+        """Make a separate rail for possible values."""
         if self.may is self.must:
             self._part(_forked(self.must))
 
@@ -355,7 +355,7 @@ class Monitor:
         self._due = self.tick + _SOON
 
     def _meet(self) -> None:
-        """One rail again if both remember the same; looked at ever less often: it may take long."""
+        """Use one rail again if both have equal states; checked less and less often."""
         tick = self.tick
         if tick < self._due:
             return
@@ -364,7 +364,7 @@ class Monitor:
         self._due = tick + max(_SOON, tick - self._apart)
 
     def _is_one(self) -> bool:
-        """Both rails remember the same; windows, which may be long, are looked at last."""
+        """Whether both rails have equal states; windows are compared last."""
         if self.may is self.must:
             return True
         windows = []
@@ -392,7 +392,7 @@ class Monitor:
             before = (self.must, self.may) if len(block) == 1 else self._copies()
             try:
                 self._advance(block)
-            except BaseException:  # whatever it was, both rails stay at one tick
+            except BaseException:  # Both rails must stay at the same tick.
                 self.must, self.may = before
                 raise
 
@@ -425,10 +425,10 @@ class Monitor:
         return list(map(_picked(tuple(self.PROPOSITIONS)), rows))
 
     def rows_of(self, names: Sequence[str]) -> Callable[[Iterable[Row]], Iterable[Row]]:
-        """What makes rows for `run` of rows whose values are in the order of `names`.
+        """A function that reorders rows with values in the order of `names` for `run`.
 
         Raises:
-            ValueError: the names are not those of `PROPOSITIONS`, each once.
+            ValueError: the names are not a permutation of `PROPOSITIONS`.
         """
         return rows_in_order(tuple(names), tuple(self.PROPOSITIONS))
 
@@ -455,10 +455,10 @@ class Monitor:
 def rows_in_order(
     names: tuple[str, ...], order: tuple[str, ...]
 ) -> Callable[[Iterable[Sequence[Any]]], Iterable[Sequence[Any]]]:
-    """What puts rows of values in the order of `names` into another order.
+    """A function that reorders rows of values from the order of `names` to `order`.
 
     Raises:
-        ValueError: the names are not the same, each once.
+        ValueError: `names` is not a permutation of `order`.
     """
     places = {name: place for place, name in enumerate(names)}
     missing, unknown = {*order} - places.keys(), places.keys() - {*order}
@@ -481,7 +481,7 @@ def rows_in_order(
 
 
 def _picked(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
-    """What gives the values under all keys."""
+    """A function that gives the values of all keys as a tuple."""
     if len(keys) < 2:
         return lambda values: tuple(values[key] for key in keys)
     return itemgetter(*keys)
@@ -516,7 +516,7 @@ def _owed(certain: Signals[bool], possible: Signals[bool]) -> Truth:
 
 
 def finite_verdict(broken: Truth, fails: Truth) -> Truth:
-    """FRET's verdict on a finite trace: nothing was broken, and it may end here."""
+    """FRET's verdict on the finite trace: not violated, and it may end here."""
     if broken or fails:
         return False
     return True if broken is False and fails is False else None
@@ -535,12 +535,12 @@ def literals_of(
 
 
 def _copied(rail: Rail) -> Rail:
-    """A rail in the same state; only one of both can go on."""
+    """A rail in the same state; only one of both can be stepped further."""
     return _with_windows(rail, rail.doubt, Window.copy)
 
 
 def _forked(rail: Rail) -> Rail:
-    """A rail in the same state, on which an unknown counts as true; both can go on."""
+    """A rail in the same state, on which an unknown counts as true; both can be stepped."""
     return _with_windows(rail, True, Window.fork)
 
 
@@ -562,7 +562,7 @@ def _saved(rail: Rail) -> dict[str, Any]:
 
 
 def _digest(content: Mapping[str, Any]) -> str:
-    """Of a state, whether its runs are tuples or, out of JSON, lists."""
+    """The SHA-256 of a state; equal for tuples and for lists from JSON; empty if it is no JSON."""
     try:
         text = json.dumps(content, sort_keys=True, allow_nan=False)
     except (TypeError, ValueError):

@@ -20,7 +20,7 @@ class InputError(Exception):
 
 
 def visible(text: str) -> str:
-    """What would move the cursor, or begin another line, as escapes."""
+    """The text with control characters as escapes."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
@@ -47,10 +47,10 @@ def read_pieces(text: TextIO, names: Sequence[str], source: str) -> Iterator[Pie
 def placed_rows(
     text: Iterable[str], names: Sequence[str], source: str
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Each row with its place, by its columns; a column `tick` is held to its rule.
+    """The rows of a table, each with its position; a column `tick` is checked.
 
     Raises:
-        InputError: a column is missing, ticks jump.
+        InputError: a column is missing, or `tick` does not increase by one.
     """
     lines, number, is_json = _beginning(text, source)
     if is_json:
@@ -60,7 +60,7 @@ def placed_rows(
 
 
 def _beginning(text: Iterable[str], source: str) -> tuple[Iterator[str], int, bool]:
-    """The lines from the first one that is not empty, its number, and whether it is JSON."""
+    """The lines from the first non-empty one, its number, and whether the table is JSON."""
     lines = iter(text)
     lines = itertools.chain([next(lines, "").removeprefix("\ufeff")], lines)
     number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
@@ -73,7 +73,7 @@ def _beginning(text: Iterable[str], source: str) -> tuple[Iterator[str], int, bo
 def _in_order(
     rows: Iterable[tuple[str, dict[str, Any]]], names: Sequence[str], tick: int | None = None
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The rows, where a column `tick` grows by one, from the tick before the first row on."""
+    """The rows, after a check that a column `tick` increases by one."""
     has_tick: bool | None = None
     for place, row in rows:
         if "tick" not in names:
@@ -95,7 +95,7 @@ def _truths(
 def _header(
     lines: Iterable[str], names: Sequence[str], source: str, number: int
 ) -> tuple[list[str], int]:
-    """The columns of CSV that begins in that line, and the line in which its header ends."""
+    """The column names of a CSV header, and the number of its last line."""
     table = csv.reader(lines, strict=True)
     try:
         header = [name.strip() for name in next(table)]
@@ -161,7 +161,7 @@ def _check_columns(keys: Iterable[str], names: Sequence[str], place: str) -> Non
 
 
 def _short(text: str) -> str:
-    """As much of it as a message has room for."""
+    """The text, shortened for a message."""
     return text if len(text) <= _ROOM else f"{text[:_ROOM]}..."
 
 
@@ -197,7 +197,7 @@ _WHOLE = re.compile(r"\s*-?[0-9]{1,18}\s*")
 # Whole pieces of CSV, where they leave no doubt ------------------------------------------------
 
 _CHARACTERS, _MOST_CHARACTERS = 1 << 12, 1 << 22
-"""Of the text of a piece for each column, and at most; it ends with the line that they end in."""
+"""Characters of a piece per column, and the largest number; a piece ends at the end of a line."""
 
 
 class _Block(NamedTuple):
@@ -274,7 +274,7 @@ def _codes(words: Sequence[str]) -> bytes:
 
 
 def _last_tick(words: Sequence[str], before: int | None) -> int | None:
-    """The last of ticks that grow by one and are written without superfluous zeros."""
+    """The last tick, if ticks increase by one and have no leading zeros; else None."""
     if not words:
         return before
     if not (_WHOLE.fullmatch(words[0]) and _WHOLE.fullmatch(words[-1])):

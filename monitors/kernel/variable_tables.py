@@ -10,7 +10,7 @@ from monitors.kernel.variables import Value, Variable
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", re.ASCII)
 _OTHER_NUMBERS = {"nan": None, "inf": float("inf"), "+inf": float("inf"), "-inf": float("-inf")}
 _MOST_DIGITS = 30
-"""Of a whole number that is kept as it is; there are no 64 bits with more."""
+"""The largest number of digits of an exact whole number; 64-bit integers have fewer."""
 
 
 def read_variables(

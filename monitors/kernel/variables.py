@@ -12,20 +12,20 @@ from monitors.kernel.stepping import Monitor, _digest, rows_in_order
 from monitors.kernel.verdicts import Truth
 
 Value = float | str | bool | None
-"""What a variable may be at a tick; None is unknown."""
+"""The value of a variable at a tick; None is unknown."""
 
 
 class Variable(NamedTuple):
-    """What a variable of a sentence is."""
+    """The type of a variable of a sentence."""
 
     parameter: str
-    """Of `step`."""
+    """The name of its parameter of `step`."""
     kind: str
     """`number`, `truth` or `word`."""
     words: tuple[str, ...] = ()
-    """What a word may be."""
+    """The words of an enumeration."""
     infinite: tuple[str, ...] = ()
-    """Of a number `+inf`, `-inf`, where they mean something; else they are unknown."""
+    """The infinities that are values of a number: `+inf`, `-inf`; others are unknown."""
 
 
 _ROWS = 4096
@@ -41,7 +41,7 @@ class VariableMonitor(Monitor):
     """The truth of `PROPOSITIONS`, from a value for each of `VARIABLES`; once a tick, for it keeps
     what the next tick looks back at."""
     kept: tuple[Reading, ...] | None
-    """What the next tick looks back at; None before the first."""
+    """The values that the next tick looks back at; None before the first tick."""
 
     def reset(self) -> None:
         """Forget everything: the next step is tick 0."""
@@ -68,10 +68,10 @@ class VariableMonitor(Monitor):
                 raise
 
     def rows_of(self, names: Sequence[str]) -> Callable[[Iterable[Any]], Iterable[Any]]:
-        """What makes rows for `run` of rows whose values are in the order of `names`.
+        """A function that reorders rows with values in the order of `names` for `run`.
 
         Raises:
-            ValueError: the names are not those of `VARIABLES`, each once.
+            ValueError: the names are not a permutation of `VARIABLES`.
         """
         return rows_in_order(tuple(names), tuple(self.VARIABLES))
 
@@ -119,7 +119,7 @@ _SINGLE = "single "
 
 
 def _plain_value(reading: Reading) -> int | str | None:
-    """A number without loss, in JSON that knows no infinity."""
+    """A number as JSON without loss; JSON has no infinities."""
     if reading is None or isinstance(reading, int):
         return reading
     return f"{_SINGLE if isinstance(reading, Single) else ''}{reading.hex()}"

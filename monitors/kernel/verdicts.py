@@ -1,4 +1,4 @@
-"""Truth with unknowns, verdicts, and what of a requirement is watched at each tick."""
+"""Three-valued truth, verdicts, and the signals of a requirement at each tick."""
 
 from enum import Enum
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -8,10 +8,10 @@ Truth = bool | None
 
 
 def boolean(value: object, name: str = "") -> bool:
-    """A truth value that is not unknown, as Python has it: NumPy's Boolean, too.
+    """A Python `bool` from a `bool` or a NumPy Boolean.
 
     Raises:
-        TypeError: it is something else.
+        TypeError: the value is neither.
     """
     if type(value).__name__ in ("bool", "bool_"):
         return bool(value)
@@ -47,48 +47,48 @@ T = TypeVar("T")
 
 class _Signals(NamedTuple):
     trigger: Any
-    """A demand begins here."""
+    """An obligation begins at this tick."""
     breach: Any
-    """A demand is broken here: nothing that follows can repair it."""
+    """An obligation is violated at this tick, for every continuation."""
     doom: Any
-    """Demands are open here that no endless trace meets, though none of them is broken yet."""
+    """No infinite continuation meets the open obligations, though none is violated yet."""
     owed: Any
-    """A demand is open after this tick (where none has been broken before)."""
+    """An obligation is open after this tick (if none was violated before)."""
     fails: Any
-    """The trace would violate the requirement if it ended here, though nothing is broken yet."""
+    """The trace would violate the requirement if it ended here, though nothing is violated yet."""
     settled: Any
-    """Nothing that follows can break a demand any more."""
+    """No continuation can violate the requirement."""
     answer: Any
-    """The response comes here, where a demand waits for one."""
+    """The response to a pending obligation is true at this tick."""
 
 
 class Signals(_Signals, Generic[T]):
-    """A monitor's signals of one requirement: a truth value a tick, or whole columns of them.
+    """A monitor's signals of one requirement: truth values at a tick, or columns of them.
 
-    Each is a `T`; in Python 3.10 no NamedTuple can say so itself.
+    Each field is a `T`; a NamedTuple cannot be generic in Python 3.10.
     """
 
     __slots__ = ()
 
 
 class Requirement(NamedTuple):
-    """Which requirement a monitor watches."""
+    """A requirement of a monitor."""
 
     id: str
     sentence: str
     fingerprint: str
     """SHA-256 of the canonical sentence."""
     horizon: int | None
-    """Ticks from a trigger to its deadline; None where there is no deadline."""
+    """Ticks from a trigger to its deadline; None if there is no deadline."""
 
 
 def truth(must: bool, may: bool) -> Truth:
-    """What holds for certain and what may hold, as one truth value."""
+    """The three-valued truth value of a certain (`must`) and a possible (`may`) value."""
     return must if must == may else None
 
 
 def at_end(broken: Truth, owed: Truth, triggered: Truth) -> Verdict:
-    """The verdict of a trace that ends here."""
+    """The verdict on a trace that ends at this tick."""
     if broken is not False:
         return VIOLATED if broken else NO_DATA
     if owed is not False:

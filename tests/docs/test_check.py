@@ -7,7 +7,7 @@ import pytest
 
 from compiler.project.fixes import fixed
 from fretish.diagnostics.source import Source
-from fretish.parser import MISTAKES, mistakes, parse
+from fretish.parser import MOST_ERRORS, find_errors, parse
 from fretish.syntax import Sentence
 from tests.command import Fretc, write
 from tests.each import each
@@ -41,7 +41,7 @@ def test_the_fixes_of_the_table_are_sure(
 
 @pytest.mark.parametrize("text", ["p and q or r", "not p and q", "p until q", "3 < x < 5"])
 def test_the_ones_that_are_not_sure_are_left_alone(text: str) -> None:
-    found = mistakes(Source("r.fret", f"the sw shall satisfy {text}").span())
+    found = find_errors(Source("r.fret", f"the sw shall satisfy {text}").span())
     assert found
     assert not any(each.fix and each.fix.is_safe for each in found)
 
@@ -53,4 +53,4 @@ def test_the_messages_are_printed(fretc: Fretc) -> None:
 
 
 def test_as_many_mistakes_are_named_as_it_says() -> None:
-    assert f"at most {MISTAKES} mistakes" in DOCS
+    assert f"at most {MOST_ERRORS} mistakes" in DOCS

@@ -126,7 +126,7 @@ CHOICES: Mapping[tuple[str, str], tuple[str, ...] | type[StrEnum]] = {
     ("proposition.NAME", "agg"): d.Aggregate,
     ("proposition.NAME", "modality"): d.Modality,
     ("variable.NAME", "modality"): d.Modality,
-    ("interceptor", "form"): d.Form,
+    ("interceptor", "form"): d.InterceptorForm,
     ("assume", "requests"): d.Requests,
     ("assume", "planner"): d.Planner,
     ("waivers.toml", "verdict"): waivers.VERDICTS,

@@ -97,7 +97,7 @@ SENTENCES = [line for block in blocks(TEXT, "fretish") for line in block.splitli
 def test_each_sentence_of_the_page_is_read() -> None:
     assert len(SENTENCES) > 20
     for sentence in SENTENCES:
-        assert not has_errors(parser.mistakes(Source("r.fret", sentence).span())), sentence
+        assert not has_errors(parser.find_errors(Source("r.fret", sentence).span())), sentence
 
 
 Use = tuple[str, str, str]

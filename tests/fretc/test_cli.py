@@ -303,7 +303,7 @@ def test_a_bad_header_points_at_its_place(fretc: Fretc) -> None:
     assert fretc(write("r1.fret", f'+++\nid = "R1"\ntitel = "x"\n+++\n{R1}\n')) == Run(
         2,
         "",
-        "F103 `titel` is no field of a requirement's header\n"
+        "F103 unknown field `titel` in a requirement's header\n"
         "  --> r1.fret:3:1\n"
         '   | titel = "x"\n'
         "   | ^^^^^\n"
@@ -463,7 +463,7 @@ def test_a_broken_table_does_not_cost_the_clock(fretc: Fretc) -> None:
     run = fretc(write("r.fret", "whenever p the rover shall within 3 seconds satisfy q"))
     assert (run.status, "F[0,30] q" in run.out) == (2, True)
     assert run.err == (
-        "F306 `mps` is no unit\n"
+        "F306 unknown unit `mps`\n"
         "  --> bindings.toml:5:8\n"
         '   | unit = "mps"\n'
         "   |        ^^^^^\n"

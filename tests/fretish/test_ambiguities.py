@@ -36,28 +36,28 @@ def test_a_condition_that_triggers_where_it_becomes_true() -> None:
         "  --> r.fret:1:1\n"
         "   | when too_close & moving the sw shall immediately satisfy stopped\n"
         "   | ^^^^^^^^^^^^^^^^^^^^^^^\n"
-        "help: write `whenever too_close & moving` if it must trigger as long as that is true, "
-        "or `upon too_close & moving` if not"
+        "help: write `whenever too_close & moving` to trigger at every tick at which it is "
+        "true, else `upon too_close & moving`"
     )
 
 
 def test_a_sentence_without_a_timing() -> None:
     assert warnings_of("the sw shall satisfy q") == (
-        "F205 warning: without a timing the response is required at some time, however late\n"
+        "F205 warning: without a timing the response may come at any later tick\n"
         "  --> r.fret:1:5\n"
         "   | the sw shall satisfy q\n"
         "   |     ^^\n"
-        "help: write `eventually` if that is meant, or `immediately`, `always`, `within N seconds`"
+        "help: write `eventually` if you mean this, or `immediately`, `always`, `within N seconds`"
     )
 
 
 def test_a_deadline_in_a_scope_that_ends() -> None:
     assert warnings_of("in m mode whenever p the sw shall within 3 ticks satisfy q") == (
-        "F206 warning: where `m` ends the scope before the deadline, nothing is required\n"
+        "F206 warning: if `m` ends the scope before the deadline, nothing is required\n"
         "  --> r.fret:1:35\n"
         "   | in m mode whenever p the sw shall within 3 ticks satisfy q\n"
         "   |                                   ^^^^^^^^^^^^^^\n"
-        "help: the response is demanded only where the whole duration fits into the scope"
+        "help: the response is required only if the whole duration fits into the scope"
     )
 
 
@@ -67,17 +67,17 @@ def test_a_scope_after_a_mode() -> None:
         "  --> r.fret:1:1\n"
         "   | after x > 3 the sw shall always satisfy q\n"
         "   | ^^^^^^^^^^^\n"
-        "help: use a condition, `upon !(x > 3)`, to begin anew each time"
+        "help: to begin again each time, use a condition: `upon !(x > 3)`"
     )
 
 
 def test_a_scope_before_a_mode() -> None:
     assert warnings_of("before m mode the sw shall always satisfy q") == (
-        "F208 warning: where `m` holds at the first tick, nothing is required\n"
+        "F208 warning: if `m` is true at the first tick, nothing is required\n"
         "  --> r.fret:1:1\n"
         "   | before m mode the sw shall always satisfy q\n"
         "   | ^^^^^^^^^^^^^\n"
-        "help: state what must hold at the start apart, if `m` can hold there"
+        "help: if `m` can be true there, state what must hold at the start in another requirement"
     )
 
 

@@ -70,7 +70,7 @@ def test_several_headers_need_ids() -> None:
         '+++\nid = "R1"\n+++\nthe sw shall satisfy p\n+++\n+++\nsw shall satisfy q\n'
     )
     assert wrong.code is Code.BAD_FIELD
-    assert wrong.message == "each requirement needs an `id` where a file holds several"
+    assert wrong.message == "each requirement needs an `id` if a file holds several"
     assert wrong.span is not None
     assert wrong.span.line == 6
 
@@ -103,7 +103,7 @@ def test_three_plus_signs_inside_a_long_text_close_nothing() -> None:
 def test_an_unknown_field_is_told_with_the_nearest_one() -> None:
     (wrong,) = diagnostics_of(f'+++\nid = "R1"\nratoinale = "x"\n+++\n{SENTENCE}\n')
     assert render(wrong) == (
-        "F103 `ratoinale` is no field of a requirement's header\n"
+        "F103 unknown field `ratoinale` in a requirement's header\n"
         "  --> r1.fret:3:1\n"
         '   | ratoinale = "x"\n'
         "   | ^^^^^^^^^\n"
@@ -114,11 +114,11 @@ def test_an_unknown_field_is_told_with_the_nearest_one() -> None:
 def test_an_unknown_field_without_a_near_one_is_told_what_there_is() -> None:
     (wrong,) = diagnostics_of(f'+++\nid = "R1"\n  zzz = 1\n+++\n{SENTENCE}\n')
     assert render(wrong) == (
-        "F103 `zzz` is no field of a requirement's header\n"
+        "F103 unknown field `zzz` in a requirement's header\n"
         "  --> r1.fret:3:3\n"
         "   |   zzz = 1\n"
         "   |   ^^^\n"
-        "help: it may have id, title, text, parents, rationale, status, verify, params, accept, "
+        "help: the fields are id, title, text, parents, rationale, status, verify, params, accept, "
         "fret"
     )
 

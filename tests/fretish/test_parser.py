@@ -513,7 +513,7 @@ def test_a_missing_satisfy_is_put_in() -> None:
 
 def test_a_misspelt_timing_is_fixed() -> None:
     assert message_of("whenever p the sw shall eventualy satisfy q") == (
-        "F107 `eventualy` is no word of FRETish here\n"
+        "F107 FRETish does not allow the word `eventualy` here\n"
         "  --> r.fret:1:25\n"
         "   | whenever p the sw shall eventualy satisfy q\n"
         "   |                         ^^^^^^^^^\n"
@@ -523,7 +523,7 @@ def test_a_misspelt_timing_is_fixed() -> None:
 
 def test_a_misspelt_condition_word_is_fixed() -> None:
     assert message_of("wen p the sw shall satisfy q") == (
-        "F107 `wen` is no word of FRETish here\n"
+        "F107 FRETish does not allow the word `wen` here\n"
         "  --> r.fret:1:1\n"
         "   | wen p the sw shall satisfy q\n"
         "   | ^^^\n"
@@ -533,7 +533,7 @@ def test_a_misspelt_condition_word_is_fixed() -> None:
 
 def test_another_misspelt_condition_word_is_fixed() -> None:
     assert message_of("wenever p the sw shall satisfy q") == (
-        "F107 `wenever` is no word of FRETish here\n"
+        "F107 FRETish does not allow the word `wenever` here\n"
         "  --> r.fret:1:1\n"
         "   | wenever p the sw shall satisfy q\n"
         "   | ^^^^^^^\n"
@@ -554,7 +554,7 @@ def test_a_missing_unit_is_asked_for() -> None:
 
 def test_an_unknown_unit_is_named() -> None:
     assert message_of("the sw shall within 3 days satisfy q") == (
-        "F108 a duration needs a unit, and `days` is none\n"
+        "F108 a duration needs a unit, and `days` is not one\n"
         "  --> r.fret:1:23\n"
         "   | the sw shall within 3 days satisfy q\n"
         "   |                       ^^^^\n"
@@ -565,7 +565,7 @@ def test_an_unknown_unit_is_named() -> None:
 
 def test_a_fraction_of_a_unit_is_refused() -> None:
     assert message_of("the sw shall within 2.5 seconds satisfy q") == (
-        "F108 a duration counts whole units, and `2.5` is no whole number\n"
+        "F108 a duration must be a whole number, and `2.5` is not\n"
         "  --> r.fret:1:21\n"
         "   | the sw shall within 2.5 seconds satisfy q\n"
         "   |                     ^^^\n"
@@ -609,7 +609,7 @@ def test_an_open_parenthesis_is_told_at_the_end() -> None:
         "  --> r.fret:1:32\n"
         "   | the sw shall satisfy p & (q | r\n"
         "   |                                ^\n"
-        "help: write `)` here, or where the part ends that is meant"
+        "help: write `)` here, or where the part in parentheses must end"
     )
 
 
@@ -629,5 +629,5 @@ def test_a_second_sentence_is_told() -> None:
         "  --> r.fret:1:24\n"
         "   | the sw shall satisfy q the sw shall satisfy r\n"
         "   |                        ^^^\n"
-        "help: give each a header, with an `id` between two lines `+++`, or a file of its own"
+        "help: give each sentence a header with an `id` between two lines `+++`, or its own file"
     )

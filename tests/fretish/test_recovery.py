@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.diagnostics.fixes import applied
+from fretish.diagnostics.fixes import apply_fixes
 from fretish.diagnostics.source import Source
-from fretish.parser import MISTAKES, mistakes, parse
+from fretish.parser import MOST_ERRORS, find_errors, parse
 from fretish.syntax import Sentence
 from tests.effort import some
 from tests.fuzzing import sentences
@@ -35,7 +35,7 @@ FOREIGN = (  # what is written, and what other languages write; each means the s
 
 
 def all_of(text: str) -> tuple[Diagnostic, ...]:
-    return mistakes(Source("r.fret", text).span())
+    return find_errors(Source("r.fret", text).span())
 
 
 def fixed(text: str) -> str:
@@ -48,7 +48,7 @@ def fixed(text: str) -> str:
         )
         if not fixes:
             return text
-        text = applied(Source("r.fret", text).span(), fixes)
+        text = apply_fixes(Source("r.fret", text).span(), fixes)
     raise AssertionError(text)
 
 
@@ -74,7 +74,7 @@ def test_behind_a_mistake_that_is_not_sure_nothing_is_guessed() -> None:
 
 
 def test_so_many_are_told_and_no_more() -> None:
-    assert len(all_of("the sw shall satisfy p" + " and p" * 30)) == MISTAKES
+    assert len(all_of("the sw shall satisfy p" + " and p" * 30)) == MOST_ERRORS
     assert fixed("the sw shall satisfy p" + " and p" * 30).count("&") == 30
 
 
@@ -88,21 +88,21 @@ def test_mistakes_of_any_text_have_a_place_an_order_and_fixes_that_lead_on(seed:
     """Each safe fix takes away its own mistake, and brings no other one."""
     for text in sentences(150, seed=seed):
         source = Source("fuzz.fret", text)
-        found = mistakes(source.span())
+        found = find_errors(source.span())
         assert bool(found) == isinstance(parse(source.span()), Diagnostic), text
-        assert len(found) <= MISTAKES
+        assert len(found) <= MOST_ERRORS
         places = [d.span for d in found if d.span is not None]
         assert len(places) == len(found), text
         assert all(0 <= s.start <= s.end <= len(text) and s.source == source for s in places)
         assert [s.start for s in places] == sorted(s.start for s in places), text
         sure = [d.fix for d in found if d.fix is not None and d.fix.is_safe]
-        if sure and len(found) < MISTAKES:
-            corrected = applied(
+        if sure and len(found) < MOST_ERRORS:
+            corrected = apply_fixes(
                 source.span(), sorted(sure, key=lambda m: (m.span.start, m.span.end))
             )
-            assert len(mistakes(Source("fuzz.fret", corrected).span())) <= len(found) - len(sure), (
-                text
-            )
+            assert len(find_errors(Source("fuzz.fret", corrected).span())) <= len(found) - len(
+                sure
+            ), text
 
 
 @pytest.mark.slow

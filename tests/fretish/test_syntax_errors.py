@@ -29,7 +29,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall always satisfy v < 1e9999 m/s",
-            "F308 the number has more than 60 digits, or an exponent of more than 3\n"
+            "F308 the number has more than 60 digits, or an exponent of more than 3 digits\n"
             "  --> r.fret:1:33\n"
             "   | the sw shall always satisfy v < 1e9999 m/s\n"
             "   |                                 ^^^^^^\n"
@@ -37,7 +37,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall within 3 ms satisfy p",
-            "F108 a duration needs a unit, and `ms` is none\n"
+            "F108 a duration needs a unit, and `ms` is not one\n"
             "  --> r.fret:1:23\n"
             "   | the sw shall within 3 ms satisfy p\n"
             "   |                       ^^\n"
@@ -45,7 +45,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall within 3 secnds satisfy p",
-            "F108 a duration needs a unit, and `secnds` is none\n"
+            "F108 a duration needs a unit, and `secnds` is not one\n"
             "  --> r.fret:1:23\n"
             "   | the sw shall within 3 secnds satisfy p\n"
             "   |                       ^^^^^^\n"
@@ -53,7 +53,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall within 3 parsecs satisfy p",
-            "F108 a duration needs a unit, and `parsecs` is none\n"
+            "F108 a duration needs a unit, and `parsecs` is not one\n"
             "  --> r.fret:1:23\n"
             "   | the sw shall within 3 parsecs satisfy p\n"
             "   |                       ^^^^^^^\n"
@@ -62,19 +62,19 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall within n ticks satisfy p",
-            "F108 a duration begins with a number in digits\n"
+            "F108 a duration must begin with a number in digits\n"
             "  --> r.fret:1:21\n"
             "   | the sw shall within n ticks satisfy p\n"
             "   |                     ^\n"
-            "help: write such as `within N seconds`",
+            "help: write, for example, `within N seconds`",
         ),
         (
             "the sw shall for satisfy p",
-            "F108 a duration begins with a number in digits\n"
+            "F108 a duration must begin with a number in digits\n"
             "  --> r.fret:1:18\n"
             "   | the sw shall for satisfy p\n"
             "   |                  ^^^^^^^\n"
-            "help: write such as `for N seconds`",
+            "help: write, for example, `for N seconds`",
         ),
         (
             "globally the sw shall satisfy p",
@@ -82,27 +82,27 @@ def mistake_of(text: str) -> Diagnostic:
             "  --> r.fret:1:1\n"
             "   | globally the sw shall satisfy p\n"
             "   | ^^^^^^^^\n"
-            "help: leave it out: without a scope a requirement is enforced everywhere",
+            "help: remove it: without a scope a requirement applies to the whole run",
         ),
         (
             "in m & n the sw shall satisfy q",
-            "F101 a mode is one name\n"
+            "F101 a mode must be one name\n"
             "  --> r.fret:1:6\n"
             "   | in m & n the sw shall satisfy q\n"
             "   |      ^\n"
-            "help: for an expression write `while p & q` in place of `in`",
+            "help: for an expression, write `while p & q` instead of `in`",
         ),
         (
             "in x > 3 the sw shall satisfy q",
-            "F101 a mode is one name\n"
+            "F101 a mode must be one name\n"
             "  --> r.fret:1:6\n"
             "   | in x > 3 the sw shall satisfy q\n"
             "   |      ^\n"
-            "help: for an expression write `while p & q` in place of `in`",
+            "help: for an expression, write `while p & q` instead of `in`",
         ),
         (
             "the sw must satisfy q",
-            "F107 a requirement says `shall`, not `must`\n"
+            "F107 a requirement uses `shall`, not `must`\n"
             "  --> r.fret:1:8\n"
             "   | the sw must satisfy q\n"
             "   |        ^^^^\n"
@@ -110,7 +110,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "sw has satisfy q",
-            "F107 a requirement says `shall`, not `has`\n"
+            "F107 a requirement uses `shall`, not `has`\n"
             "  --> r.fret:1:4\n"
             "   | sw has satisfy q\n"
             "   |    ^^^\n"
@@ -122,27 +122,27 @@ def mistake_of(text: str) -> Diagnostic:
             "  --> r.fret:1:8\n"
             "   | when p then the sw shall satisfy q\n"
             "   |        ^^^^\n"
-            "help: leave `then` out",
+            "help: remove `then`",
         ),
         (
             "in the m mode the sw shall satisfy q",
-            "F101 a mode has no article\n"
+            "F101 a mode cannot contain `the`\n"
             "  --> r.fret:1:4\n"
             "   | in the m mode the sw shall satisfy q\n"
             "   |    ^^^\n"
-            "help: leave `the` out",
+            "help: remove `the`",
         ),
         (
             "while m mode the sw shall satisfy q",
-            "F101 after `while` stands an expression, not a mode\n"
+            "F101 `while` needs an expression, not a mode\n"
             "  --> r.fret:1:9\n"
             "   | while m mode the sw shall satisfy q\n"
             "   |         ^^^^\n"
-            "help: leave `mode` out",
+            "help: remove `mode`",
         ),
         (
             "the sw shall satisfy eventually q",
-            "F101 the timing stands before `satisfy`\n"
+            "F101 the timing must stand before `satisfy`\n"
             "  --> r.fret:1:22\n"
             "   | the sw shall satisfy eventually q\n"
             "   |                      ^^^^^^^^^^\n"
@@ -150,7 +150,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "with probability > 0.9 the sw shall satisfy q",
-            "F101 the probability stands after `shall`\n"
+            "F101 the probability must stand after `shall`\n"
             "  --> r.fret:1:1\n"
             "   | with probability > 0.9 the sw shall satisfy q\n"
             "   | ^^^^\n"
@@ -166,7 +166,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall satisfy p && q",
-            "F101 `&&` is no operator of FRETish\n"
+            "F101 `&&` is not an operator of FRETish\n"
             "  --> r.fret:1:24\n"
             "   | the sw shall satisfy p && q\n"
             "   |                        ^^\n"
@@ -174,7 +174,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall satisfy p || q",
-            "F101 `||` is no operator of FRETish\n"
+            "F101 `||` is not an operator of FRETish\n"
             "  --> r.fret:1:24\n"
             "   | the sw shall satisfy p || q\n"
             "   |                        ^^\n"
@@ -182,7 +182,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall satisfy x == 3",
-            "F101 `==` is no operator of FRETish\n"
+            "F101 `==` is not an operator of FRETish\n"
             "  --> r.fret:1:24\n"
             "   | the sw shall satisfy x == 3\n"
             "   |                        ^^\n"
@@ -190,7 +190,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall satisfy not p",
-            "F101 `not` is no operator of FRETish\n"
+            "F101 `not` is not an operator of FRETish\n"
             "  --> r.fret:1:22\n"
             "   | the sw shall satisfy not p\n"
             "   |                      ^^^\n"
@@ -198,7 +198,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall satisfy TRUE",
-            "F101 `TRUE` is no operator of FRETish\n"
+            "F101 `TRUE` is not an operator of FRETish\n"
             "  --> r.fret:1:22\n"
             "   | the sw shall satisfy TRUE\n"
             "   |                      ^^^^\n"
@@ -206,15 +206,15 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall satisfy 3 < x < 5",
-            "F101 comparisons do not chain\n"
+            "F101 comparisons cannot be chained\n"
             "  --> r.fret:1:28\n"
             "   | the sw shall satisfy 3 < x < 5\n"
             "   |                            ^\n"
-            "help: write each by itself, and join them by `&`: `... < x & x < ...`",
+            "help: write two comparisons, and join them by `&`: `... < x & x < ...`",
         ),
         (
             "the sw shall satisfy x > .5",
-            "F101 a number begins with a digit\n"
+            "F101 a number must begin with a digit\n"
             "  --> r.fret:1:26\n"
             "   | the sw shall satisfy x > .5\n"
             "   |                          ^\n"
@@ -222,15 +222,15 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall satisfy x > 007",
-            "F101 a number does not begin with 0\n"
+            "F101 a number must not begin with 0\n"
             "  --> r.fret:1:26\n"
             "   | the sw shall satisfy x > 007\n"
             "   |                          ^^\n"
-            "help: leave the leading zeros out",
+            "help: remove the leading zeros",
         ),
         (
             "the sw shall alwyas satisfy q",
-            "F107 `alwyas` is no word of FRETish here\n"
+            "F107 FRETish does not allow the word `alwyas` here\n"
             "  --> r.fret:1:14\n"
             "   | the sw shall alwyas satisfy q\n"
             "   |              ^^^^^^\n"
@@ -238,7 +238,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "durring m the sw shall satisfy q",
-            "F107 `durring` is no word of FRETish here\n"
+            "F107 FRETish does not allow the word `durring` here\n"
             "  --> r.fret:1:1\n"
             "   | durring m the sw shall satisfy q\n"
             "   | ^^^^^^^\n"
@@ -266,7 +266,7 @@ def mistake_of(text: str) -> Diagnostic:
             "  --> r.fret:1:24\n"
             "   | the sw shall satisfy (p\n"
             "   |                        ^\n"
-            "help: write `)` here, or where the part ends that is meant",
+            "help: write `)` here, or where the part in parentheses must end",
         ),
         (
             "the sw shall satisfy p the sw shall satisfy q",
@@ -274,8 +274,8 @@ def mistake_of(text: str) -> Diagnostic:
             "  --> r.fret:1:24\n"
             "   | the sw shall satisfy p the sw shall satisfy q\n"
             "   |                        ^^^\n"
-            "help: give each a header, with an `id` between two lines `+++`, "
-            "or a file of its own",
+            "help: give each sentence a header with an `id` between two lines "
+            "`+++`, or its own file",
         ),
         (
             "when p is on the sw shall satisfy q",
@@ -311,16 +311,16 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall satisfy the p",
-            "F101 an expression has no article\n"
+            "F101 an expression cannot contain `the`\n"
             "  --> r.fret:1:22\n"
             "   | the sw shall satisfy the p\n"
             "   |                      ^^^\n"
-            "help: leave `the` out",
+            "help: remove `the`",
         ),
         # Words of other languages, after a whole expression too.
         (
             "the sw shall satisfy p and q",
-            "F101 `and` is no operator of FRETish\n"
+            "F101 `and` is not an operator of FRETish\n"
             "  --> r.fret:1:24\n"
             "   | the sw shall satisfy p and q\n"
             "   |                        ^^^\n"
@@ -328,7 +328,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
         (
             "the sw shall until (p or q) satisfy r",
-            "F101 `or` is no operator of FRETish\n"
+            "F101 `or` is not an operator of FRETish\n"
             "  --> r.fret:1:23\n"
             "   | the sw shall until (p or q) satisfy r\n"
             "   |                       ^^\n"
@@ -368,7 +368,7 @@ def test_a_mistake_has_its_code_and_its_place(text: str, code: str, place: str) 
     [
         ("a[3]", "[", 'quote a name with brackets: `"a[3]"`'),
         ("_p", "_", "a name begins with a letter"),
-        ('"p', '"', "close the quotes, or leave them out"),
+        ('"p', '"', "close the quotes, or remove them"),
         ("\u201cp\u201d", "\u201c", 'write `"p"`'),
         ("\u201cp", "\u201c", 'use straight quotes: `"`'),
         ("p\u201d", "\u201d", 'use straight quotes: `"`'),
@@ -388,7 +388,7 @@ def test_a_mistake_has_its_code_and_its_place(text: str, code: str, place: str) 
 def test_a_character_that_no_word_has_is_told(response: str, character: str, fix: str) -> None:
     found = mistake_of(f"the sw shall satisfy {response}")
     assert found.code.number == "F101"
-    assert found.message == f"`{character}` is no character of FRETish"
+    assert found.message == f"FRETish does not use the character `{character}`"
     assert found.span is not None
     assert (found.span.text, found.span.start) == (character, 21 + response.index(character))
     assert found.help == fix
@@ -436,7 +436,7 @@ def test_what_the_fix_says_is_fretish(text: str, fixed: str) -> None:
 def test_a_counting_timing_at_the_wrong_place_keeps_its_duration_in_the_fix(timing: str) -> None:
     """`within satisfy ...` would be no FRETish."""
     found = mistake_of(f"the sw shall satisfy {timing} q")
-    assert found.message == "the timing stands before `satisfy`"
+    assert found.message == "the timing must stand before `satisfy`"
     assert f"{timing.split()[0]} satisfy" not in (found.help or "")
 
 
@@ -446,13 +446,13 @@ def test_the_fix_of_a_negative_duration_is_not_a_smaller_unit() -> None:
 
 def test_only_the_first_mistake_is_told() -> None:
     assert render(mistake_of("the sw must alwyas satisfy not q")).startswith(
-        "F107 a requirement says"
+        "F107 a requirement uses"
     )
 
 
 def test_a_mistake_of_a_later_line_is_shown_with_its_line() -> None:
     assert render(mistake_of("whenever p\n  the sw shall\n  alwyas satisfy q")) == (
-        "F107 `alwyas` is no word of FRETish here\n"
+        "F107 FRETish does not allow the word `alwyas` here\n"
         "  --> r.fret:3:3\n"
         "   |   alwyas satisfy q\n"
         "   |   ^^^^^^\n"

@@ -207,7 +207,7 @@ def test_it_stops_unless_owed_is_false_and_all_is_there(
 
 
 def test_parameters_are_checked(emitted: Any) -> None:
-    with pytest.raises(ValueError, match="there is no requirement OTHER: SLOW, STOP"):
+    with pytest.raises(ValueError, match="unknown requirement OTHER: there are SLOW, STOP"):
         Run(emitted, "OTHER")
     for timeout in (-1.0, float("nan"), 1e9):
         with pytest.raises(ValueError, match="source_timeout is from 0 to"):

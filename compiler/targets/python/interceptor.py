@@ -17,7 +17,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.interceptor_options import options as counted
 from compiler.targets.interceptor_options import repetition, ticks
 from compiler.targets.target import DEFAULT, Options, Target
-from fretish.bindings.declarations import Declarations, Form, Interception
+from fretish.bindings.declarations import Declarations, Interception, InterceptorForm
 from fretish.bindings.tables.interceptor import TABLE
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
@@ -54,7 +54,7 @@ def remarks(options: Options) -> tuple[Diagnostic, ...]:
         return ()
     node = declared.interceptor
     latched = (_latching(node),) if node.latching else ()
-    if node.form is Form.EVENT:
+    if node.form is InterceptorForm.EVENT:
         return (*latched, _event_driven(node))
     return (*latched, *_unwatched(node), *_short_hold(declared, node))
 
@@ -169,7 +169,7 @@ def _options(node: Interception) -> Iterator[tuple[str, Any, str]]:
 
 
 def _node(node: Interception) -> dict[str, Any]:
-    timed = node.form is Form.TIMER
+    timed = node.form is InterceptorForm.TIMER
     return {
         "ros": node.ros,
         "stop": node.stop,
@@ -194,7 +194,7 @@ def _summary(node: Interception) -> str:
     """The summary in `--help`."""
     when = (
         f"Every {_duration(node.period)}, on each command and at once on a request to stop"
-        if node.form is Form.TIMER
+        if node.form is InterceptorForm.TIMER
         else "On each command"
     )
     scan = f", {node.scan} (LaserScan)" if node.scan else ""

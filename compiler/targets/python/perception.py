@@ -77,7 +77,7 @@ def _of_clock(declared: Declarations) -> Iterator[tuple[str, str]]:
             "its clock is the time of publication, which a subscriber is not given",
             'write `time = "log_time"` or `time = "header.stamp"`',
         )
-    if clock.patience is None:
+    if clock.effective_lateness is None:
         yield (
             "nothing says how long a tick waits for its messages",
             'add `lateness = "50 ms"` to `[clock]`',
@@ -112,7 +112,7 @@ def setting(requirements: Sequence[FormalizedRequirement]) -> Setting:
         tuple(map(_meaning, found.meanings)),
         declared.clock.period,
         declared.clock.phase,
-        declared.clock.patience or 0,
+        declared.clock.effective_lateness or 0,
         declared.clock.time is TimeSource.HEADER_STAMP,
         tuple(f"({requirement.id!r}, {topics_of(requirement)!r})" for requirement in requirements),
     )

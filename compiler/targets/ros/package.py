@@ -199,7 +199,7 @@ def package(requirements: Sequence[FormalizedRequirement], options: Options) -> 
         tuple(_topics(signals)),
         clock.period,
         clock.phase,
-        clock.patience or 0,
+        clock.effective_lateness or 0,
         clock.time,
         tuple(_parameters(requirements, signals, options, clock.period)),
         PurePosixPath(declared.source.name).name,

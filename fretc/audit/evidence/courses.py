@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from fretc.audit.evidence.schema import MOST_POINTS, MOST_WORDS, Course, Way, Words
 from fretc.logs.signals.propositions import history_of
 from fretc.logs.signals.samples import Gap, Numbers, Recording, Samples, Times
-from fretish.bindings.declarations import Declarations, Map, Signal
+from fretish.bindings.declarations import Declarations, MapCoordinates, Signal
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 _PAUSE = 10**9
@@ -77,7 +77,7 @@ def _words(signal: Signal, recording: Recording) -> Words:
 # The way ---------------------------------------------------------------------------------------
 
 
-def _way(drawn: Map, recording: Recording) -> Way | None:
+def _way(drawn: MapCoordinates, recording: Recording) -> Way | None:
     """The way as lines; each is thinned where that moves no place by much."""
     if not {drawn.x.name, drawn.y.name} <= recording.beside.keys():
         return None

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
-from fretish.diagnostics import signs
-from fretish.diagnostics.signs import Sign
+from fretish.diagnostics import status_symbols as signs
+from fretish.diagnostics.status_symbols import StatusSymbol
 from monitors import kernel
 
 UNFORMALIZED = "unformalized"
@@ -39,7 +39,7 @@ class Verdict:
     """A verdict as it is shown and counted."""
 
     word: str
-    sign: Sign
+    sign: StatusSymbol
     level: Level
     junit: str
     """The element of JUnit for it; empty: the case passes."""

@@ -13,7 +13,7 @@ from fretc.audit.evidence.schema import Result, Violation
 from fretc.audit.evidence.verdicts import BROKEN, SHOWN, VERDICTS
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.audit.measurements.trials import Trials
-from fretish.diagnostics.signs import Sign
+from fretish.diagnostics.status_symbols import StatusSymbol
 from monitors import kernel
 
 NOT_JUDGED = "not judged"
@@ -174,7 +174,7 @@ class Marks:
         return min((*words, *filter(None, [self.answers.get(id)])), key=severity)
 
 
-def sign_of(word: str) -> Sign:
+def sign_of(word: str) -> StatusSymbol:
     """The sign of a word; of a run that only counts that of what is open."""
     own = {NOT_JUDGED: kernel.NO_DATA, COUNTED: kernel.INCONCLUSIVE}.get(word, word)
     return VERDICTS[own].sign

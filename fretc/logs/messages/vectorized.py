@@ -18,7 +18,7 @@ from fretc.logs.signals.propositions import TRUE, truth
 from fretc.logs.signals.samples import EXACT, Numbers, Values, scaled
 from fretc.logs.signals.signals import clearance, mean, unrounded
 from fretish import expressions as e
-from fretish.bindings.declarations import Invalid, Reading, Reduce, Signal
+from fretish.bindings.declarations import InvalidReadings, Reading, Reduce, Signal
 from fretish.expressions import MIRRORED
 from fretish.reading.caching import cache_by_identity
 
@@ -127,7 +127,7 @@ _WEAKER = {Reduce.MIN: Reading.FAR, Reduce.MAX: Reading.NEAR}
 
 
 def _classes(
-    invalid: Invalid, values: Values, valid: Callable[[], Truths]
+    invalid: InvalidReadings, values: Values, valid: Callable[[], Truths]
 ) -> Iterator[tuple[Reading, Callable[[], Truths]]]:
     """Each kind of element that is no measurement: its meaning, and its elements."""
     yield invalid.nan, lambda: np.isnan(values)

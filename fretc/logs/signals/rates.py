@@ -80,7 +80,7 @@ def late_messages(
     topic: str, place: Span | None, count: int, of: int, over: int, clock: Clock
 ) -> Diagnostic:
     """F429; `over` is by how much the latest one missed its tick, beside the lateness."""
-    lateness = clock.patience or 0
+    lateness = clock.effective_lateness or 0
     needed = -(-(lateness + over) // 10**7) * 10**7
     return Diagnostic(
         Code.LATE_MESSAGES,

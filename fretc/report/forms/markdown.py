@@ -28,7 +28,7 @@ from fretc.report.model.views import (
 from fretc.report.sections.details import Details
 from fretc.report.sections.proofs import is_refuted, refutations
 from fretc.report.sections.signatures import BROKEN as DOES_NOT_VERIFY
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 
 _MARKUP = re.compile(r"([\\`*_{}\[\]()<>#+!|~&:@-])")
 _VIOLATED, _NOT_SHOWN, _CHANGED, _OTHERS = 8, 4, 4, 3

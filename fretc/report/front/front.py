@@ -25,7 +25,7 @@ from fretc.report.model.front import Figure, FigureLine, Front
 from fretc.report.model.views import Overall, RequirementView, Row, RunSummary
 from fretc.report.sections.proofs import is_proved_layer, is_refuted
 from fretc.report.sections.runs import Run
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Severity
 
 _CHANGES = 3

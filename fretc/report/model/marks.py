@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from fretc.audit.evidence.verdicts import SUSPECT, VERDICTS, severity, shows
-from fretish.diagnostics.signs import Sign
+from fretish.diagnostics.status_symbols import StatusSymbol
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +41,6 @@ def verdict_mark(word: str, *, suspect: bool = False) -> Mark:
     return sign_mark(word, VERDICTS[word].sign, suspect=suspect)
 
 
-def sign_mark(word: str, sign: Sign, *, suspect: bool = False) -> Mark:
+def sign_mark(word: str, sign: StatusSymbol, *, suspect: bool = False) -> Mark:
     """The mark of any other outcome."""
     return Mark(word, sign.glyph, sign.kind, suspect)

@@ -20,7 +20,7 @@ from fretc.report.model.views import (
     sign_mark,
 )
 from fretc.report.sections.proofs import is_proved_layer, is_refuted
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 from fretish.reading.natural_order import natural
 
 _LOOP = Mark("closed loop proved", "◆", "")

@@ -15,7 +15,7 @@ from fretc.report.model.views import Signatures, SignatureView, Signed, sign_mar
 from fretc.report.traceability.lock import Review
 from fretc.report.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 _SIGNED = sign_mark("signed", signs.GOOD)

@@ -27,7 +27,7 @@ from fretc.report.model.views import (
     sign_mark,
 )
 from fretish.bindings.declarations import Role
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 
 _WORDS: Mapping[Verdict, str] = {
     Verdict.REALIZABLE: REALIZABLE,

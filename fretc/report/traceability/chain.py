@@ -479,7 +479,7 @@ def _topics(requirement: FormalizedRequirement | None, project: Project) -> set[
     """Which the propositions of a requirement are read from."""
     if requirement is None or project.declarations is None:
         return set()
-    read = project.declarations.reading(requirement.watched)
+    read = project.declarations.restricted_to(requirement.watched)
     return {signal.path.topic for signal in read.signals.values()}
 
 

@@ -9,7 +9,7 @@ from fretc.analysis.reasons import listed
 from fretc.analysis.text_output import Line, drawn
 from fretc.testing.conformance.findings import Conformance, Failure, Outcome, Situated
 from fretish.bindings.declarations import Role
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 
 
 def lines(found: Conformance, roles: Mapping[str, Role]) -> Iterator[Line]:

@@ -73,7 +73,9 @@ def stageable(suite: Suite, project: Project) -> tuple[tuple[Aim, ...], Mapping[
     for requirement in project.formalized:
         bound = declarations.propositions if declarations is not None else {}
         free = [name for name in requirement.watched if name not in bound]
-        read = declarations.reading(requirement.watched).signals.values() if declarations else ()
+        read = (
+            declarations.restricted_to(requirement.watched).signals.values() if declarations else ()
+        )
         absent = sorted({signal.path.topic for signal in read} - there)
         if free:
             why[requirement.id] = f"nothing binds `{free[0]}`"

@@ -19,10 +19,10 @@ from tempfile import TemporaryDirectory
 from compiler.files.text_files import sha256
 from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof, proved, refuted
 from fretc.verification.engines.programs import MEMORY, STARTED, Completion, run
-from fretish.diagnostics.extras import install
+from fretish.diagnostics.extras import install_help
 
 CROSSHAIR_SECONDS = 60.0
-_ABSENT = f"CrossHair is not installed: {install('crosshair')}"
+_ABSENT = f"CrossHair is not installed: {install_help('crosshair')}"
 _MODULE = "interceptor_core"
 _WHOLE = "the numbers of a velocity are whole; no function names one of them"
 _APART = (ast.Subscript, ast.For, ast.Starred, ast.comprehension, ast.MatchSequence)

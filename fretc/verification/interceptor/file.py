@@ -17,7 +17,7 @@ from typing import Any
 from compiler.targets.python import interceptor
 from compiler.targets.python.interceptor import MARKER
 from fretc.verification.interceptor.purity import UnexpectedCodeError, bound_names, is_guarded
-from fretish.bindings.declarations import Form, Interception
+from fretish.bindings.declarations import Interception, InterceptorForm
 from fretish.reading.text_encoding import is_utf8
 from monitors.loading import executed
 from monitors.source_text import interceptor as original
@@ -158,7 +158,7 @@ def _nodes() -> tuple[str, ...]:
     interceptions = (
         Interception("/a", "/b", "/c", scan, 10**8, form=form, ros=ros)
         for scan in (None, "/d")
-        for form in Form
+        for form in InterceptorForm
         for ros in (1, 2)
     )
     texts = (interceptor.text(one, "bindings.toml") for one in interceptions)

@@ -25,7 +25,13 @@ from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.interceptor.file import otherwise
 from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.search import Case, Results, search
-from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
+from fretish.bindings.declarations import (
+    Interception,
+    InterceptorForm,
+    LoopAssumptions,
+    Planner,
+    Requests,
+)
 from fretish.clock import in_words
 from fretish.expressions import names
 
@@ -50,7 +56,7 @@ class Setup:
     monitor: NamedText
     interceptor: NamedText | None
     interception: Interception | None
-    assumed: Assumed | None
+    assumed: LoopAssumptions | None
 
 
 def loop_proofs(
@@ -142,7 +148,7 @@ def case(requirement: FormalizedRequirement, setup: Setup) -> Case | str:
 
 
 def channel(
-    requirement: FormalizedRequirement, interception: Interception, assumed: Assumed
+    requirement: FormalizedRequirement, interception: Interception, assumed: LoopAssumptions
 ) -> Channel | str:
     """The assumptions in cells; or why no cell fits."""
     tick = requirement.clock.period if requirement.clock else None
@@ -166,9 +172,9 @@ def channel(
     )
 
 
-def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
+def cell_of(tick: int, interception: Interception, assumed: LoopAssumptions) -> int:
     """Nanoseconds: a period of the timer; without a timer the unit that fits the durations best."""
-    if interception.form is Form.TIMER:
+    if interception.form is InterceptorForm.TIMER:
         return interception.period
     exact = gcd(tick, assumed.latency, assumed.braking)
     return exact if tick // exact <= _FINEST else tick
@@ -208,7 +214,7 @@ def assumptions(
     yield (
         "the node around the interceptor's step hands on every message, and publishes what it gives"
     )
-    if interception.form is Form.TIMER:
+    if interception.form is InterceptorForm.TIMER:
         period = in_words(interception.period)
         yield f"the interceptor's timer rings once in each {period} (`period`, [interceptor])"
     yield from _rounded(interception, assumed, tick, any_time=any_time)
@@ -216,7 +222,7 @@ def assumptions(
         yield "the safety function never falls silent: there is no `stop_timeout` ([interceptor])"
 
 
-def _messages(assumed: Assumed, tick: int, *, any_time: bool) -> Iterator[str]:
+def _messages(assumed: LoopAssumptions, tick: int, *, any_time: bool) -> Iterator[str]:
     """The assumptions about stop messages."""
     yield (
         f"the safety function steps at every tick of {in_words(tick)} and sends its request "
@@ -232,7 +238,7 @@ def _messages(assumed: Assumed, tick: int, *, any_time: bool) -> Iterator[str]:
         yield "no stop message is lost (`lost`, [assume])"
 
 
-def _when(assumed: Assumed) -> str:
+def _when(assumed: LoopAssumptions) -> str:
     if assumed.heartbeat:
         return (
             f"where it changes, and again once it has been silent for "
@@ -243,7 +249,7 @@ def _when(assumed: Assumed) -> str:
 
 
 def _rounded(
-    interception: Interception, assumed: Assumed, tick: int, *, any_time: bool
+    interception: Interception, assumed: LoopAssumptions, tick: int, *, any_time: bool
 ) -> Iterator[str]:
     """Durations that are no whole number of cells, or of ticks: the proof rounds them up."""
     cell = cell_of(tick, interception, assumed)

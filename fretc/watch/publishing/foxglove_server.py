@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from fretc.audit.outputs.annotations import state_topic
 from fretc.watch.sources.source import Arrival, Channel
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.extras import install
+from fretish.diagnostics.extras import install_help
 from monitors.guard import State, Status
 from monitors.kernel.verdicts import Truth
 
@@ -126,7 +126,7 @@ def opened(host: str, port: int) -> FoxgloveServer | Diagnostic:
         return Diagnostic(
             Code.MISSING_EXTRA,
             f"a Foxglove server needs `foxglove-sdk`, which cannot be imported: {error}",
-            help=install("live"),
+            help=install_help("live"),
         )
     except (RuntimeError, OverflowError) as error:
         why = str(error).rpartition(": ")[2]

@@ -23,7 +23,7 @@ from fretc.watch.sources.dds_types import (
     ros_topic,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.extras import install
+from fretish.diagnostics.extras import install_help
 
 _HIGHEST = 232
 """Of the numbers of domains: a higher one has no ports."""
@@ -78,7 +78,7 @@ def join() -> Domain | Diagnostic:
         return Diagnostic(
             Code.MISSING_EXTRA,
             f"DDS is watched by Cyclone DDS, which is not installed: {error}",
-            help=install("live"),
+            help=install_help("live"),
         )
     number = domain_id()
     return number if isinstance(number, Diagnostic) else _joined(number)

@@ -35,7 +35,7 @@ from fretc.watch.sources.foxglove_protocol import (
 from fretc.watch.sources.middleware import Middleware, simulated_time
 from fretc.watch.sources.source import Channel
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
-from fretish.diagnostics.extras import install
+from fretish.diagnostics.extras import install_help
 
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
@@ -337,7 +337,7 @@ def _no_websockets(why: str) -> Diagnostic:
     return Diagnostic(
         Code.MISSING_EXTRA,
         f"a Foxglove server is watched by `websockets`, which cannot be imported: {why}",
-        help=install("live"),
+        help=install_help("live"),
     )
 
 

@@ -1,4 +1,4 @@
 """Readers of `bindings.toml`: one module for each kind of table, and `reader` for the whole file.
 
-Input is TOML with positions. Output is `Declarations`, and a diagnostic for each mistake.
+Input is TOML with positions. Output is `Declarations`, and a diagnostic for each error.
 """

@@ -13,17 +13,17 @@ from fretish.clock import Clock, End, Rounding, TimeSource, in_words
 from fretish.diagnostics.diagnostic import Code
 
 _TOPIC = re.compile(r"[A-Za-z_~/]\S*")
-"""A topic, and no duration: a duration begins with a digit."""
+"""A topic; a duration would begin with a digit."""
 _MOST_LATENESS = 60 * 10**9
-"""Nanoseconds: a verdict that comes later than that is none of a watch."""
+"""Nanoseconds; a watch must give its verdicts within this time."""
 _CLOCK = ("time", "tick", "phase", "lateness", "end", "rounding")
 
 
 class ClockTable(Fields):
-    """Reads it."""
+    """Reader of the table `[clock]`."""
 
     def clock(self) -> Clock:
-        """The clock; one of a second where nothing sound declares it."""
+        """The declared clock; one with a tick of 1 s if the declaration has an error."""
         table = self.tables.data.get("clock")
         if table is None and not self.tables.data.keys() & {"signal", "proposition"}:
             return Clock(None)
@@ -61,7 +61,7 @@ class ClockTable(Fields):
                 Code.BAD_BINDING_FIELD,
                 "`tick` must be a duration above 0, or a topic",
                 self.tables.value("clock", "tick"),
-                'write `tick = "100 ms"`, or `tick = "/scan"` for a tick with each message',
+                'write `tick = "100 ms"`, or `tick = "/scan"` for one tick per message',
             )
             return 10**9, None
         return period, None
@@ -70,10 +70,10 @@ class ClockTable(Fields):
         text = table.get("phase", "0 ns")
         phase = units.nanoseconds(text) if isinstance(text, str) else None
         if period is None and "phase" in table:
-            message, fix = "a clock that ticks by message has no `phase`", "take it out"
+            message, fix = "a clock that ticks by message has no `phase`", "remove it"
         elif phase is None or (period is not None and not 0 <= phase < period):
-            message = "`phase` must be a duration from 0 on, and less than a tick"
-            fix = 'half a tick of 100 ms is `phase = "50 ms"`'
+            message = "`phase` must be a duration of at least 0 and less than a tick"
+            fix = 'for half a tick of 100 ms, write `phase = "50 ms"`'
         else:
             return phase
         self._say(Code.BAD_PHASE, message, self.tables.value("clock", "phase"), fix)
@@ -83,13 +83,13 @@ class ClockTable(Fields):
         if "lateness" not in table:
             return None
         text = table["lateness"]
-        found = units.nanoseconds(text) if isinstance(text, str) else None
-        if found is not None and 0 <= found <= _MOST_LATENESS:
-            return found
+        lateness = units.nanoseconds(text) if isinstance(text, str) else None
+        if lateness is not None and 0 <= lateness <= _MOST_LATENESS:
+            return lateness
         self._say(
             Code.BAD_LATENESS,
             f"`lateness` must be a duration from 0 to {in_words(_MOST_LATENESS)}",
             self.tables.value("clock", "lateness"),
-            'where messages take less than 50 ms, write `lateness = "50 ms"`',
+            'if messages take less than 50 ms, write `lateness = "50 ms"`',
         )
         return None

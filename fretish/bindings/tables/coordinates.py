@@ -1,4 +1,4 @@
-"""The table `[map]` of `bindings.toml`: where the robot is."""
+"""The table `[map]` of `bindings.toml`: the robot's coordinates."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from fretish import units
-from fretish.bindings.declarations import Map, Signal, path
+from fretish.bindings.declarations import MapCoordinates, Signal, path
 from fretish.bindings.tables.fields import Fields, Notes
 from fretish.diagnostics.diagnostic import Code
 from fretish.reading.toml_text import Tables
@@ -16,15 +16,15 @@ _MAP = ("x", "y")
 
 
 class MapTable(Fields):
-    """Reads it."""
+    """Reader of the table `[map]`."""
 
     def __init__(self, tables: Tables, notes: Notes, signals: Mapping[str, Signal]) -> None:
-        """`signals`: every one that has a unit."""
+        """`signals`: all signals with a known unit."""
         super().__init__(tables, notes)
         self._signals = signals
 
-    def map(self) -> Map | None:
-        """`[map]`; None where it is absent, or has mistakes, which become diagnostics."""
+    def map(self) -> MapCoordinates | None:
+        """The map; None if the table is absent or has errors, which become diagnostics."""
         table = self.tables.data.get("map")
         if table is None:
             return None
@@ -38,10 +38,10 @@ class MapTable(Fields):
             return None
         self._check_keys(table, _MAP, "[map]", "map")
         x, y = self._coordinate(table, "x"), self._coordinate(table, "y")
-        return Map(x, y) if x is not None and y is not None else None
+        return MapCoordinates(x, y) if x is not None and y is not None else None
 
     def _coordinate(self, table: Mapping[str, Any], key: str) -> Signal | None:
-        """A coordinate of the map: as the signal of the same path reads it, else in metres."""
+        """A coordinate, in the unit of the signal with the same path, else in metres."""
         text = table.get(key)
         where = path(text) if isinstance(text, str) else None
         if where is None or where.each:

@@ -1,4 +1,4 @@
-"""Fields of a table of `bindings.toml`, each checked; a mistake becomes a diagnostic."""
+"""Base class of the readers of `bindings.toml`: checked fields, errors as diagnostics."""
 
 from __future__ import annotations
 
@@ -22,24 +22,24 @@ Choice = TypeVar("Choice", bound=StrEnum)
 
 @dataclass(slots=True)
 class Notes:
-    """What one walk over the tables collects."""
+    """Diagnostics and defaults that the readers of the tables collect."""
 
     diagnostics: list[Diagnostic] = field(default_factory=list)
     defaults: list[Default] = field(default_factory=list)
     mistakes: dict[Part, tuple[Diagnostic, ...]] = field(default_factory=dict)
-    """Of each signal, proposition and shared table that has any."""
+    """Signal, proposition or shared table with errors → these errors."""
     malformed: set[str] = field(default_factory=set)
-    """Kinds of tables that are none, and have a diagnostic."""
+    """Names such as `signal` whose value is not a table; each has a diagnostic."""
 
     def keep(self, part: Part, mistakes: Iterable[Diagnostic]) -> None:
-        """Note that a part has mistakes, if it has any, beside those it has already."""
+        """Add errors to those of a part."""
         all_mistakes = tuple(dict.fromkeys((*self.mistakes.get(part, ()), *mistakes)))
         if all_mistakes:
             self.mistakes[part] = all_mistakes
 
 
 class Fields:
-    """The checks that every reader of tables shares."""
+    """Checks that all readers of tables share."""
 
     def __init__(self, tables: Tables, notes: Notes) -> None:
         self.tables = tables
@@ -61,7 +61,7 @@ class Fields:
     def _field(
         self, table: Mapping[str, Any], at: tuple[str, ...], kind: type[T], form: str
     ) -> T | None:
-        """The field at the path, if it is there and of that type."""
+        """The field at the path; None if it is absent or has another type, which is reported."""
         value = table.get(at[-1])
         if value is None or (
             isinstance(value, kind) and not (kind is int and isinstance(value, bool))
@@ -84,7 +84,7 @@ class Fields:
             Code.BAD_BINDING_FIELD,
             f"`{at[-1]}` cannot be `{value}`",
             self.tables.value(*at),
-            f"it may be {', '.join(values)}",
+            f"write one of {', '.join(values)}",
         )
         return default
 
@@ -114,10 +114,10 @@ class Fields:
         return parsed
 
     def _inside(self, at: tuple[str, ...], text: str) -> Span:
-        """The characters between the quotes, so that mistakes point into the file."""
+        """The span between the quotes, so that diagnostics refer to the file."""
         value = self.tables.value(*at)
         start = value.text.find(text)
-        if start < 0:  # written with escapes: the text stands for itself
+        if start < 0:  # The text has escapes: it becomes its own source.
             return Source(f"{value.source.name} ({'.'.join(at)})", text).span()
         return value.part(start, start + len(text))
 
@@ -126,10 +126,10 @@ class Fields:
             return self._choice(table, (*at, "modality"), Modality, Modality.BELIEF)
         self._say(
             Code.BAD_MODALITY,
-            f"`{at[1]}` cannot be a percept (`P`): AJPF takes a percept for absent once the agent "
+            f"`{at[1]}` cannot be a percept (`P`): AJPF treats a percept as absent once the agent "
             "has read it",
             self.tables.value(*at, "modality"),
-            'say what the agent believes: `modality = "B"`',
+            'to state what the agent believes, write `modality = "B"`',
         )
         return Modality.BELIEF
 
@@ -139,7 +139,8 @@ class Fields:
             return str(action)
         self._say(
             Code.BAD_BINDING_FIELD,
-            "`action` must be a name of Gwendolen: a small letter, then letters, digits and `_`",
+            "`action` must be a name of Gwendolen: a lower-case letter, then letters, digits and "
+            "`_`",
             self.tables.value(*at, "action"),
             'write `action = "stop_moving"`',
         )

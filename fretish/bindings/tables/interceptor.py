@@ -7,7 +7,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fretish import units
-from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
+from fretish.bindings.declarations import (
+    Interception,
+    InterceptorForm,
+    LoopAssumptions,
+    Planner,
+    Requests,
+)
 from fretish.bindings.tables.fields import Fields
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source, Span
@@ -17,15 +23,15 @@ from fretish.reading.toml_text import Tables, as_key
 TABLE = """\
 [interceptor]
 stop         = "/stop"              # std_msgs/Bool: true requests a stop
-command      = "/cmd_vel"           # geometry_msgs/Twist: what the planner wants
-output       = "/cmd_vel_filtered"  # geometry_msgs/Twist: what the wheels hear
-scan         = "/scan"              # sensor_msgs/LaserScan: only that it comes counts
+command      = "/cmd_vel"           # geometry_msgs/Twist: from the planner
+output       = "/cmd_vel_filtered"  # geometry_msgs/Twist: to the wheels
+scan         = "/scan"              # sensor_msgs/LaserScan: only its arrival counts
 period       = "50 ms"              # of the interceptor's timer
-hold         = "200 ms"             # zero after a request, whatever arrives meanwhile
-stop_timeout = "500 ms"             # silence of the safety function for so long halts
-scan_timeout = "500 ms"             # and that of the sensor
+hold         = "200 ms"             # zero is published for so long after a request
+stop_timeout = "500 ms"             # the robot halts after this silence of the safety function
+scan_timeout = "500 ms"             # and after this silence of the sensor
 """
-"""What a user may begin with."""
+"""An example table, as a starting point for users."""
 
 _TOPICS = ("stop", "command", "output", "scan")
 _TIMES = ("hold", "stop_timeout", "scan_timeout", "command_timeout")
@@ -33,21 +39,21 @@ _OPTIONAL = (*_TIMES, "heartbeat")
 _INTERCEPTOR = (*_TOPICS, "period", *_TIMES, "form", "latching", "ros")
 _ASSUME = ("stands", "latency", "lost", "requests", "heartbeat", "planner", "braking")
 _SENTENCES = "requirement"
-"""The tables of `[assume]` that hold sentences."""
+"""The key of the tables `[[assume.requirement]]`."""
 _SENTENCE = ("id", "text", "sentence")
 _SENTENCE_HEADER = re.compile(
     r"^[ \t]*\[\[[ \t]*assume[ \t]*\.[ \t]*requirement[ \t]*\]\]", re.MULTILINE
 )
 _ANY_HEADER = re.compile(r"^[ \t]*\[", re.MULTILINE)
 _TOPIC = re.compile(r"(?:/?[A-Za-z_]\w*|~)(?:/[A-Za-z_]\w*)*", re.ASCII)
-"""A name of ROS; no part begins with a digit."""
+"""A ROS topic name; no part begins with a digit."""
 
 
-class Loop(Fields):
-    """Reads the two tables."""
+class InterceptorTables(Fields):
+    """Reader of the tables `[interceptor]`, `[assume]` and `[[assume.requirement]]`."""
 
     def interceptor(self) -> Interception | None:
-        """`[interceptor]`; None where it is absent, or has mistakes, which become diagnostics."""
+        """The interceptor; None if the table is absent or has errors, which become diagnostics."""
         table = self._table("interceptor")
         if table is None:
             return None
@@ -55,7 +61,7 @@ class Loop(Fields):
         self._check_keys(table, _INTERCEPTOR, "[interceptor]", "interceptor")
         topics = {key: self._topic(table, key) for key in _TOPICS}
         at = ("interceptor", "form")
-        form = self._choice(table, at, Form, Form.TIMER)
+        form = self._choice(table, at, InterceptorForm, InterceptorForm.TIMER)
         times = {
             key: self._duration(table, ("interceptor", key)) or 0 for key in ("period", *_TIMES)
         }
@@ -79,11 +85,11 @@ class Loop(Fields):
             span=span,
         )
 
-    def assumed(self, propositions: Sequence[str]) -> Assumed | None:
-        """`[assume]`; None where it is absent, or has mistakes, which become diagnostics.
+    def assumed(self, propositions: Sequence[str]) -> LoopAssumptions | None:
+        """The assumptions; None if `[assume]` is absent or has errors, which become diagnostics.
 
         Args:
-            propositions: the names that are bound.
+            propositions: the names of the declared propositions.
         """
         table = self._table("assume")
         if table is None or table.keys() == {_SENTENCES}:
@@ -100,7 +106,7 @@ class Loop(Fields):
         if len(self.notes.diagnostics) > before:
             return None
         span = self.tables.place("assume")
-        return Assumed(stands, latency, braking, lost, requests, planner, heartbeat, span)
+        return LoopAssumptions(stands, latency, braking, lost, requests, planner, heartbeat, span)
 
     def _table(self, name: str) -> Mapping[str, Any] | None:
         table = self.tables.data.get(name)
@@ -125,7 +131,7 @@ class Loop(Fields):
     def _duration(
         self, table: Mapping[str, Any], at: tuple[str, ...], *, least: int = 1
     ) -> int | None:
-        """Nanoseconds; None where it is absent or wrong; a wrong one becomes a diagnostic."""
+        """A duration in nanoseconds; None if it is absent or wrong, which is reported."""
         key = at[-1]
         if key not in table:
             return None
@@ -138,7 +144,7 @@ class Loop(Fields):
             Code.BAD_BINDING_FIELD,
             f"`{key}` must be a duration{limit}",
             self.tables.value(*at),
-            f'write `{key} = "100 ms"`' + ("; leave it out for none" if key in _OPTIONAL else ""),
+            f'write `{key} = "100 ms"`' + ("; remove it for none" if key in _OPTIONAL else ""),
         )
         return None
 
@@ -161,7 +167,7 @@ class Loop(Fields):
         return None
 
     def _check_topics(self, topics: Mapping[str, str | None]) -> None:
-        """F320: the wheels would hear what they must not, or the node itself."""
+        """F320 for each topic that two fields share."""
         key_of: dict[str, str] = {}
         for key, topic in topics.items():
             if topic is None:
@@ -177,8 +183,10 @@ class Loop(Fields):
                 )
             key_of.setdefault(name, key)
 
-    def _check_times(self, table: Mapping[str, Any], form: Form, times: Mapping[str, int]) -> None:
-        if form is Form.EVENT:
+    def _check_times(
+        self, table: Mapping[str, Any], form: InterceptorForm, times: Mapping[str, int]
+    ) -> None:
+        if form is InterceptorForm.EVENT:
             for key in ("period", *_TIMES):
                 if key in table:
                     self._without_timer(key)
@@ -191,25 +199,25 @@ class Loop(Fields):
                     Code.BELOW_PERIOD,
                     f"`{key}` is shorter than `period`",
                     self.tables.value("interceptor", key),
-                    "the timer cannot measure it; make `period` shorter, or this longer",
+                    "the timer cannot measure it: make `period` shorter, or this duration longer",
                 )
         if "scan_timeout" in table and "scan" not in table:
             self._absent("interceptor", "scan", '"/scan"')
 
     def _without_timer(self, key: str) -> None:
-        """F322: the paper's node has no clock."""
+        """F322: a duration with `form = "event"`."""
         self._say(
             Code.NO_TIMER,
             f'`{key}` needs a timer, and `form = "event"` has none',
             self.tables.value("interceptor", key),
-            f'write `form = "timer"`, or leave `{key}` out',
+            f'write `form = "timer"`, or remove `{key}`',
         )
 
     def _ros(self, table: Mapping[str, Any]) -> int:
         value = self._field(table, ("interceptor", "ros"), int, "1 or 2")
         if value is not None and value not in (1, 2):
             place = self.tables.value("interceptor", "ros")
-            self._say(Code.BAD_BINDING_FIELD, f"there is no ROS {value}", place, "write 1 or 2")
+            self._say(Code.BAD_BINDING_FIELD, f"`ros` cannot be {value}", place, "write 1 or 2")
         return 2 if value is None else value
 
     # [assume]
@@ -227,19 +235,19 @@ class Loop(Fields):
             return name or ""
         self._say(
             Code.UNKNOWN_NAME,
-            f"`stands` names `{name}`, which is no bound proposition",
+            f"`stands` names `{name}`, which is not a bound proposition",
             self.tables.value("assume", "stands"),
             f"declare `[proposition.{as_key(name)}]`",
         )
         return name
 
     def _heartbeat(self, table: Mapping[str, Any], requests: Requests) -> int:
-        """Nanoseconds; 0: a request is sent on change only, or at every tick."""
+        """The heartbeat in nanoseconds; 0: none."""
         heartbeat = self._duration(table, ("assume", "heartbeat")) or 0
         if heartbeat and requests is Requests.LEVEL and table.get("requests", "level") == "level":
             self._say(
                 Code.BAD_BINDING_FIELD,
-                '`heartbeat` is of no use with `requests = "level"`, which repeats at every tick',
+                '`heartbeat` has no effect with `requests = "level"`, which repeats at every tick',
                 self.tables.value("assume", "heartbeat"),
                 'write `requests = "edge"` if the safety function speaks on change and after a '
                 "silence; else leave `heartbeat` out",
@@ -256,10 +264,10 @@ class Loop(Fields):
     # [[assume.requirement]]
 
     def sentences(self) -> tuple[RequirementEntry, ...]:
-        """`[[assume.requirement]]`: what the environment is taken to keep, sentence by sentence."""
+        """The sentences of `[[assume.requirement]]`: assumptions about the environment."""
         table = self.tables.data.get("assume")
-        listed = table.get(_SENTENCES, []) if isinstance(table, dict) else []
-        if not isinstance(listed, list) or not all(isinstance(each, dict) for each in listed):
+        tables = table.get(_SENTENCES, []) if isinstance(table, dict) else []
+        if not isinstance(tables, list) or not all(isinstance(entry, dict) for entry in tables):
             self._say(
                 Code.BAD_BINDING_FIELD,
                 f"`assume.{_SENTENCES}` must be tables",
@@ -267,17 +275,17 @@ class Loop(Fields):
                 f"write `[[assume.{_SENTENCES}]]`, and `id` and `sentence` below it",
             )
             return ()
-        found: dict[str, RequirementEntry] = {}
-        for each, block in zip(listed, self._blocks(len(listed)), strict=True):
-            requirement = Loop(Tables(block, each), self.notes)._sentence(each)
-            if requirement is not None and requirement.id in found:
-                self._say(Code.DUPLICATE_ID, f"the id `{requirement.id}` is taken", block)
+        requirements: dict[str, RequirementEntry] = {}
+        for entry, block in zip(tables, self._blocks(len(tables)), strict=True):
+            requirement = InterceptorTables(Tables(block, entry), self.notes)._sentence(entry)
+            if requirement is not None and requirement.id in requirements:
+                self._say(Code.DUPLICATE_ID, f"the id `{requirement.id}` is already used", block)
             elif requirement is not None:
-                found[requirement.id] = requirement
-        return tuple(found.values())
+                requirements[requirement.id] = requirement
+        return tuple(requirements.values())
 
     def _blocks(self, count: int) -> list[Span]:
-        """The text below each header; all of the bindings, where they are written otherwise."""
+        """The text below each header; all bindings for each one if the headers are not found."""
         text = self.tables.text
         starts = [match.end() for match in _SENTENCE_HEADER.finditer(text.text)]
         if len(starts) != count:
@@ -308,6 +316,6 @@ class Loop(Fields):
         value = self.tables.value("sentence")
         start = value.text.find(sentence)
         wording = value.part(start, start + len(sentence))
-        if start < 0:  # written with escapes: the text stands for itself
+        if start < 0:  # The text has escapes: it becomes its own source.
             wording = Source(f"{value.source.name} ({id})", sentence).span()
         return RequirementEntry(id, wording, text=texts["text"])

@@ -1,4 +1,4 @@
-"""The table `[run.label]` of `bindings.toml`: what runs are called."""
+"""The table `[run.label]` of `bindings.toml`: labels of runs."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _MOST_SOURCES, _LONGEST_SOURCE = 8, 200
 _LABEL_FORM = '`version = "metadata:build.version"` or `scenario = "path:{scenario}-*.mcap"`'
 
 
-class Labels(Fields):
-    """Reads the table."""
+class LabelTable(Fields):
+    """Reader of the table `[run.label]`."""
 
     def labels(self) -> dict[str, tuple[LabelSource, ...]]:
-        """`[run.label]`: each label with its sources."""
+        """Label → its sources."""
         table = self.tables.data.get("run", {})
         labels = table.get("label", {}) if isinstance(table, dict) else None
         if not isinstance(labels, dict) or len(labels) > MOST_LABELS:
@@ -33,36 +33,38 @@ class Labels(Fields):
     def _label_sources(self, name: str, written: object) -> tuple[LabelSource, ...]:
         at = ("run", "label", name)
         if not is_label(name):
-            message = f"`{name}` is no name of a label: a letter, then letters, digits, `_`, `-`"
+            message = (
+                f"`{name}` cannot name a label: write a letter, then letters, digits, `_`, `-`"
+            )
             self._bad_label(f"{message}, 50 at most", at)
             return ()
         texts = written if isinstance(written, list) else [written]
         sources = [_label_source(name, text) for text in texts]
-        wrong = next((each for each in sources if isinstance(each, str)), None)
+        wrong = next((source for source in sources if isinstance(source, str)), None)
         if wrong is None and not 0 < len(sources) <= _MOST_SOURCES:
             wrong = f"a label has 1 to {_MOST_SOURCES} sources"
         if wrong is not None:
-            self._bad_label(f"`{name}` has no sound source: {wrong}", at, f"write {_LABEL_FORM}")
+            self._bad_label(f"`{name}` has a wrong source: {wrong}", at, f"write {_LABEL_FORM}")
             return ()
-        return tuple(each for each in sources if isinstance(each, LabelSource))
+        return tuple(source for source in sources if isinstance(source, LabelSource))
 
     def _bad_label(self, message: str, at: tuple[str, ...], fix: str | None = None) -> None:
         self._say(Code.BAD_LABEL, message, self.tables.value(*at), fix)
 
 
 def is_label(name: str) -> bool:
-    """Whether it can be the name of a label."""
+    """Whether the text can be the name of a label."""
     return _LABEL.fullmatch(name) is not None
 
 
 def _label_source(name: str, written: object) -> LabelSource | str:
-    """The source of a label, or what is wrong with it."""
+    """The source of a label, or the reason why it is wrong."""
     kind, _, text = written.partition(":") if isinstance(written, str) else ("", "", "")
     if kind not in ("metadata", "path") or not 0 < len(text) <= _LONGEST_SOURCE:
         return "it is neither `metadata:RECORD.KEY` nor `path:PATTERN`"
     if kind == "metadata":
         return LabelSource(False, text) if "." in text else "a record has keys: `RECORD.KEY`"
-    found = name_patterns.names(text)
-    if isinstance(found, str):
-        return found
-    return LabelSource(True, text) if name in found else f"`{{{name}}}` is not in the pattern"
+    names = name_patterns.names(text)
+    if isinstance(names, str):
+        return names
+    return LabelSource(True, text) if name in names else f"`{{{name}}}` is not in the pattern"

@@ -10,7 +10,7 @@ from fretish import units
 from fretish.bindings import expressions as binding
 from fretish.bindings.declarations import Aggregate, Default, Proposition, Role, Signal
 from fretish.bindings.tables.fields import Fields, Notes
-from fretish.bindings.words import words
+from fretish.bindings.words import resolve_words
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.toml_text import Tables
 
@@ -19,15 +19,15 @@ _KINDS = ("belief", "command", "physical")
 
 
 class PropositionTables(Fields):
-    """Reads one after the other."""
+    """Reader of the tables `[proposition.NAME]`."""
 
     def __init__(self, tables: Tables, notes: Notes, signals: Mapping[str, Signal]) -> None:
-        """`signals`: every one that has a unit, or words."""
+        """`signals`: all signals with a known unit or with words."""
         super().__init__(tables, notes)
         self._signals = signals
 
     def proposition(self, name: str, table: Mapping[str, Any]) -> Proposition | None:
-        """The proposition; None with mistakes that leave nothing of it."""
+        """The proposition; None if it has errors that make it unusable."""
         at = ("proposition", name)
         self._check_keys(table, _PROPOSITION, f"[proposition.{name}]", *at)
         if "expr" not in table:
@@ -66,12 +66,12 @@ class PropositionTables(Fields):
         )
 
     def _truth(self, written: e.Expression, at: tuple[str, ...]) -> e.Expression | None:
-        """The expression with its words; None where it cannot be a proposition."""
+        """The expression with resolved words; None if it is no correct Boolean expression."""
         place = self.tables.value(*at, "expr")
         unknown = self._tables("signal").keys() - self._signals.keys()
         if any(name.id in unknown for name in e.names(written)):
-            return None  # the signal has a diagnostic of its own
-        expression = words(written, self._signals, place)
+            return None  # The signal already has a diagnostic.
+        expression = resolve_words(written, self._signals, place)
         if isinstance(expression, Diagnostic):
             self.notes.diagnostics.append(expression)
             return None
@@ -97,14 +97,14 @@ class PropositionTables(Fields):
     def _ticks_fit(
         self, table: Mapping[str, Any], expression: e.Expression, at: tuple[str, ...]
     ) -> bool:
-        """Whether what looks back by ticks stands where there are ticks."""
+        """Whether `pre` is used where ticks exist: with `agg = "last"`, and not inside `for`."""
         if not binding.ticks_back(expression):
             return True
         place = self.tables.value(*at, "expr")
         if table.get("agg", Aggregate.LAST) != Aggregate.LAST:
             self._say(
                 Code.BAD_BINDING_FIELD,
-                "`pre` sees what is in force at each tick: `agg` can only be `last`",
+                "`pre` reads the value at each tick: `agg` can only be `last`",
                 self.tables.value(*at, "agg"),
                 "take it out",
             )
@@ -114,9 +114,9 @@ class PropositionTables(Fields):
         ):
             self._say(
                 Code.BAD_EXPRESSION,
-                "`pre` counts ticks, and `for` the time between them",
+                "`for` measures time, and `pre` inside it counts ticks",
                 place,
-                "let the requirement say for how long: `for 2 ticks satisfy ...`",
+                "state the duration in the requirement: `for 2 ticks satisfy ...`",
             )
         else:
             return True
@@ -129,7 +129,7 @@ class PropositionTables(Fields):
                 Code.BAD_BINDING_FIELD,
                 f"`kind` cannot be `{kind}`",
                 self.tables.value(*at, "kind"),
-                f"it may be {', '.join(_KINDS)}",
+                f"write one of {', '.join(_KINDS)}",
             )
         return str(kind)
 

@@ -1,16 +1,16 @@
-"""Read `bindings.toml`: every field is checked, every mistake has its place."""
+"""Read `bindings.toml`: check every field, and report each error with its span."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-from fretish.bindings.declarations import Assumed, Declarations, Part, Proposition, Signal
+from fretish.bindings.declarations import Declarations, LoopAssumptions, Part, Proposition, Signal
 from fretish.bindings.tables.clock import ClockTable
 from fretish.bindings.tables.coordinates import MapTable
 from fretish.bindings.tables.fields import Fields, Notes
-from fretish.bindings.tables.interceptor import Loop
-from fretish.bindings.tables.labels import Labels
+from fretish.bindings.tables.interceptor import InterceptorTables
+from fretish.bindings.tables.labels import LabelTable
 from fretish.bindings.tables.propositions import PropositionTables
 from fretish.bindings.tables.signals import SignalTables
 from fretish.bindings.tables.variables import VariableTables
@@ -29,12 +29,12 @@ def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic
     """Read the text of a `bindings.toml`.
 
     Returns:
-        The declarations, and all that there is to say. A mistake in the table of a signal or a
-        proposition, or in a shared table, is among the `mistakes` of the declarations; with any
-        other error there are none.
+        The declarations, and all diagnostics. An error in the table of a signal or a proposition,
+        or in a shared table, is also in `Declarations.mistakes`. After any other error the
+        declarations are None.
     """
-    found = with_budget(len(source.text), source.span(0, 0), lambda: _read(source))
-    return (None, (found,)) if isinstance(found, Diagnostic) else found
+    result = with_budget(len(source.text), source.span(0, 0), lambda: _read(source))
+    return (None, (result,)) if isinstance(result, Diagnostic) else result
 
 
 def _read(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
@@ -47,7 +47,7 @@ def _read(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
 
 
 class _Reader(Fields):
-    """One walk over the tables, which collects every mistake."""
+    """Reads all tables, and collects all diagnostics."""
 
     def __init__(self, tables: Tables) -> None:
         super().__init__(tables, Notes())
@@ -55,8 +55,11 @@ class _Reader(Fields):
 
     @property
     def is_usable(self) -> bool:
-        """Whether every error is in the table of a signal or a proposition, or a shared one."""
-        return sum(each.is_error for each in self.notes.diagnostics) == self.errors_of_parts
+        """Whether every error belongs to a signal, a proposition or a shared table."""
+        return (
+            sum(diagnostic.is_error for diagnostic in self.notes.diagnostics)
+            == self.errors_of_parts
+        )
 
     def declarations(self) -> Declarations:
         tables, notes = self.tables, self.notes
@@ -66,38 +69,38 @@ class _Reader(Fields):
         of_propositions = PropositionTables(tables, notes, of_signals.known)
         propositions = self._parts("proposition", of_propositions.proposition)
         variables = VariableTables(tables, notes).variables()
-        loop = Loop(tables, notes)
+        loop = InterceptorTables(tables, notes)
         return Declarations(
             tables.text.source,
             ClockTable(tables, notes).clock(),
             signals,
             propositions,
             variables,
-            tuple(each for each in notes.defaults if each.part not in notes.mistakes),
+            tuple(default for default in notes.defaults if default.part not in notes.mistakes),
             self._shared("interceptor", loop.interceptor),
             self._shared("assume", lambda: self._assumed(loop)),
             notes.mistakes,
             self._shared("map", MapTable(tables, notes, of_signals.known).map),
-            self._shared("run", Labels(tables, notes).labels),
+            self._shared("run", LabelTable(tables, notes).labels),
             VariableTables(tables, notes).kept(),
             self._shared("environment", loop.sentences),
         )
 
     def _shared(self, kind: str, read: Callable[[], S]) -> S:
-        """A shared table; `mistakes` holds its own, and then nothing may rest on it."""
+        """Read a shared table, and record its errors under its name."""
         before = len(self.notes.diagnostics)
         table = read()
         self._keep((kind, ""), before)
         return table
 
     def _keep(self, part: Part, before: int) -> None:
-        """The errors among the diagnostics since `before` are those of a part."""
-        own = [each for each in self.notes.diagnostics[before:] if each.is_error]
+        """Record the errors since index `before` as errors of a part."""
+        own = [diagnostic for diagnostic in self.notes.diagnostics[before:] if diagnostic.is_error]
         self.errors_of_parts += len(own)
         self.notes.keep(part, own)
 
     def _parts(self, kind: str, read: Callable[[str, Mapping[str, Any]], T | None]) -> dict[str, T]:
-        """The parts without a mistake; `mistakes` holds those of the others."""
+        """Read the tables of one kind; those with errors are only in `mistakes`."""
         parts = {}
         for name, table in self._tables(kind).items():
             before = len(self.notes.diagnostics)
@@ -108,8 +111,8 @@ class _Reader(Fields):
                 parts[name] = part
         return parts
 
-    def _assumed(self, loop: Loop) -> Assumed | None:
-        """`[assume]`; None, too, where the proposition that it names has a mistake."""
+    def _assumed(self, loop: InterceptorTables) -> LoopAssumptions | None:
+        """`[assume]`; None also if the proposition that it names has errors."""
         assumption = loop.assumed(tuple(self._tables("proposition")))
         broken = (
             assumption is not None and ("proposition", assumption.stands) in self.notes.mistakes

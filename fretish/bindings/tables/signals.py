@@ -13,7 +13,7 @@ from fretish.bindings.declarations import (
     REP_117,
     Aggregate,
     Default,
-    Invalid,
+    InvalidReadings,
     Path,
     Reading,
     Reduce,
@@ -22,7 +22,7 @@ from fretish.bindings.declarations import (
     path,
 )
 from fretish.bindings.tables.fields import Fields, Notes
-from fretish.bindings.tables.vocabulary import Vocabulary
+from fretish.bindings.tables.vocabulary import ValuesField
 from fretish.diagnostics.diagnostic import Code
 from fretish.reading.toml_text import Tables
 
@@ -31,7 +31,7 @@ _SIGNAL = (
     "values", "role", "agg",
 )  # fmt: skip
 _OF_NUMBERS = ("unit", "valid", "invalid", "reduce", "footprint", "sensor")
-"""Fields of a signal that mean nothing beside `values`."""
+"""Fields of a signal that cannot be combined with `values`."""
 _NOWHERE = Path("", ())
 _INVALID = {
     "nan": "nan",
@@ -42,15 +42,15 @@ _INVALID = {
 
 
 class SignalTables(Fields):
-    """Reads one after the other."""
+    """Reader of the tables `[signal.NAME]`."""
 
     def __init__(self, tables: Tables, notes: Notes) -> None:
         super().__init__(tables, notes)
         self.known: dict[str, Signal] = {}
-        """Every signal that has a unit, or words, even where it has other mistakes."""
+        """All signals with a known unit or with words, even if they have other errors."""
 
     def signal(self, name: str, table: Mapping[str, Any]) -> Signal | None:
-        """The signal; None with mistakes that leave nothing of it."""
+        """The signal; None if it has errors that make it unusable."""
         at = ("signal", name)
         self._check_keys(table, _SIGNAL, f"[signal.{name}]", *at)
         where = self._path(table, (*at, "path"))
@@ -90,24 +90,24 @@ class SignalTables(Fields):
         return signal if where is not None else None
 
     def _enumerated(self, name: str, table: Mapping[str, Any], where: Path | None) -> Signal | None:
-        """A signal of words."""
+        """An enumerated signal."""
         at = ("signal", name)
         for key in _OF_NUMBERS:
             if key in table:
                 self._say(
                     Code.BAD_BINDING_FIELD,
-                    f"a signal with `values` has no `{key}`: it is a word, and no number",
+                    f"a signal with `values` cannot have `{key}`: it is a word, not a number",
                     self.tables.place(*at, key),
                     "take it out",
                 )
         if where is not None and where.each:
             self._say(
                 Code.BAD_BINDING_FIELD,
-                "a signal with `values` is one word, and `[:]` is many",
+                "a signal with `values` is one word, and `[:]` selects many",
                 self.tables.value(*at, "path"),
                 "name one element: `[0]`",
             )
-        values, numbers = Vocabulary(self.tables, self.notes).words(
+        values, numbers = ValuesField(self.tables, self.notes).words(
             table["values"], (*at, "values")
         )
         signal = Signal(
@@ -128,7 +128,7 @@ class SignalTables(Fields):
         return signal if where is not None and values else None
 
     def _role(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Role | None:
-        """Of a signal; None where nothing says it."""
+        """The declared role; None if there is none."""
         if "role" not in table:
             return None
         return self._choice(table, (*at, "role"), Role, Role.INTERNAL)
@@ -140,7 +140,7 @@ class SignalTables(Fields):
         if binding.ticks_back(valid):
             self._say(
                 Code.BAD_EXPRESSION,
-                "`pre` is of ticks, and a message has none",
+                "`pre` counts ticks, and `valid` is evaluated per message",
                 self.tables.value(*at),
                 "compare the reading with fields of its message",
             )
@@ -196,14 +196,16 @@ class SignalTables(Fields):
             return None
         return self._choice(table, (*at, "reduce"), Reduce, Reduce.MIN)
 
-    def _invalid(self, table: Mapping[str, Any], at: tuple[str, ...], type_: str | None) -> Invalid:
+    def _invalid(
+        self, table: Mapping[str, Any], at: tuple[str, ...], type_: str | None
+    ) -> InvalidReadings:
         scan = type_ is not None and type_.endswith("/LaserScan")
-        default = REP_117 if scan else Invalid()
+        default = REP_117 if scan else InvalidReadings()
         fields = self._field(table, (*at, "invalid"), dict, "a table of readings")
         words = "as REP 117 says" if scan else "unknown"
         text = f"signal {at[1]}: readings that are no measurement are {words}"
         if fields is None:
-            self.notes.defaults.append(Default((at[0], at[1]), text, written=False))
+            self.notes.defaults.append(Default((at[0], at[1]), text, is_explicit=False))
             return default
         self._check_keys(fields, (*_INVALID, "empty"), "`invalid`", *at, "invalid")
         place = (*at, "invalid")
@@ -217,9 +219,9 @@ class SignalTables(Fields):
             attribute: self._choice(fields, (*place, key), Reading, getattr(default, attribute))
             for key, attribute in _INVALID.items()
         }
-        invalid = Invalid(**values)
+        invalid = InvalidReadings(**values)
         if invalid == default:
-            self.notes.defaults.append(Default((at[0], at[1]), text, written=True))
+            self.notes.defaults.append(Default((at[0], at[1]), text, is_explicit=True))
         return invalid
 
     def _max_age(self, table: Mapping[str, Any], at: tuple[str, ...]) -> int | None:

@@ -1,4 +1,4 @@
-"""The tables `[variable.NAME]` of `bindings.toml`: names without a binding."""
+"""The tables `[variable.NAME]` of `bindings.toml`: FRET's fields and values of variables."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 from fretish import expressions as e
 from fretish.bindings.declarations import Role, Variable
-from fretish.bindings.definitions import circle
+from fretish.bindings.definitions import find_cycle
 from fretish.bindings.tables.fields import Fields
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
@@ -20,28 +20,30 @@ _VARIABLE = ("component", "type", "role", "text", "value", "fret", "of", "modali
 _OF_COMPONENT = ("type", "role", "text", "value", "fret")
 _FRET = ("variable",)
 _MOST_NAMES = 12
-"""Of a circle that a message shows."""
+"""The largest number of names of a cycle in a message."""
 
 
 class VariableTables(Fields):
-    """Reads them."""
+    """Reader of the tables `[variable.NAME]` and `[[fret.variable]]`."""
 
     def variables(self) -> dict[str, Variable]:
-        """All of them, also those with mistakes."""
+        """All variables, including those with errors."""
         variables = {name: self._variable(name, f) for name, f in self._tables("variable").items()}
-        components = dict.fromkeys(name for each in variables.values() for name in each.of)
+        components = dict.fromkeys(name for variable in variables.values() for name in variable.of)
         self._check_definitions(variables, "")
         for component in components:
-            own = {name: each.of.get(component, each) for name, each in variables.items()}
+            own = {
+                name: variable.of.get(component, variable) for name, variable in variables.items()
+            }
             self._check_definitions(own, component)
         return variables
 
     def kept(self) -> tuple[Mapping[str, Any], ...]:
-        """The records of `[[fret.variable]]`, which only FRET reads."""
+        """The records of `[[fret.variable]]`, which only FRET uses."""
         table = self._field(self.tables.data, ("fret",), dict, "a table") or {}
         self._check_keys(table, _FRET, "[fret]", "fret")
         records = self._field(table, ("fret", "variable"), list, "tables of FRET's fields") or []
-        if not all(isinstance(each, dict) for each in records):
+        if not all(isinstance(record, dict) for record in records):
             self._say(
                 Code.BAD_BINDING_FIELD,
                 "`variable` must hold tables",
@@ -53,7 +55,7 @@ class VariableTables(Fields):
         return tuple(records)
 
     def _check_fret(self, value: object, at: tuple[str, ...]) -> None:
-        """F303 for what FRET's files, which are JSON, cannot have: a date, or no number."""
+        """F303 for a value that JSON, FRET's file format, cannot store: a date or a NaN."""
         waiting = [value]
         while waiting:
             part = waiting.pop()
@@ -64,9 +66,9 @@ class VariableTables(Fields):
             elif not (isinstance(part, str | int) or (isinstance(part, float) and isfinite(part))):
                 self._say(
                     Code.BAD_BINDING_FIELD,
-                    f"FRET can keep no `{part}`",
+                    f"FRET cannot store `{part}`",
                     self.tables.value(*at),
-                    "put it in quotes: texts, numbers, truth values, lists and tables can be kept",
+                    "put it in quotes: FRET stores texts, numbers, truth values, lists and tables",
                 )
                 return
 
@@ -74,7 +76,7 @@ class VariableTables(Fields):
         at = ("variable", name)
         self._check_keys(table, _VARIABLE, f"[variable.{name}]", *at)
         of = self._field(table, (*at, "of"), dict, "tables of components") or {}
-        if not all(isinstance(each, dict) for each in of.values()):
+        if not all(isinstance(own_table, dict) for own_table in of.values()):
             self._say(
                 Code.BAD_BINDING_FIELD,
                 "`of` must hold tables",
@@ -85,12 +87,12 @@ class VariableTables(Fields):
         whole = self._fields_of_variable(name, table, at)
         own = {
             component: replace(
-                self._fields_of_variable(name, each, (*at, "of", component)),
+                self._fields_of_variable(name, own_table, (*at, "of", component)),
                 component=component,
                 modality=whole.modality,
                 action=whole.action,
             )
-            for component, each in of.items()
+            for component, own_table in of.items()
         }
         return replace(whole, of=own)
 
@@ -109,9 +111,9 @@ class VariableTables(Fields):
         if value is not None and texts["role"] not in ("", Role.INTERNAL, Role.MODE):
             self._say(
                 Code.BAD_BINDING_FIELD,
-                f"`{name}` stands for something: its role cannot be `{texts['role']}`",
+                f"`{name}` has a `value`: its role cannot be `{texts['role']}`",
                 self.tables.value(*at, "role"),
-                "it may be internal or mode",
+                "write `internal` or `mode`",
             )
         return Variable(
             name,
@@ -129,7 +131,7 @@ class VariableTables(Fields):
     def _value(
         self, table: Mapping[str, Any], at: tuple[str, ...]
     ) -> tuple[e.Expression | None, Span | None]:
-        """What a variable stands for, and where that is written."""
+        """The value of a variable, and its span."""
         text = self._field(table, at, str, 'an expression in quotes: `"1.5 m/s"`')
         if text is None:
             return None, None
@@ -141,11 +143,11 @@ class VariableTables(Fields):
         return value, place
 
     def _check_definitions(self, variables: Mapping[str, Variable], component: str) -> None:
-        """F342 and F343: what a name stands for is said once, and not by way of itself.
+        """F342 for a cyclic definition, F343 for a name that is also a signal or a proposition.
 
         Args:
-            variables: as they are for a component.
-            component: empty: for those that no variable names.
+            variables: the variables that apply to the component.
+            component: the name of a component; empty: any component without its own values.
         """
         values = {name: v.value for name, v in variables.items() if v.value is not None}
         for name in values:
@@ -156,19 +158,19 @@ class VariableTables(Fields):
                     Code.DOUBLE_DEFINITION,
                     f"`{name}` is defined twice: by its `value`, and {other}",
                     self._of_value(name, component),
-                    "take one of them out",
+                    "remove one of them",
                 )
-        chain = circle(values)
+        chain = find_cycle(values)
         if chain:
             self._say(
                 Code.DEFINITION_CIRCLE,
                 f"the values of variables form a cycle: {' -> '.join(chain[:_MOST_NAMES])}"
                 f"{' ...' if len(chain) > _MOST_NAMES else ''}",
                 self._of_value(chain[0], component),
-                "let one of them stand for numbers and signals alone",
+                "define one of them by numbers and signals only",
             )
 
     def _of_value(self, name: str, component: str) -> Span:
-        """Where it is written what a variable stands for."""
+        """The span of the value of a variable."""
         own = component in self._tables("variable")[name].get("of", {})
         return self.tables.value("variable", name, *(("of", component) if own else ()), "value")

@@ -1,4 +1,4 @@
-"""The `values` of a signal: words, and their numbers."""
+"""The field `values` of a signal: words, and optionally their numbers."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from fretish.reading.toml_text import as_key
 
 _MOST_WORDS, _LONGEST_WORD = 1000, 100
 _EXACT = 2**53
-"""Numbers of words below it are exact in every field."""
+"""Numbers below this limit are exact in every numeric type."""
 
 
-class Vocabulary(Fields):
-    """Reads the field."""
+class ValuesField(Fields):
+    """Reader of the field `values`."""
 
     def words(
         self, written: object, at: tuple[str, ...]
     ) -> tuple[tuple[str, ...], tuple[int, ...]]:
-        """The words, and the number of each one; no words where there is a mistake."""
+        """The words and their numbers; both empty if the field has an error."""
         before = len(self.notes.diagnostics)
         if isinstance(written, dict):
             values, numbers = [*written], [*written.values()]
@@ -57,10 +57,10 @@ class Vocabulary(Fields):
             message, fix = (
                 f"a word must be a text of 1 to {_LONGEST_WORD} characters on one line, without "
                 "a double quote",
-                'write such as `values = ["drive", "docking"]`',
+                'write, for example, `values = ["drive", "docking"]`',
             )
         elif word in before:
-            message, fix = f"`{word}` stands twice in `values`", "take one out"
+            message, fix = f"`{word}` is twice in `values`", "remove one"
         else:
             return
         self._say(Code.BAD_BINDING_FIELD, message, self._last_in(at, word), fix)
@@ -74,20 +74,20 @@ class Vocabulary(Fields):
                     Code.BAD_BINDING_FIELD,
                     f"the number of `{word}` must be a whole number below 2^53",
                     place,
-                    f"write the one that the messages have for it: `{as_key(word)} = 4`",
+                    f"write the number that the messages use for it: `{as_key(word)} = 4`",
                 )
             elif number in words:
                 self._say(
                     Code.BAD_BINDING_FIELD,
                     f"`{words[number]}` and `{word}` are both {number}",
                     place,
-                    "give each word a number of its own",
+                    "give each word a different number",
                 )
             else:
                 words[number] = word
 
     def _last_in(self, at: tuple[str, ...], word: object) -> Span:
-        """Where a text stands in the value of a field, for the last time; else the whole value."""
+        """The span of the last occurrence of a word in the field; else of the whole value."""
         value = self.tables.value(*at)
         start = value.text.rfind(word) if isinstance(word, str) and word else -1
         return value.part(start, start + len(str(word))) if start >= 0 else value

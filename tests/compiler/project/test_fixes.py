@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from compiler.project.fixes import fixed
-from fretish.parser import MISTAKES
+from fretish.parser import MOST_ERRORS
 from tests.command import write
 
 WRONG, RIGHT = "the rover should always satisfy p", "the rover shall always satisfy p"
@@ -23,7 +23,7 @@ def texts(*files: str) -> list[str]:
 
 
 def test_more_mistakes_than_a_pass_finds_are_all_fixed() -> None:
-    count = MISTAKES + 3
+    count = MOST_ERRORS + 3
     written = " && ".join(["p"] * (count + 1))
     wrong = f"the rover shall always satisfy {written.replace('&&', 'and')}"
     (file,) = fixed([write("r.fret", wrong)])

@@ -261,7 +261,7 @@ def test_a_text_that_is_no_fretish_is_taken_over_and_told(fretc: Fretc) -> None:
     assert run == Run(
         0,
         "",
-        "F107 warning: a requirement says `shall`, not `must`\n"
+        "F107 warning: a requirement uses `shall`, not `must`\n"
         "  --> R1 (fulltext):1:8\n"
         "   | the sw must satisfy p\n"
         "   |        ^^^^\n"

@@ -259,7 +259,7 @@ def test_the_nearest_settings_upwards_hold() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ('[tool.fretc]\nparent = ["a"]\n', "F520 `parent` is no field of [tool.fretc]"),
+        ('[tool.fretc]\nparent = ["a"]\n', "F520 unknown field `parent` in [tool.fretc]"),
         ('[tool.fretc]\nparents = "a"\n', "F520 `parents` must be a list of paths"),
         ("[tool]\nfretc = 1\n# tool.fretc\n", "F520 `fretc` must be a table"),
         ("[tool.fretc\n", "F520 pyproject.toml is not TOML"),

@@ -16,7 +16,7 @@ from compiler.formalization.reference import accepts, initial, step, template
 from compiler.project.folder import load
 from compiler.targets.dafny import text
 from compiler.targets.dafny_claims import claims
-from fretish.bindings.declarations import Declarations, Form, Interception
+from fretish.bindings.declarations import Declarations, Interception, InterceptorForm
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
@@ -162,7 +162,7 @@ def interceptor_text(options: core.Options) -> str:
         stop_timeout=options.stop_timeout * tick,
         scan_timeout=options.scan_timeout * tick,
         command_timeout=options.command_timeout * tick,
-        form=Form.EVENT if options.event_driven else Form.TIMER,
+        form=InterceptorForm.EVENT if options.event_driven else InterceptorForm.TIMER,
         latching=options.latching,
     )
     made = requirement("robot shall eventually satisfy q")

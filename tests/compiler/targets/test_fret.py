@@ -554,7 +554,7 @@ def test_what_json_has_not_is_refused_where_it_is_kept_for_fret(
     write("bindings.toml", table.format(f"field = {value}\n"))
     run = fretc(write("r.fret", "the sw shall satisfy p"), "--emit", "fret-json")
     assert run.status == 2
-    assert "F303 FRET can keep no `" in run.err
+    assert "F303 FRET cannot store `" in run.err
 
 
 def test_a_constant_stays_a_name_in_what_fret_reads(fretc: Fretc) -> None:

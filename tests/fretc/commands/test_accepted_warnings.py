@@ -207,7 +207,7 @@ def test_what_is_wrong_with_an_acceptance_is_an_error_and_the_warning_stays(fret
         ('[accept]\nF203 = { R1 = "x" }\n', "F549 F203 is not about a topic or a hazard"),
         ("[accept]\nF631 = 1\n", "F520 `F631` must have a reason, or a table of reasons"),
         ("accept = 1\n", "F520 `accept` must be a table"),
-        ('acept = { F631 = "x" }\n', "F520 `acept` is no field of fretc.toml"),
+        ('acept = { F631 = "x" }\n', "F520 unknown field `acept` in fretc.toml"),
         ("[accept\n", "F520 fretc.toml is not TOML"),
     ],
 )

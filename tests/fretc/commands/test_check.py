@@ -258,8 +258,8 @@ def test_fix_writes_what_is_sure_says_so_and_checks_again(good: Fretc) -> None:
         0,
         "",
         "wrote requirements/r1.fret\n"
-        "fixed requirements/r1.fret:10:25: wrote `shall` for `should`\n"
-        "fixed requirements/r1.fret:10:39: wrote `300 milliseconds` for `0.3 seconds`\n"
+        "fixed requirements/r1.fret:10:25: replaced `should` by `shall`\n"
+        "fixed requirements/r1.fret:10:39: replaced `0.3 seconds` by `300 milliseconds`\n"
         "\n"
         "1 requirement: 0 mistakes, 0 warnings\n",
     )

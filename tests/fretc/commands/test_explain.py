@@ -256,9 +256,7 @@ def test_a_code_is_explained(fretc: Fretc) -> None:
     assert run.out == (
         "F104  `satisfy` is missing before the response\n"
         "\n"
-        "  The response begins with `satisfy`. Without it the end of the timing could not be told "
-        "from\n"
-        "  the response.\n"
+        "  The response must begin with `satisfy`, which separates it from the timing.\n"
         "\n"
         "  To fix it: Write `satisfy` before the response.\n"
         "\n"

@@ -194,7 +194,7 @@ def test_the_bindings_say_where_labels_come_from() -> None:
     assert not said
     assert declared is not None
     assert declared.labels == {"version": sources("m:build.version", "v{version}/*")}
-    assert declared.reading([]).labels == declared.labels
+    assert declared.restricted_to([]).labels == declared.labels
 
 
 @pytest.mark.parametrize(

@@ -62,7 +62,7 @@ def bindings(
     lines += ["[proposition.p]", f'expr = "{expression}"', f'agg = "{aggregate}"']
     lines += [f"on_unknown = {unknown}"]
     found = declare("\n".join(lines))
-    return found.reading(["p"])
+    return found.restricted_to(["p"])
 
 
 def batch(

@@ -286,12 +286,14 @@ def test_a_sentence_with_an_error_is_listed_as_unformalized(tmp_path: Path) -> N
     assert content["requirements"][1]["error"] == {
         "code": "F107",
         "severity": "error",
-        "message": "`alwys` is no word of FRETish here",
+        "message": "FRETish does not allow the word `alwys` here",
         "place": "r2.fret:7:17",
         "help": "did you mean `always`?",
         "accepted": "",
     }
-    assert content["not_shown"][0]["reasons"] == ["F107: `alwys` is no word of FRETish here"]
+    assert content["not_shown"][0]["reasons"] == [
+        "F107: FRETish does not allow the word `alwys` here"
+    ]
     assert content["overall"]["mark"]["word"] == "not all shown"
     as_html(report)
     validate("report.schema.json", content)

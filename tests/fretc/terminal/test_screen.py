@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.terminal.screen import Screen, fitted, padded, screen, titled, width
-from fretish.diagnostics.signs import SIGNS
+from fretish.diagnostics.status_symbols import STATUS_SYMBOLS
 
 ENCODINGS = ("utf-8", "latin-1", "ascii", "cp437")
 
@@ -36,10 +36,10 @@ def test_a_hundred_marks_upon_a_letter_are_cut() -> None:
 
 
 def test_each_sign_has_a_letter_of_its_own_for_terminals_that_cannot_write_it() -> None:
-    letters = Screen(encoding="ascii").signs("".join(sign.glyph for sign in SIGNS))
+    letters = Screen(encoding="ascii").signs("".join(sign.glyph for sign in STATUS_SYMBOLS))
     assert letters.isascii()
-    assert len({*letters}) == len(SIGNS) == len(letters)
-    assert all(width(sign.glyph) == width(sign.letter) == 1 for sign in SIGNS)
+    assert len({*letters}) == len(STATUS_SYMBOLS) == len(letters)
+    assert all(width(sign.glyph) == width(sign.letter) == 1 for sign in STATUS_SYMBOLS)
 
 
 def test_what_is_no_terminal_has_80_columns(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.definitions import expanded, used
+from fretish.bindings.definitions import expanded, used_definitions
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
@@ -210,7 +210,7 @@ def test_it_is_the_text_with_the_values_in_parentheses(values: dict[str, str], t
     for name in ("b2", "b1", "n2", "n1"):  # an inner one after those that it stands in
         whole = re.sub(rf"\b{name}\b", f"({values[name]})", whole)
     expected = parse(Source("r", whole).span())
-    assert expanded(written, used(written, definitions)) == expected
+    assert expanded(written, used_definitions(written, definitions)) == expected
 
 
 def test_a_chain_costs_in_proportion_to_its_length() -> None:
@@ -223,7 +223,7 @@ def test_a_chain_costs_in_proportion_to_its_length() -> None:
         }
         sentence = parse(Source("r.fret", f"the c shall satisfy d{length - 1}").span())
         assert isinstance(sentence, Sentence)
-        return calls(lambda: expanded(sentence, used(sentence, needed)))
+        return calls(lambda: expanded(sentence, used_definitions(sentence, needed)))
 
     least, small, large = cost(25), cost(50), cost(100)
     assert large - small < 2.5 * (small - least)
@@ -235,6 +235,6 @@ def test_a_long_chain_of_other_names_is_one_name() -> None:
     needed = {f"d{i}": e.Name(f"d{i - 1}") for i in range(1, many)}
     sentence = parse(Source("r.fret", f"the c shall satisfy d{many - 1}").span())
     assert isinstance(sentence, Sentence)
-    found = expanded(sentence, used(sentence, needed))
+    found = expanded(sentence, used_definitions(sentence, needed))
     assert isinstance(found, Sentence)
     assert found.response == e.Name("d0")

@@ -81,10 +81,9 @@ def test_the_text_of_a_code() -> None:
     assert text(Code.NEVER_DECIDED) == (
         "F203  no run can ever decide the requirement\n"
         "\n"
-        "  Whatever has happened, the response may still come: no run, however long, violates the\n"
-        "  requirement, and none confirms it. A monitor of it can never say more than `pending`, "
-        "so it\n"
-        "  protects nobody while the system runs.\n"
+        "  The requirement has no bound, so the response may always come later. No finite run "
+        "violates\n"
+        "  it, and none confirms it. Its monitor can only report `pending`.\n"
         "\n"
         "  To fix it: State a bound.\n"
         "\n"
@@ -102,6 +101,6 @@ def test_the_text_of_a_code() -> None:
 def test_a_code_without_an_example_has_none_in_its_record() -> None:
     assert as_record(Code.INTERNAL)["example"] is None
     assert explanations()["F999"] == Explanation(
-        "fretc met a state that it does not expect. No verdict was given.",
-        "Report it with the input; `FRETC_TRACEBACK=1` shows where it comes from.",
+        "fretc has a bug: it reached a state that should not occur. It gave no verdict.",
+        "Report the bug with the input. `FRETC_TRACEBACK=1` shows the stack trace.",
     )

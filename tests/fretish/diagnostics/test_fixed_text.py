@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretish.diagnostics.diagnostic import suggestion
-from fretish.diagnostics.fixes import Fix, FixedText, applied
+from fretish.diagnostics.fixes import Fix, FixedText, apply_fixes
 from fretish.diagnostics.source import Source, Span
 
 SOURCE = Source("r.fret", "0123456789abcdefghij")
@@ -25,7 +25,7 @@ def fixed(draw: st.DrawFn) -> FixedText:
 @given(fixed())
 def test_what_no_fix_touches_is_where_it_was(text: FixedText) -> None:
     read = text.span
-    assert read.text == applied(text.original, text.fixes)
+    assert read.text == apply_fixes(text.original, text.fixes)
     for at, character in enumerate(read.text):
         place = text.place(read.part(at, at + 1))
         if character in "XYZ":
@@ -47,11 +47,11 @@ def test_a_fix_in_words() -> None:
     span = SOURCE.span(0, 3)
     assert Fix(span, "a", is_safe=True).help == "write `a`"
     assert Fix(span, "a").help == "did you mean `a`?"
-    assert Fix(span, "", is_safe=True).help == "leave `012` out"
-    assert Fix(span, "").help == "should `012` be left out?"
-    assert Fix(span, "a").change == "wrote `a` for `012`"
-    assert Fix(span, "").change == "left `012` out"
-    assert Fix(span.part(0, 0), "a ").change == "put `a` in"
+    assert Fix(span, "", is_safe=True).help == "remove `012`"
+    assert Fix(span, "").help == "should `012` be removed?"
+    assert Fix(span, "a").change == "replaced `012` by `a`"
+    assert Fix(span, "").change == "removed `012`"
+    assert Fix(span.part(0, 0), "a ").change == "inserted `a`"
 
 
 @given(st.integers(0, 10**6), st.integers(0, 10**6))

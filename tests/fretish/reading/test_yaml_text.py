@@ -23,13 +23,13 @@ def test_an_alias_is_what_its_anchor_holds() -> None:
 @pytest.mark.parametrize("kind", ["[{}]", "{{<<: [{}]}}"])
 def test_aliases_that_stand_for_a_billion_nodes_are_refused(kind: str) -> None:
     assert loaded(doubled(kind, 4))
-    with pytest.raises(ValueError, match="far more than is written"):
+    with pytest.raises(ValueError, match="too many nodes"):
         loaded(doubled(kind, 10))
 
 
 @pytest.mark.parametrize("text", ["[" * 90_000, "{a: " * 90_000, "- " * 30_000])
 def test_levels_without_end_are_refused(text: str) -> None:
-    with pytest.raises(ValueError, match=r"no YAML|levels"):
+    with pytest.raises(ValueError, match=r"not YAML|levels"):
         loaded(text)
 
 

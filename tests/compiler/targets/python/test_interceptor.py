@@ -21,7 +21,7 @@ from compiler.targets.interceptor_options import options as counted
 from compiler.targets.python.interceptor import MARKER, text
 from compiler.targets.target import Options
 from fretish.bindings.canonical import bound
-from fretish.bindings.declarations import Declarations, Form, Interception
+from fretish.bindings.declarations import Declarations, Interception, InterceptorForm
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from monitors import interceptor
@@ -34,7 +34,9 @@ MS = 1_000_000
 NODE = Interception(
     "/stop", "/cmd_vel", "/wheels", "/scan", period=50 * MS, hold=90 * MS, stop_timeout=120 * MS
 )
-PAPER = Interception("/stop", "/cmd_vel", "/wheels", form=Form.EVENT, latching=True, ros=1)
+PAPER = Interception(
+    "/stop", "/cmd_vel", "/wheels", form=InterceptorForm.EVENT, latching=True, ros=1
+)
 TARGET = TARGETS["interceptor"]
 BINDINGS = """\
 [clock]

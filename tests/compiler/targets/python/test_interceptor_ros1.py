@@ -11,14 +11,14 @@ import pytest
 
 from compiler.files.text_files import write as deliver
 from compiler.targets.python.interceptor import text
-from fretish.bindings.declarations import Form, Interception
+from fretish.bindings.declarations import Interception, InterceptorForm
 from tests.effort import FULL, some
 from tests.programs import DEBIANS_PATH
 from tests.ros1 import Ended, Ros, World, ended, ros, ros1_or_skip, until
 
 MS = 1_000_000
 TIMED = Interception("/stop", "/cmd_vel", "/wheels", period=2 * MS, stop_timeout=400 * MS, ros=1)
-PAPER = Interception("/stop", "/cmd_vel", "/wheels", form=Form.EVENT, ros=1)
+PAPER = Interception("/stop", "/cmd_vel", "/wheels", form=InterceptorForm.EVENT, ros=1)
 FORMS = (TIMED, PAPER)
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 FAST = 0.4

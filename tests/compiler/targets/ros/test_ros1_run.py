@@ -252,7 +252,7 @@ def test_what_can_go_wrong_around_the_node_stops_the_robot(
         assert ended(here.node(program)) == Ended(1, said)
         master.setParam("/test", "/halt_monitor/source_timeout", 5)
         master.setParam("/test", "/halt_monitor/stop_for", ["OTHER"])
-        said = "monitor_node.py: ValueError: there is no requirement OTHER: EDGE, HALT\n"
+        said = "monitor_node.py: ValueError: unknown requirement OTHER: there are EDGE, HALT\n"
         assert ended(here.node(program)) == Ended(1, said)
         master.deleteParam("/test", "/halt_monitor/stop_for")
         master.setParam("/test", "/use_sim_time", True)

@@ -335,7 +335,7 @@ def test_a_requirement_that_there_is_not_is_refused_with_a_reason(package: Path)
     monitor.node.parameters["stop_for"] = ["R1", "R7"]
     assert monitor.change("configure") == [False]
     assert monitor.node.state == "unconfigured"
-    assert monitor.node.log == [("error", "there is no requirement R7: R1")]
+    assert monitor.node.log == [("error", "unknown requirement R7: there are R1")]
 
 
 def test_the_parameters_decide(package: Path) -> None:

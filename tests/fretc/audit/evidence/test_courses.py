@@ -79,7 +79,7 @@ def test_a_mistake_in_the_map_has_its_place() -> None:
     assert declarations.mistakes.keys() == {("map", "")}, "nothing that reads the map goes on"
     places = [(d.code.number, d.span.line if d.span else 0, d.message) for d in diagnostics]
     assert places == [
-        ("F302", 13, "`z` is no field of [map]"),
+        ("F302", 13, "unknown field `z` in [map]"),
         ("F303", 12, "`x` of the map must be a length, and `mode` is in plain numbers"),
         ("F303", 11, "`y` of the map must be a topic and one number of its messages"),
     ]

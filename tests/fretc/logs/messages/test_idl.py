@@ -15,7 +15,7 @@ from fretc.logs.messages.idl import types
 from fretc.logs.messages.probes import trusted
 from fretc.logs.signals.samples import Recording
 from fretish.diagnostics.diagnostic import Code
-from fretish.diagnostics.extras import install
+from fretish.diagnostics.extras import install_help
 from tests.fretc.logs.logs import (
     MS,
     SCAN,
@@ -226,7 +226,7 @@ def test_without_rosbags_the_extra_is_named(
     monkeypatch.setitem(sys.modules, "rosbags", None)
     (finding,) = recorded(path, X).findings
     assert finding.code is Code.MISSING_EXTRA
-    assert finding.help == install("bags")
+    assert finding.help == install_help("bags")
 
 
 def test_mixed_messages_are_decoded_field_by_field() -> None:

@@ -19,7 +19,7 @@ from fretc.logs.messages import protobuf
 from fretc.logs.reader import Overview, look
 from fretc.logs.signals.samples import Recording
 from fretish.diagnostics.diagnostic import Code
-from fretish.diagnostics.extras import install
+from fretish.diagnostics.extras import install_help
 from tests.fretc.logs.logs import MS, S, Sent, declare, recorded, times, values, write
 
 F = FieldDescriptorProto
@@ -245,4 +245,4 @@ def test_without_its_package_the_extra_is_named(
     (finding,) = recorded(path, declare(TEXT.format(path="plain", more=""))).findings
     assert finding.code is Code.MISSING_EXTRA
     assert finding.message == "`/p` cannot be read: that needs `mcap-protobuf-support`"
-    assert finding.help == install("protobuf")
+    assert finding.help == install_help("protobuf")

@@ -28,7 +28,7 @@ from fretc.logs.storage import inputs
 from fretc.logs.storage.inputs import opened
 from fretc.logs.storage.log_names import is_url, name_of
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.extras import install
+from fretish.diagnostics.extras import install_help
 from fretish.diagnostics.rendering import render
 from tests.command import Fretc
 from tests.fretc.logs.logs import NONE, TWELVE, S, Sent, X, damaged, number, values, write
@@ -210,7 +210,7 @@ def test_without_the_package_of_a_protocol_it_is_named(monkeypatch: pytest.Monke
     monkeypatch.setitem(sys.modules, "fsspec", None)
     diagnostic = refused("gs://bucket/log.mcap")
     assert diagnostic.code is Code.MISSING_EXTRA
-    assert diagnostic.help == install("remote")
+    assert diagnostic.help == install_help("remote")
 
 
 class Server(BaseHTTPRequestHandler):

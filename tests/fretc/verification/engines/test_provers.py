@@ -15,7 +15,7 @@ from fretc.verification.engines import crosshair
 from fretc.verification.engines.crosshair import with_crosshair
 from fretc.verification.engines.dafny import answer as dafny_answer
 from fretc.verification.engines.dafny import with_dafny
-from fretish.diagnostics.extras import install
+from fretish.diagnostics.extras import install_help
 from tests.compiler.targets.test_dafny import (
     BINDINGS,
     CONDITIONS,
@@ -395,7 +395,7 @@ def test_without_crosshair_each_contract_is_not_checked(monkeypatch: pytest.Monk
         "`bounded` keeps `__return__ <= 10`",
         "`divided` keeps `True`",
     ]
-    reason = f"CrossHair is not installed: {install('crosshair')}"
+    reason = f"CrossHair is not installed: {install_help('crosshair')}"
     assert {outcome(one) for one in proofs} == {not_checked(reason)}
 
 

@@ -13,7 +13,7 @@ from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Core, Head, core, head
 from fretc.verification.interceptor.incoming import COMMAND, RELEASE, RING, SCAN, STOP
 from fretc.verification.interceptor.machine import InterceptorMachine, NotAnInterceptorError
-from fretish.bindings.declarations import Form, Interception
+from fretish.bindings.declarations import Interception, InterceptorForm
 from monitors.interceptor import Options
 from tests.each import each
 from tests.effort import FULL, some
@@ -32,7 +32,7 @@ NODE = Interception(
     scan_timeout=100 * MS,
     command_timeout=120 * MS,
 )
-PAPER = Interception("/stop", "/cmd_vel", "/wheels", form=Form.EVENT, latching=True)
+PAPER = Interception("/stop", "/cmd_vel", "/wheels", form=InterceptorForm.EVENT, latching=True)
 OPTIONS = Options(2, 3, 2, 3)
 EMITTED = text(NODE, "bindings.toml")
 

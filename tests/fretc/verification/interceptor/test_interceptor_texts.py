@@ -20,7 +20,7 @@ from fretc.verification.engines.crosshair import contract_texts
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Head, core, head, otherwise
 from fretc.verification.interceptor.machine import Event, InterceptorMachine, NotAnInterceptorError
-from fretish.bindings.declarations import Form, Interception
+from fretish.bindings.declarations import Interception, InterceptorForm
 from monitors.interceptor import Options
 from tests.each import each
 from tests.effort import examples, some
@@ -205,7 +205,7 @@ NODES = [
         Interception("/stop", "/cmd", "/out", scan, 50_000_000, form=form, ros=ros), "bindings.toml"
     )
     for scan in (None, "/scan")
-    for form in Form
+    for form in InterceptorForm
     for ros in (1, 2)
 ]
 

@@ -28,7 +28,7 @@ from fretc.watch.sources.dds_types import (
 )
 from fretc.watch.sources.source import Arrival, Diagnosing, Opened, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.extras import install
+from fretish.diagnostics.extras import install_help
 from fretish.diagnostics.rendering import render
 from monitors.guard import Status
 from tests.dds import domain, environment
@@ -359,7 +359,7 @@ def test_without_the_package_the_extra_is_named(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(sys.modules, "cyclonedds.domain", None)
     (problem,) = [each for each in Dds().arrivals(["/x"]) if isinstance(each, Problem)]
     assert problem.diagnostic.code is Code.MISSING_EXTRA
-    assert problem.diagnostic.help == install("live")
+    assert problem.diagnostic.help == install_help("live")
 
 
 def test_words_and_names() -> None:

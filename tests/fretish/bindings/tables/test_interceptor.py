@@ -2,7 +2,13 @@
 
 import pytest
 
-from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
+from fretish.bindings.declarations import (
+    Interception,
+    InterceptorForm,
+    LoopAssumptions,
+    Planner,
+    Requests,
+)
 from fretish.bindings.tables.interceptor import TABLE
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.rendering import render
@@ -48,7 +54,7 @@ HOLD = 'hold            = "200 ms"'
 STANDS = '"stopped"\nlatency'
 
 
-USELESS = '`heartbeat` is of no use with `requests = "level"`, which repeats at every tick'
+USELESS = '`heartbeat` has no effect with `requests = "level"`, which repeats at every tick'
 
 
 EDGE = 'requests = "edge"'
@@ -77,11 +83,11 @@ def test_both_tables_are_read() -> None:
         stop_timeout=1200 * MS,
         scan_timeout=300 * MS,
         command_timeout=500 * MS,
-        form=Form.TIMER,
+        form=InterceptorForm.TIMER,
         latching=True,
         ros=1,
     )
-    assert found.assumed == Assumed(
+    assert found.assumed == LoopAssumptions(
         stands="stopped",
         latency=100 * MS,
         braking=200 * MS,
@@ -97,8 +103,8 @@ def test_what_is_left_out_is_not_watched_and_assumes_little() -> None:
     found, wrong = read_bindings(Source("b.toml", BEFORE + paper + assume))
     assert wrong == ()
     assert found is not None
-    assert found.interceptor == Interception("stop", "~/in", "/out", form=Form.EVENT)
-    assert found.assumed == Assumed("stopped", latency=0, braking=0)
+    assert found.interceptor == Interception("stop", "~/in", "/out", form=InterceptorForm.EVENT)
+    assert found.assumed == LoopAssumptions("stopped", latency=0, braking=0)
     bare, wrong = read_bindings(Source("b.toml", BEFORE))
     assert wrong == ()
     assert bare is not None
@@ -124,7 +130,7 @@ def test_an_interceptor_needs_no_clock() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("ros  ", "rose ", "F302 23: `rose` is no field of [interceptor]"),
+        ("ros  ", "rose ", "F302 23: unknown field `rose` in [interceptor]"),
         ('"/cmd_vel"', '"cmd vel"', "F303 13: `command` must be a topic"),
         ('"/cmd_vel"', '"/"', "F303 13: `command` must be a topic"),
         ('"/cmd_vel"', '"/2nd"', "F303 13: `command` must be a topic"),
@@ -143,7 +149,7 @@ def test_an_interceptor_needs_no_clock() -> None:
         ('"1200 ms"', '"20 ms"', "F321 18: `stop_timeout` is shorter than `period`"),
         ('"timer"', '"timed"', "F303 21: `form` cannot be `timed`"),
         ("latching        = true", "latching = 1", "F303 22: `latching` must be true or false"),
-        ("ros             = 1", "ros = 3", "F303 23: there is no ROS 3"),
+        ("ros             = 1", "ros = 3", "F303 23: `ros` cannot be 3"),
         ("ros             = 1", "ros = true", "F303 23: `ros` must be 1 or 2"),
         (STANDS, "3\nlatency", "F303 26: `stands` must be the name of a proposition in quotes"),
         ('stands   = "stopped"\n', "", "F303 25: `[assume]` has no `stands`"),
@@ -160,7 +166,7 @@ def test_an_interceptor_needs_no_clock() -> None:
         (EDGE, 'heartbeat = "1 s"', f"F303 29: {USELESS}"),
         (EDGE, 'heartbeat = "1 s"\nrequests = "level"', f"F303 29: {USELESS}"),
         (EDGE, 'heartbeat = "1 s"\nrequests = "edges"', "F303 30: `requests` cannot be `edges`"),
-        ("planner ", "planer ", "F302 30: `planer` is no field of [assume]"),
+        ("planner ", "planer ", "F302 30: unknown field `planer` in [assume]"),
     ],
 )  # fmt: skip
 def test_each_mistake_has_its_place(old: str, new: str, message: str) -> None:
@@ -189,7 +195,7 @@ def test_a_table_must_be_one() -> None:
 def test_a_mistake_is_told_with_its_fix() -> None:
     _, (wrong,) = read_bindings(Source("b.toml", GOOD.replace('"stopped"\nl', '"stoped"\nl')))
     assert render(wrong) == (
-        "F309 `stands` names `stoped`, which is no bound proposition\n"
+        "F309 `stands` names `stoped`, which is not a bound proposition\n"
         "  --> b.toml:26:12\n"
         '   | stands   = "stoped"\n'
         "   |            ^^^^^^^^\n"

@@ -9,7 +9,7 @@ from fretish.bindings.declarations import (
     REP_117,
     Aggregate,
     Declarations,
-    Invalid,
+    InvalidReadings,
     Modality,
     Path,
     Reading,
@@ -101,7 +101,7 @@ def test_a_signal_is_read() -> None:
     assert (signal.type, signal.reduce) == ("sensor_msgs/LaserScan", Reduce.MIN)
     assert (signal.unit.factor, signal.unit_name) == (Fraction(1), "m")
     assert signal.max_age == 300_000_000
-    assert signal.invalid == Invalid(Reading.DROP, Reading.FAR, Reading.NEAR, Reading.DROP)
+    assert signal.invalid == InvalidReadings(Reading.DROP, Reading.FAR, Reading.NEAR, Reading.DROP)
     within = e.Comparison("<=", e.Name("range_min"), e.Name("x"))
     assert signal.valid == e.And((within, e.Comparison("<=", e.Name("x"), e.Name("range_max"))))
 
@@ -223,7 +223,7 @@ def test_a_path_names_a_topic_and_a_field(text: str, expected: Path | None) -> N
             "F303 {}:3:8",
             "`tick` must be a duration above 0, or a topic",
         ),
-        ("end  =", "ends =", "F302 {}:4:1", "`ends` is no field of [clock]"),
+        ("end  =", "ends =", "F302 {}:4:1", "unknown field `ends` in [clock]"),
         (
             'end  = "inconclusive"',
             'rounding = "up"',
@@ -250,11 +250,11 @@ def test_a_path_names_a_topic_and_a_field(text: str, expected: Path | None) -> N
             "F303 {}:7:11",
             "a path that ends with `[:]` needs `reduce`",
         ),
-        ('"m"', '"metre"', "F306 {}:10:11", "`metre` is no unit"),
+        ('"m"', '"metre"', "F306 {}:10:11", "unknown unit `metre`"),
         ('unit    = "m"', "unit    = 3", "F303 {}:10:11", "`unit` must be a unit in quotes"),
         ("x <= range_max", "", "F308 {}:11:31", "the expression ends too early"),
         ('nan = "drop"', 'nan = "zero"', "F303 {}:12:19", "`nan` cannot be `zero`"),
-        ("nan =", "nann =", "F302 {}:12:13", "`nann` is no field of `invalid`"),
+        ("nan =", "nann =", "F302 {}:12:13", "unknown field `nann` in `invalid`"),
         (
             'empty = "unknown"',
             'empty = "far"',
@@ -269,7 +269,7 @@ def test_a_path_names_a_topic_and_a_field(text: str, expected: Path | None) -> N
             "F303 {}:18:10",
             "`reduce` needs a path that ends with `[:]`",
         ),
-        ("text =", "txt =", "F302 {}:20:1", "`txt` is no field of [proposition.too_close]"),
+        ("text =", "txt =", "F302 {}:20:1", "unknown field `txt` in [proposition.too_close]"),
         (
             '"an obstacle is nearer than 5 cm"',
             "7",
@@ -293,16 +293,16 @@ def test_a_path_names_a_topic_and_a_field(text: str, expected: Path | None) -> N
             '"min_range < 5 cm"',
             '"sqrt(min_range) < 5 m"',
             "F309 {}:21:9",
-            "`sqrt` is no function of bindings",
+            "unknown function `sqrt`",
         ),
-        ('"min_range < 5 cm"', '"min_range < 5 parsec"', "F306 {}:21:21", "`parsec` is no unit"),
+        ('"min_range < 5 cm"', '"min_range < 5 parsec"', "F306 {}:21:21", "unknown unit `parsec`"),
         ('"min_range < 5 cm"', '"min_range < "', "F308 {}:21:21", "the expression ends too early"),
         ('"min_range < 5 cm"', '"min_range < 5 cm!"', "F308 {}:21:25", "`!` does not fit here"),
         (
             '"min_range < 5 cm"',
             '"TODO: when is it true?"',
             "F308 {}:21:9",
-            "the expression is still to be written",
+            "the expression is not written yet",
         ),
         (
             '"min_range < 5 cm"',
@@ -330,16 +330,16 @@ def test_a_path_names_a_topic_and_a_field(text: str, expected: Path | None) -> N
             'role = "input"',
             'modality = "P"',
             "F316 {}:22:12",
-            "`too_close` cannot be a percept (`P`): AJPF takes a percept for absent once the agent "
+            "`too_close` cannot be a percept (`P`): AJPF treats a percept as absent once the agent "
             "has read it",
         ),
-        ("for 200 ms", "for 200 m", "F306 {}:27:32", "`200 m` is no duration"),
+        ("for 200 ms", "for 200 m", "F306 {}:27:32", "`200 m` is not a duration"),
         ('"physical"', '"real"', "F303 {}:29:8", "`kind` cannot be `real`"),
         (
             "[proposition.stopped]",
             "[propositions.stopped]",
             "F302 {}:26:2",
-            "`propositions` is no field of the bindings",
+            "unknown field `propositions` in the bindings",
         ),
         (
             "[proposition.stopped]",

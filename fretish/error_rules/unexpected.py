@@ -1,4 +1,4 @@
-"""The first word of a text that does not fit, as the rules about mistakes look at it."""
+"""The first unexpected word of a text: the input of the error rules."""
 
 from __future__ import annotations
 
@@ -20,49 +20,49 @@ class Lexeme:
 
     @property
     def word(self) -> str:
-        """As written."""
+        """The text of the word."""
         return self.span.text
 
     @property
     def at_end(self) -> bool:
-        """Whether it is not a word but the end of the text."""
+        """Whether this is the end of the text."""
         return self.kind == "$END"
 
 
 @dataclass(frozen=True, slots=True)
 class Unexpected:
-    """The first word that does not fit."""
+    """The first unexpected word, with its context."""
 
     lexeme: Lexeme
-    before: Lexeme | None
+    previous: Lexeme | None
     accepts: frozenset[str]
-    """The kinds of word that would have fitted."""
+    """The kinds of word that the grammar expects."""
     text: Span
     """The whole sentence."""
 
-    def wants(self, *kinds: str) -> bool:
-        """Whether a word of any of the kinds would have fitted."""
+    def expects(self, *kinds: str) -> bool:
+        """Whether the grammar expects a word of one of the kinds."""
         return not self.accepts.isdisjoint(kinds)
 
     def follows(self, *kinds: str) -> bool:
-        """Whether the word before it is of one of the kinds."""
-        return self.before is not None and self.before.kind in kinds
+        """Whether the previous word is of one of the kinds."""
+        return self.previous is not None and self.previous.kind in kinds
 
     @property
-    def read(self) -> Span:
-        """The text before it, all of which fits."""
+    def text_before(self) -> Span:
+        """The text before the unexpected word, which is correct."""
         return Span(self.text.source, self.text.start, self.lexeme.span.start)
 
     @property
     def rest(self) -> Span:
-        """The text from it on, without the full stop and the white space at the end."""
+        """The text from the unexpected word on, without the final full stop and white space."""
         start = self.lexeme.span.start
         kept = self.text.source.text[start : self.text.end].rstrip().rstrip(".").rstrip()
         return Span(self.text.source, start, max(start + len(kept), self.lexeme.span.end))
 
 
 def not_fretish(message: str, span: Span, fix: Fix | str, words: str | None = None) -> Diagnostic:
-    """F101, with words that say what to do, or with a fix: the words are its own if not given."""
+    """F101 with a help text, or with a fix; `words` replaces the help text of the fix."""
     if isinstance(fix, str):
         return Diagnostic(Code.NOT_FRETISH, message, span, help=fix)
     return Diagnostic(Code.NOT_FRETISH, message, span, help=words or fix.help, fix=fix)

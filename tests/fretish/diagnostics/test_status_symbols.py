@@ -2,12 +2,12 @@ from pathlib import Path
 
 import pytest
 
-from fretish.diagnostics.signs import SIGNS, Sign
+from fretish.diagnostics.status_symbols import STATUS_SYMBOLS, StatusSymbol
 
 ROOT = Path(__file__).parents[3]
 ROOMS = ("fretish", "monitors", "compiler", "fretc", "simulation", "templates")
-HOME = ROOT / "fretish/diagnostics/signs.py"
-GLYPHS = [sign.glyph for sign in SIGNS if sign.glyph not in ("!", "?", "w", "\N{EN DASH}")]
+HOME = ROOT / "fretish/diagnostics/status_symbols.py"
+GLYPHS = [sign.glyph for sign in STATUS_SYMBOLS if sign.glyph not in ("!", "?", "w", "\N{EN DASH}")]
 
 
 @pytest.mark.parametrize("room", ROOMS)
@@ -19,10 +19,14 @@ def test_no_glyph_stands_outside_of_the_table(room: str) -> None:
 
 
 def test_no_two_outcomes_look_the_same() -> None:
-    assert len({sign.glyph for sign in SIGNS}) == len({sign.kind for sign in SIGNS}) == len(SIGNS)
+    assert (
+        len({sign.glyph for sign in STATUS_SYMBOLS})
+        == len({sign.kind for sign in STATUS_SYMBOLS})
+        == len(STATUS_SYMBOLS)
+    )
 
 
-@pytest.mark.parametrize("sign", SIGNS, ids=lambda sign: sign.kind)
-def test_the_style_sheet_has_a_colour_for_each(sign: Sign) -> None:
+@pytest.mark.parametrize("sign", STATUS_SYMBOLS, ids=lambda sign: sign.kind)
+def test_the_style_sheet_has_a_colour_for_each(sign: StatusSymbol) -> None:
     style = (ROOT / "templates/report/style.css.j2").read_text(encoding="utf-8")
     assert any(f".{sign.kind}{end}" in style for end in (" {", ","))

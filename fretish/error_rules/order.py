@@ -1,14 +1,14 @@
-"""Parts of a sentence that stand at a wrong place, are missing, or are there twice."""
+"""Errors in the order of a sentence's parts: misplaced, missing or repeated parts."""
 
 from __future__ import annotations
 
 import re
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.fixes import Fix, left_out
+from fretish.diagnostics.fixes import Fix, removal
 from fretish.diagnostics.source import Span
-from fretish.mistakes.operators import JOIN
-from fretish.mistakes.unexpected import Unexpected, not_fretish
+from fretish.error_rules.operators import JOIN
+from fretish.error_rules.unexpected import Unexpected, not_fretish
 
 _SIMPLE_TIMINGS = frozenset(
     {"IMMEDIATELY", "INITIALLY", "FINALLY", "EVENTUALLY", "ALWAYS", "NEVER"}
@@ -24,80 +24,80 @@ _SHALL = re.compile(r"\bshall\b", re.IGNORECASE)
 _SATISFY = re.compile(r"\bsatisfy\b", re.IGNORECASE)
 
 
-def second_sentence(u: Unexpected) -> Diagnostic | None:
-    """F117: the text before the word is a sentence, and another one begins with it."""
-    if not u.wants("$END") or u.lexeme.kind not in _BEGINNINGS:
+def further_sentence(u: Unexpected) -> Diagnostic | None:
+    """F117 if the text before the word is a sentence, and another sentence begins with the word."""
+    if not u.expects("$END") or u.lexeme.kind not in _BEGINNINGS:
         return None
     if u.follows("_DOT") and u.lexeme.kind not in ("ID", "QUOTED"):
-        return _another(u)
-    ended = u.follows("_DOT") or "\n" in _gap(u)
+        return _sentence_error(u)
+    ended = u.follows("_DOT") or "\n" in _space_before(u)
     named = u.lexeme.kind in ("ID", "QUOTED")
     direct = named and re.match(r'("[^"\n]+"|[\w.%]+)\s+shall\b', u.rest.text, re.IGNORECASE)
     plain = ended or not (named or u.lexeme.kind in TIMINGS)
     if not direct and not (plain and _SHALL.search(u.rest.text)):
         return None
-    return _another(u)
+    return _sentence_error(u)
 
 
-def _another(u: Unexpected) -> Diagnostic:
+def _sentence_error(u: Unexpected) -> Diagnostic:
     return Diagnostic(
         Code.SEVERAL_SENTENCES,
         "a second sentence begins here",
         u.lexeme.span,
-        help="give each a header, with an `id` between two lines `+++`, or a file of its own",
+        help="give each sentence a header with an `id` between two lines `+++`, or its own file",
     )
 
 
-def _gap(u: Unexpected) -> str:
+def _space_before(u: Unexpected) -> str:
     """The white space before the word."""
-    read = u.read.text
+    read = u.text_before.text
     return read[len(read.rstrip()) :]
 
 
-def behind(u: Unexpected) -> Diagnostic | None:
-    """What English says after the response, and FRETish before it."""
-    if not u.wants("$END") or (found := _SATISFY.search(u.read.text)) is None:
+def part_after_response(u: Unexpected) -> Diagnostic | None:
+    """F101 for a timing, condition or scope after the response."""
+    if not u.expects("$END") or (satisfy := _SATISFY.search(u.text_before.text)) is None:
         return None
     if u.lexeme.kind in TIMINGS:
-        return _timing_behind(u, found)
+        return _timing_after_response(u, satisfy)
     if u.lexeme.kind not in _CONDITIONS | _SCOPES:
         return None
     part = "condition" if u.lexeme.kind in _CONDITIONS else "scope"
-    words = f"put it in front: `{_shown(u.rest)} the COMPONENT shall ...`"
+    words = f"move it to the front: `{_one_line(u.rest)} the COMPONENT shall ...`"
     if u.lexeme.kind == "UNLESS":
         words += "; or, for an exception, write `p | q` as the response"
-    return not_fretish(f"the {part} stands before the component", u.lexeme.span, words)
+    return not_fretish(f"the {part} must stand before the component", u.lexeme.span, words)
 
 
-def _timing_behind(u: Unexpected, satisfy: re.Match[str]) -> Diagnostic:
-    message = "the timing stands before `satisfy`"
-    if _has_timing(u.read.text[: satisfy.start()]):
-        return not_fretish(message, u.lexeme.span, _ONE)
-    response = u.read.text[satisfy.end() :].strip()
+def _timing_after_response(u: Unexpected, satisfy: re.Match[str]) -> Diagnostic:
+    message = "the timing must stand before `satisfy`"
+    if _has_timing(u.text_before.text[: satisfy.start()]):
+        return not_fretish(message, u.lexeme.span, _ONE_TIMING)
+    response = u.text_before.text[satisfy.end() :].strip()
     moved = Span(u.text.source, u.text.start + satisfy.start(), u.rest.end)
     return not_fretish(message, u.lexeme.span, Fix(moved, f"{u.rest.text} satisfy {response}"))
 
 
-_ONE = "a sentence has one timing: write a requirement for each"
+_ONE_TIMING = "a sentence has only one timing: write a requirement for each timing"
 
 
 def _has_timing(before_satisfy: str) -> bool:
     return re.search(r"\bshall\b,?\s*\Z", before_satisfy, re.IGNORECASE) is None
 
 
-def _shown(span: Span) -> str:
+def _one_line(span: Span) -> str:
     return " ".join(span.text.split())
 
 
-def out_of_order(u: Unexpected) -> Diagnostic | None:
-    """The parts of a sentence have a fixed order."""
+def misplaced_part(u: Unexpected) -> Diagnostic | None:
+    """F101 for a misplaced timing or probability."""
     if u.lexeme.kind in _SIMPLE_TIMINGS | _DURATIONS and u.follows("SATISFY"):
         return _timing_after_satisfy(u)
-    if u.lexeme.kind == "WITH" and u.wants("SHALL", "WHENEVER"):
+    if u.lexeme.kind == "WITH" and u.expects("SHALL", "WHENEVER"):
         words = "write it there: `shall with probability ... satisfy ...`"
-        return not_fretish("the probability stands after `shall`", u.lexeme.span, words)
+        return not_fretish("the probability must stand after `shall`", u.lexeme.span, words)
     if u.lexeme.kind == "PROBABILITY":
-        fix = Fix(u.lexeme.span.part(0, 0), "with ", is_safe=u.wants("WITH"))
+        fix = Fix(u.lexeme.span.part(0, 0), "with ", is_safe=u.expects("WITH"))
         words = "write `with probability ...`"
         message = "`with` is missing before `probability`"
         return not_fretish(message, u.lexeme.span, fix if fix.is_safe else words, words)
@@ -108,29 +108,29 @@ _TIMING = re.compile(r"(?:within|for)\s+\d+\s+\w+|[a-z]+", re.IGNORECASE)
 
 
 def _timing_after_satisfy(u: Unexpected) -> Diagnostic:
-    """`satisfy eventually p`."""
-    assert u.before is not None
+    """F101 for a timing after `satisfy`: `satisfy eventually p`."""
+    assert u.previous is not None
     word = f"{u.lexeme.word}{_AMOUNT.get(u.lexeme.kind, '')}"
-    message, words = "the timing stands before `satisfy`", f"write `{word} satisfy ...`"
-    start = u.before.span.start
-    found = _TIMING.match(u.rest.text)
-    if found is None or (found[0] == u.lexeme.word) != (u.lexeme.kind in _SIMPLE_TIMINGS):
+    message, words = "the timing must stand before `satisfy`", f"write `{word} satisfy ...`"
+    start = u.previous.span.start
+    match = _TIMING.match(u.rest.text)
+    if match is None or (match[0] == u.lexeme.word) != (u.lexeme.kind in _SIMPLE_TIMINGS):
         return not_fretish(message, u.lexeme.span, words)
     if _has_timing(u.text.source.text[u.text.start : start]):
-        return not_fretish(message, u.lexeme.span, _ONE)
-    end = u.lexeme.span.start + found.end()
-    is_safe = JOIN.search(u.rest.text) is None  # or the timing may be that of the first part alone
-    fix = Fix(Span(u.text.source, start, end), f"{found[0]} {u.before.word}", is_safe)
-    return not_fretish(message, u.lexeme.span, fix, f"write `{found[0]} satisfy ...`")
+        return not_fretish(message, u.lexeme.span, _ONE_TIMING)
+    end = u.lexeme.span.start + match.end()
+    is_safe = JOIN.search(u.rest.text) is None  # Else it may apply to one part.
+    fix = Fix(Span(u.text.source, start, end), f"{match[0]} {u.previous.word}", is_safe)
+    return not_fretish(message, u.lexeme.span, fix, f"write `{match[0]} satisfy ...`")
 
 
-def timing(u: Unexpected) -> Diagnostic | None:
-    """Two timings, and `not` where a timing stands."""
-    if not u.wants("SATISFY"):
+def wrong_timing(u: Unexpected) -> Diagnostic | None:
+    """F101 for a second timing, or for `not` in the position of the timing."""
+    if not u.expects("SATISFY"):
         return None
     if u.lexeme.kind == "NOT":
         return _not(u)
-    if u.lexeme.kind not in TIMINGS or u.wants(u.lexeme.kind):
+    if u.lexeme.kind not in TIMINGS or u.expects(u.lexeme.kind):
         return None
     return not_fretish(
         "a sentence has one timing, and this is a second one",
@@ -140,10 +140,10 @@ def timing(u: Unexpected) -> Diagnostic | None:
 
 
 def _not(u: Unexpected) -> Diagnostic:
-    """`shall not satisfy p`, `shall never not satisfy p`."""
-    message = "`not` does not stand before `satisfy`"
-    if u.before is not None and u.follows("ALWAYS", "NEVER"):
-        fix = Fix(u.before.span.to(u.lexeme.span), "never" if u.follows("ALWAYS") else "always")
+    """F101 for `shall not satisfy p` or `shall never not satisfy p`."""
+    message = "`not` cannot stand before `satisfy`"
+    if u.previous is not None and u.follows("ALWAYS", "NEVER"):
+        fix = Fix(u.previous.span.to(u.lexeme.span), "never" if u.follows("ALWAYS") else "always")
         return not_fretish(message, u.lexeme.span, fix)
     words = "negate the response: `satisfy !(p)`"
     if u.follows("SHALL"):
@@ -161,19 +161,19 @@ _PARTS = {
 
 
 def missing_part(u: Unexpected) -> Diagnostic | None:
-    """A word that something must follow, with the next part in its place."""
-    if u.before is None or not u.wants("ID"):
+    """F101 for a key word without the part that must follow it, or written twice."""
+    if u.previous is None or not u.expects("ID"):
         return None
-    word, kind = u.before.word, u.before.kind
+    word, kind = u.previous.word, u.previous.kind
     if u.lexeme.word.lower() == word.lower() and word.isalpha():
-        leave = left_out(u.lexeme.span, is_safe=True)
-        return not_fretish(f"`{word}` stands twice", u.lexeme.span, leave)
+        leave = removal(u.lexeme.span, is_safe=True)
+        return not_fretish(f"`{word}` is written twice", u.lexeme.span, leave)
     part = next((part for part, kinds in _PARTS.items() if kind in kinds), "")
     begins = u.lexeme.kind in ("SATISFY", "SHALL") or _is_component(u.rest.text)
     if not part or not (u.lexeme.at_end or begins):
         return None
-    if part == "stop condition" and not _SHALL.search(u.read.text):
-        part = "mode"  # of a scope
+    if part == "stop condition" and not _SHALL.search(u.text_before.text):
+        part = "mode"  # `before` without `shall` before it begins a scope.
     return not_fretish(
         f"the {part} is missing after `{word}`",
         u.lexeme.span,
@@ -190,13 +190,13 @@ _JOINED = re.compile(r"\b(?:and|or)\b", re.IGNORECASE)
 _SMALL = frozenset({"the", "a", "an", "is", "are", "of", "has", "have", "been"})
 
 
-def article(u: Unexpected) -> Diagnostic | None:
-    """`the` before a name that is no component's."""
-    if u.lexeme.kind != "THE" or not u.wants("ID") or u.wants("SHALL"):
+def superfluous_article(u: Unexpected) -> Diagnostic | None:
+    """F101 for `the` before a name that is not the component."""
+    if u.lexeme.kind != "THE" or not u.expects("ID") or u.expects("SHALL"):
         return None
-    message, words = "an expression has no article", _words(u)
+    message, words = "an expression cannot contain `the`", _words(u)
     if len(words) == 1:
-        return not_fretish(message, u.lexeme.span, left_out(u.lexeme.span, is_safe=True))
+        return not_fretish(message, u.lexeme.span, removal(u.lexeme.span, is_safe=True))
     name = "_".join(word for word in words if word.lower() not in _SMALL)
     example = f"such as `{name}` for these words, " if name else ""
     return not_fretish(
@@ -209,7 +209,7 @@ def _words(u: Unexpected) -> list[str]:
     prose = _PROSE.match(u.rest.text)
     words = _JOINED.split(prose["words"])[0].split() if prose is not None else []
     lower = [word.lower() for word in words]
-    if "shall" in lower:  # the component and its article stand before it
+    if "shall" in lower:  # The words before it are the component and its article.
         at = max(lower.index("shall") - 1, 0)
         words = words[: at - 1 if at and lower[at - 1] == "the" else at]
     elif "satisfy" in lower:
