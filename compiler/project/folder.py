@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Collection, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from compiler.files.attribution import NOBODY, Attribution
+from compiler.files.attribution import NOBODY
 from compiler.files.settings import Settings, settings
 from compiler.files.text_files import read
 from compiler.formalization.formalize import duplicate_ids, formalize, unreadable_sentence
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.resolution import extended
-from compiler.project.acceptances import Acceptance, acceptances, answered
-from compiler.project.hazards import Hazard
+from compiler.project.acceptances import acceptances, answered
 from compiler.project.hazards import hazards as read_hazards
 from compiler.project.parent_graph import cycles, unknown_parents
 from compiler.project.paths import (
@@ -26,7 +23,8 @@ from compiler.project.paths import (
     requirement_files,
     sibling_path,
 )
-from compiler.project.refusals import Refused, refused
+from compiler.project.project import Project, UnformalizedRequirement
+from compiler.project.refusals import refused
 from compiler.project.stated_numbers import check_stated_numbers
 from fretish.bindings.declarations import SHARED, Declarations
 from fretish.bindings.tables.reader import read_bindings
@@ -35,72 +33,6 @@ from fretish.documents import RequirementEntry, requirements, unread
 
 if TYPE_CHECKING:
     from compiler.project.parents import Parent
-
-
-@dataclass(frozen=True, slots=True)
-class UnformalizedRequirement:
-    """A requirement without a requirement, and why: it has an error, or it is free text."""
-
-    requirement: RequirementEntry
-    diagnostic: Diagnostic
-    """The first error; the note where it is free text."""
-    diagnostics: tuple[Diagnostic, ...] = ()
-    """All there is to say of it."""
-
-
-@dataclass(frozen=True, slots=True)
-class Project:
-    """What was read, and all that there is to say of it."""
-
-    requirements: tuple[RequirementEntry, ...]
-    """As written, in the order of the files."""
-    formalized: tuple[FormalizedRequirement, ...]
-    failed: tuple[UnformalizedRequirement, ...]
-    declarations: Declarations | None
-    hazards: Mapping[str, Hazard]
-    diagnostics: tuple[Diagnostic, ...]
-    general: tuple[Diagnostic, ...] = ()
-    """Those of the diagnostics that are about no single requirement, and no single table of the
-    bindings: a mistake there is one of the requirements that read it. Hazards and parents are
-    among them, which no formula reads."""
-    mistaken: Mapping[int, Diagnostic] = field(default_factory=dict)
-    """The mistake of each formalized requirement, by its `id()`: it shares its
-    id with another one, or its `params` name what is not there."""
-    parents: Mapping[str, Parent] = field(default_factory=dict)
-    """What other tools have, by its id; read where hazards are."""
-    acceptances: tuple[Acceptance, ...] = ()
-    """The warnings that are accepted, and why; those among `diagnostics` are marked."""
-    attribution: Attribution = NOBODY
-    """Who answers for what is made of it, by its settings."""
-    refused: tuple[Refused, ...] = ()
-    """The requirements that a mistake reaches: nothing is made of them."""
-
-    @property
-    def rules(self) -> tuple[FormalizedRequirement, ...]:
-        """The former name of `formalized`."""
-        warnings.warn("`rules` of a project is `formalized` now", DeprecationWarning, stacklevel=2)
-        return self.formalized
-
-    @property
-    def sound(self) -> Project:
-        """The same without the requirements that a mistake reaches.
-
-        A `retired` requirement is among them, too.
-        """
-        refused = {id(each.requirement) for each in self.refused}
-        requirements = tuple(
-            requirement for requirement in self.formalized if id(requirement.entry) not in refused
-        )
-        return replace(self, formalized=requirements)
-
-    @property
-    def without_rule(self) -> tuple[RequirementEntry, ...]:
-        """The requirements that have an error, or are free text."""
-        return tuple(each.requirement for each in self.failed)
-
-    def answered(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """The same, with the reason of each warning that is accepted."""
-        return answered(diagnostics, self.acceptances)
 
 
 def load(

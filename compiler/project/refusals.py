@@ -4,30 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from compiler.formalization.binding_agreement import broken_tables
 from compiler.formalization.formalized import FormalizedRequirement
+from compiler.project.project import Project, Refused
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.documents import RequirementEntry
-
-if TYPE_CHECKING:
-    from compiler.project.folder import Project
-
-
-@dataclass(frozen=True, slots=True)
-class Refused:
-    """A requirement that nothing can be made of, and the mistakes in what it reads."""
-
-    requirement: RequirementEntry
-    why: tuple[Diagnostic, ...]
-    """Errors: in its header, its sentence, its id, and the bindings of its names."""
-
-    @property
-    def is_in_force(self) -> bool:
-        """Whether anybody misses it."""
-        return self.requirement.status != "retired"
 
 
 def refused(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from compiler.formalization.binding_agreement import unbound
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.evidence.basis import Basis
 from fretish.bindings.declarations import Declarations

@@ -12,7 +12,7 @@ from fretc.terminal.output import EVIDENCE, STORE, not_written, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 if TYPE_CHECKING:
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.audit.evidence.briefs import EvidenceSource
     from fretc.audit.evidence.probabilities import Estimated
     from fretc.audit.evidence.schema import Result

@@ -35,7 +35,7 @@ from fretc.terminal.output import (
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
 
 
 @click.command(

@@ -26,7 +26,7 @@ from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.rendering import as_json, visible
 
 if TYPE_CHECKING:
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.analysis.evidence import AnalyzedSet
 
 

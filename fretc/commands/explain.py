@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from compiler.formalization.formalized import FormalizedRequirement
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretish.documents import RequirementEntry
 
 

@@ -30,8 +30,7 @@ from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from compiler.formalization.formalized import FormalizedRequirement
-    from compiler.project.folder import Project
-    from compiler.project.refusals import Refused
+    from compiler.project.project import Project, Refused
     from compiler.targets.target import Options, Target
 
 _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")

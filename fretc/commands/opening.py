@@ -16,7 +16,7 @@ from fretish.diagnostics.rendering import visible
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.audit.plan import Plan
 
 

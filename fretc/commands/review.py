@@ -43,7 +43,7 @@ from fretish.reading.natural_order import natural
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.report.traceability.chain import Chain
     from fretc.report.traceability.lock import Lock, Review
 

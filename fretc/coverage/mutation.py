@@ -14,7 +14,7 @@ from functools import partial
 
 from compiler.formalization.formalized import FormalizedRequirement, plain
 from compiler.formalization.resolution import extended
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.situations.mutants import Mutant, mutants
 from compiler.targets.python import monitor as monitors
 from fretc.audit.measurements.judgement import Judgement, each_judged

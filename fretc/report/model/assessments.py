@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from compiler.formalization.formalized import FormalizedRequirement, plain
 from compiler.logic.claims import Proof
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.bases import bases

@@ -16,7 +16,7 @@ from compiler.files.shell_quoting import (
     word,
     words,
 )
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.evidence.basis import of_all, of_bindings
 from fretc.audit.evidence.briefs import EvidenceSource

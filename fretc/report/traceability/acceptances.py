@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from compiler.files.records import UNSET
 from compiler.project.acceptances import idle
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.project.refusals import unreviewable
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.schema import Finding

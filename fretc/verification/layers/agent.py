@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from compiler.agents.checking import checked
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof, Result, not_applicable
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
 from fretc.verification.engines import sandbox as processes

@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from compiler.project.folder import Project, load
+from compiler.project.folder import load
+from compiler.project.project import Project
 from fretish import documents
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source

@@ -310,7 +310,8 @@ def test_what_is_accepted_is_counted_once_wherever_it_comes_from(
 
 def audited(*findings: Mapping[str, object]) -> None:
     """Evidence of a run that satisfies R1, of the project as it is now."""
-    from compiler.project.folder import Project, load_folder
+    from compiler.project.folder import load_folder
+    from compiler.project.project import Project
 
     known = load_folder("requirements")
     assert isinstance(known, Project)
