@@ -203,7 +203,7 @@ def split(text: str) -> tuple[str, str]:
     """
     match = _SPLIT.fullmatch(text.strip())
     if match is None:
-        raise ValueError(f"`{text[:80]}` is no quantity")
+        raise ValueError(f"`{text[:80]}` is not a quantity")
     return match[1], match[2]
 
 

@@ -143,7 +143,7 @@ def _percept(name: str) -> str | Diagnostic:
     return Diagnostic(
         Code.BAD_PERCEPT,
         f"`{name}` cannot be a percept",
-        help="name it as the agent does: it begins with a small letter",
+        help="write it as in the agent: a name that begins with a small letter",
     )
 
 
@@ -153,9 +153,10 @@ def _other_agent(prop: Property, agent: Agent) -> Diagnostic | None:
         if match is not None and match["agent"] != agent.name:
             return Diagnostic(
                 Code.OTHER_AGENT,
-                f"{prop.key} speaks of the agent `{match['agent']}`; this one is `{agent.name}`",
+                f"{prop.key} is about the agent `{match['agent']}`, but this agent is "
+                f"`{agent.name}`",
                 prop.span,
-                help="AJPF crashes on an agent that is not there: name the one of `:name:`",
+                help="AJPF crashes on an unknown agent: use the name after `:name:`",
             )
     return None
 
@@ -217,9 +218,9 @@ class _Explored:
         literal = match["literal"] if match else atom
         deeds = [deed for plan in self.model.agent.plans for deed in plan.deeds]
         if Action(literal) in deeds and atom.startswith("B("):
-            return f"`{literal}` is an action, and actions are not believed"
+            return f"`{literal}` is an action, and an action is never a belief"
         if literal in self.model.percepts or Change("+", literal) in deeds:
-            return f"`{literal}` never comes about"
+            return f"nothing makes `{literal}` true"
         return f"no environment shows `{literal}`, and no plan adds it"
 
 
@@ -261,7 +262,9 @@ class _Lines:
             return not_checked("`_`, which matches everything, is not in the model")
         lasso = self.explored.violation(prop.formula)
         if lasso is not None:
-            detail = f"a run of {len(lasso.states)} stages breaks it ({self.explored.size} in all)"
+            detail = (
+                f"a run of {len(lasso.states)} stages violates it ({self.explored.size} in all)"
+            )
             return refuted(detail, self.explored.trace(prop.formula, lasso))
         why = self._vacuous(prop)
         size = self.explored.size
@@ -290,12 +293,12 @@ class _Lines:
 
     def _of_mutant(self, prop: Property) -> Iterator[Proof]:
         mutant = self.mutant or _without(self.explored.model.agent, demanded(prop.formula))
-        claim = f"the check can fail: an agent without the response breaks {prop.key}"
+        claim = f"the check can fail: an agent without the response violates {prop.key}"
         if mutant is None:
             return
         spoilt = _Explored.of(Model(mutant, self.explored.model.percepts), self.limit)
         if spoilt.violation(prop.formula) is None:
-            detail = f"that agent keeps {prop.key} too, so that it says nothing of the response"
+            detail = f"that agent satisfies {prop.key}, too, so {prop.key} shows no response"
             yield self._line(prop, claim, vacuous(detail))
         else:
             yield self._line(prop, claim, proved(f"it does, within {spoilt.size}"))

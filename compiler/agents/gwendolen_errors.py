@@ -89,7 +89,7 @@ def _mistake(source: Source, at: int) -> Diagnostic | None:
     rest = source.text[at:]
     place = source.span(at, at + 1)
     if rest.startswith(("#", "%")):
-        return Diagnostic(Code.BAD_AGENT, f"`{rest[0]}` begins no comment", place, _COMMENTS)
+        return Diagnostic(Code.BAD_AGENT, f"`{rest[0]}` does not begin a comment", place, _COMMENTS)
     if rest.startswith("/*"):
         return Diagnostic(Code.BAD_AGENT, "the comment has no end", place, "close it with `*/`")
     if rest.startswith("-") and _NAME_SECTION.search(source.text[:at]):
@@ -101,7 +101,7 @@ def _mistake(source: Source, at: int) -> Diagnostic | None:
     near = suggestion(heading[0], _ALL_HEADINGS)
     return Diagnostic(
         Code.BAD_AGENT,
-        f"`{heading[0]}` is no heading",
+        f"`{heading[0]}` is not a heading",
         source.span(at, at + heading.end()),
         f"did you mean `{near}`?" if near else f"headings are {', '.join(HEADINGS)}",
     )

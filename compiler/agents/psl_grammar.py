@@ -59,7 +59,7 @@ _DROPPED = {
     "and": "a conjunction is `&`",
     "|": "a disjunction is `||`",
     "or": "a disjunction is `||`",
-    "%": "`%` begins no comment: a comment is a line that begins with `#`",
+    "%": "`%` does not begin a comment: a comment is a line that begins with `#`",
     "#": "a comment is a whole line, with `#` in its first column",
     "/*": "the comment has no end: close it with `*/`",
     "T": "AJPF crashes on a negated `T`: simplify the constant away",

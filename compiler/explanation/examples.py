@@ -72,7 +72,12 @@ def examples(requirement: FormalizedRequirement, wanted: int = WANTED) -> Exampl
     """The traces of a requirement: at most so many of either kind, the shortest ones first."""
     predicate = temporal_predicate(requirement.sentence)
     if predicate is not None:
-        return Examples((), (), (), f"`{predicate}` speaks of other ticks, the automaton of one")
+        return Examples(
+            (),
+            (),
+            (),
+            f"`{predicate}` refers to other ticks, but the automaton reads one tick at a time",
+        )
     atoms = atoms_of(requirement.sentence)
     if len(atoms) > MOST_ATOMS:
         return Examples(atoms, (), (), f"{len(atoms)} propositions are more than {MOST_ATOMS}")

@@ -37,7 +37,7 @@ def limit(requirement: FormalizedRequirement) -> str:
     if is_violable(requirement):
         return ""
     if requirement.watch.owed == FALSE:
-        return f"No run can violate {requirement.id}: whatever happens keeps it."
+        return f"No run can violate {requirement.id}: every run satisfies it."
     return (
         f"No run can violate {requirement.id}: it sets no bound, so an answer that has not come "
         "may "

@@ -64,7 +64,7 @@ def attribution(table: Mapping[str, Any]) -> Attribution | Unfit:
             fix = f"manifests take up to {LONGEST} printable characters"
             return Unfit(name, "must be one line of text", fix)
         if f'"{value.strip()}"' in EXAMPLE:
-            return Unfit(name, "still is the example", "put your own in its place")
+            return Unfit(name, "is still the example", "replace it with your own")
     email = table.get("email")
     if email is not None and _EMAIL.fullmatch(email.strip()) is None:
         fix = "write one such as `ada@robots.org`: manifests take no other form"

@@ -60,7 +60,7 @@ def _distinct(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
     fields: dict[str, object] = {}
     for key, value in pairs:
         if key in fields:
-            raise ValueError(f"`{key[:_EXCERPT]}` is there twice in one object")
+            raise ValueError(f"`{key[:_EXCERPT]}` appears twice in one object")
         fields[key] = value
     return fields
 
@@ -79,7 +79,7 @@ def _finite(word: str) -> float:
 
 
 def _no_number(word: str) -> NoReturn:
-    raise ValueError(f"`{word}` is no number of JSON")
+    raise ValueError(f"`{word}` is not a JSON number")
 
 
 @dataclass(frozen=True, slots=True)

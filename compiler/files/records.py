@@ -62,7 +62,7 @@ def decoded(value: object, kind: type[R]) -> R:
     except msgspec.ValidationError as error:
         raise SchemaError(_in_words(str(error))) from None
     except UnicodeEncodeError:
-        raise SchemaError("a text in it has half of a character: a lone surrogate") from None
+        raise SchemaError("a text has a lone surrogate, which is half of a character") from None
 
 
 def plain(record: object) -> Any:

@@ -72,7 +72,7 @@ def regular(path: str | Path) -> BinaryIO:
     os.close(descriptor)
     if stat.S_ISDIR(mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-    raise OSError(None, "it is no regular file")
+    raise OSError(None, "it is not a regular file")
 
 
 def not_text(path: str, at: int) -> Diagnostic:
@@ -101,7 +101,7 @@ def unreadable(path: str, error: OSError) -> Diagnostic:
         Code.UNREADABLE,
         f"`{path}` cannot be read: {error.strerror or error}",
         span,
-        help="check what it is, and its permissions",
+        help="check that it is a regular file, and its permissions",
     )
 
 
@@ -143,7 +143,7 @@ def write(files: Mapping[Path, str | bytes | Iterable[str]]) -> Diagnostic | Non
         return Diagnostic(
             Code.NOT_WRITTEN,
             f"`{path}` cannot be written: {error.strerror or error}",
-            help="name another place, or fix this one",
+            help="write to another path, or fix this one",
         )
     finally:
         for temporary, _ in waiting:
@@ -193,10 +193,10 @@ def destination(path: Path) -> Path:
             base = base.parent
         if not folder.is_relative_to(os.path.realpath(base)):
             raise OSError(
-                None, f"`{path.parent}` is a link to `{folder}`: name that, if it is meant"
+                None, f"`{path.parent}` is a link to `{folder}`: name `{folder}` if you mean it"
             )
     if not real.is_relative_to(folder):
-        raise OSError(None, f"it is a link to `{real}`: name that, if it is meant")
+        raise OSError(None, f"it is a link to `{real}`: name `{real}` if you mean it")
     return real
 
 

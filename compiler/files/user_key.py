@@ -29,7 +29,7 @@ def user_key() -> bytes | Diagnostic:
         return Diagnostic(
             Code.NO_KEY,
             f"`{path}` cannot be used: {error.strerror or error}",
-            help="remove it, or name a folder of your own in XDG_STATE_HOME",
+            help="remove it, or set XDG_STATE_HOME to a folder that only you can write",
             severity=Severity.WARNING,
         )
 
@@ -61,10 +61,10 @@ def _read(path: Path) -> bytes:
     with os.fdopen(file, "rb") as stream:
         about = os.fstat(file)
         if not stat.S_ISREG(about.st_mode) or about.st_uid != os.geteuid():
-            raise OSError(None, "it is no file of yours")
+            raise OSError(None, "it belongs to another user")
         if about.st_mode & 0o077:
-            raise OSError(None, "others may read or write it")
+            raise OSError(None, "other users may read or write it")
         key = stream.read(_LENGTH + 1)
     if len(key) != _LENGTH:
-        raise OSError(None, "it is no key")
+        raise OSError(None, "it is not a key")
     return key

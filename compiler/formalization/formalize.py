@@ -143,7 +143,8 @@ def name_collisions(requirements: Sequence[FormalizedRequirement]) -> Iterator[D
             if first != name:
                 yield Diagnostic(
                     Code.NAME_CLASH,
-                    f"`{first}` and `{name}` would be one name in formulas: `{identifier(name)}`",
+                    f"`{first}` and `{name}` would have the same name in formulas: "
+                    f"`{identifier(name)}`",
                     place(requirement, name),
                     help="rename one of them",
                 )
@@ -265,7 +266,7 @@ def duplicate_ids(requirements: Sequence[RequirementEntry]) -> Mapping[int, Diag
                 Code.DUPLICATE_ID,
                 f"the id `{requirement.id}` is taken: {place.source.name}:{place.line}",
                 requirement.place("id"),
-                help="give each an id of its own; capitals, `-`, `_` and `.` do not count",
+                help="give each requirement another id; case, `-`, `_` and `.` do not count",
             )
             found.setdefault(id(earlier), found[id(requirement)])
     return found

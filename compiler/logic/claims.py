@@ -52,14 +52,15 @@ class Trace(Record, frozen=True):
     """A run as a table: a row for each tick."""
 
     names: Annotated[
-        tuple[str, ...], about("propositions and whatever else helps to read it: heads of columns")
+        tuple[str, ...],
+        about("headings of the columns: propositions, and other values that help to read the run"),
     ]
     rows: Annotated[
         tuple[tuple[Truth, ...], ...],
-        about("a row for each tick, with a value for each name; null: unknown, or nothing to tell"),
+        about("a row for each tick, with a value for each name; null: unknown or not applicable"),
     ]
     actions: Annotated[
-        tuple[str, ...], about("what happened at each row, in words; or nothing")
+        tuple[str, ...], about("what happened at each row, in words; may be empty")
     ] = ()
     cycle: Annotated[
         Count | None,
@@ -146,7 +147,7 @@ class Proof(Record, frozen=True):
     engine: Annotated[str, about("with its version where it is not fretc itself")]
     artefacts: Annotated[
         dict[str, Sha256],
-        about("SHA-256 of each text that was looked at, by the name of its file"),
+        about("SHA-256 of each text that was examined, by the name of its file"),
     ]
     trace: Trace | UnsetType = UNSET
 

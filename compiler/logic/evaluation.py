@@ -109,7 +109,7 @@ class _Evaluation:
             case f.Iff(left, right):
                 return read(left) & read(right) | negated(left) & negated(right)
             case f.ProbabilityBound():
-                raise ValueError("one trace does not tell a probability")
+                raise ValueError("one trace does not show a probability")
             case f.Next() | f.Eventually() | f.Globally() | f.Until() | f.Release():
                 return self._future(formula)
             case _:

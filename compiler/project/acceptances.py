@@ -82,10 +82,10 @@ def _acceptance(
     if code is None:
         near = suggestion(number, _CODES)
         fix = f"did you mean `{near}`?" if near else "write the number that the warning begins with"
-        return _bad(f"`{number}` is no code of fretc", place, fix)
+        return _bad(f"`{number}` is not a code of fretc", place, fix)
     about = explanation(code).accept
     if not about:
-        fix = f"fix what it is about: `fretc explain {number}` says how"
+        fix = f"fix the cause: `fretc explain {number}` says how"
         return _bad(f"{number} cannot be accepted: {code.summary}", place, fix)
     where, example = ACCEPTANCES[about]
     line = example.format(number).removeprefix("[accept]\n")
@@ -95,7 +95,9 @@ def _acceptance(
     if subject and about not in (TOPIC, HAZARD):
         return _bad(f"{number} is not about a topic or a hazard", place, fix)
     if not reason.strip():
-        return _bad(f"{number} is accepted without a reason", place, "write why it may stand")
+        return _bad(
+            f"{number} is accepted without a reason", place, "write why the warning is acceptable"
+        )
     return Acceptance(code, reason.strip(), place, requirement, subject)
 
 
@@ -164,9 +166,9 @@ def idle(
         if not (retired or open_yet or id(each) in used):
             yield Diagnostic(
                 Code.IDLE_ACCEPTANCE,
-                f"{each.code.number} is accepted, and no such warning is there",
+                f"{each.code.number} is accepted, but there is no such warning",
                 each.span,
-                help="take the acceptance out: it would hide the next one",
+                help="remove the acceptance: it would hide a later warning",
                 severity=Severity.WARNING,
             )
 

@@ -112,7 +112,7 @@ def _parts(data: Any) -> tuple[list[Mapping[str, Any]], list[Mapping[str, Any]]]
     if isinstance(data, list):
         records = _records(data)
         if len(records) < len(data):
-            return "it is an array of something else than objects"
+            return "it is an array with items that are not objects"
         return (records, []) if records and "reqid" in records[0] else ([], records)
     if not isinstance(data, dict):
         return "it is neither an array nor an object"
@@ -154,9 +154,9 @@ def _requirements(
                 _warning(
                     Code.RENAMED,
                     f"requirement {number} ({reqid}{of}) is imported as `{id}`: `{wanted}` is "
-                    "taken, and capitals do not tell ids apart",
+                    "taken, and ids are compared without case",
                     source,
-                    "rename it in its project, or import each project into a folder of its own",
+                    "rename it in its project, or import each project into its own folder",
                 )
             )
         ids[project, reqid] = id
@@ -313,9 +313,10 @@ def _without_circles(tables: Mapping[str, dict[str, Any]], source: Source) -> It
             del table["value"]
         yield _warning(
             Code.DEFINITION_CIRCLE,
-            f"assignments lead in a circle: {' -> '.join(names[:12])}; they are kept, and not read",
+            f"assignments lead in a circle: {' -> '.join(names[:12])}; they are kept for FRET, "
+            "but not read",
             source,
-            "let one of them stand for numbers and other variables alone",
+            "define one of them without the others",
         )
 
 
@@ -401,9 +402,9 @@ def _merged(
     )
     return _warning(
         Code.MERGED_VARIABLE,
-        f"a second variable `{name}` is kept for FRET, and not read: it has {differences}",
+        f"a second variable `{name}` is kept for FRET, but not read: it has {differences}",
         source,
-        "import each project into a folder of its own, or make the two say the same",
+        "import each project into its own folder, or make the two variables equal",
     )
 
 
@@ -462,7 +463,7 @@ def _from_csv(source: Source, columns: Mapping[str, str]) -> Import:
         return _failed(f"it is not CSV: {error}", source)
     if not rows:
         return _failed(
-            "it has a header and no rows" if source.text.strip() else "it is empty", source
+            "it has a header, but no rows" if source.text.strip() else "it is empty", source
         )
     chosen = _columns(names, columns, source)
     if isinstance(chosen, Diagnostic):
@@ -541,7 +542,7 @@ def _row(row: Mapping[str | None, Any], chosen: Mapping[str, str]) -> dict[str, 
 
 
 def _failed(why: str, source: Source, at: int = 0) -> Import:
-    return Import((), (_bad(why, source, "give it an export of FRET (JSON), or a CSV", at),))
+    return Import((), (_bad(why, source, "use an export of FRET (JSON), or a CSV file", at),))
 
 
 def _bad(why: str, source: Source, fix: str, at: int = 0) -> Diagnostic:

@@ -43,12 +43,14 @@ def _mistakes(tables: Tables, id: str, fields: Any) -> list[Diagnostic]:
         return Diagnostic(Code.BAD_HAZARDS, message, tables.place(*path), help=fix)
 
     if not isinstance(fields, dict):
-        return [wrong(f"`{id}` is no hazard", f'write `[{id}]`, then `title = "..."`', id)]
+        return [wrong(f"`{id}` is not a hazard table", f'write `[{id}]`, then `title = "..."`', id)]
     found = []
     for key, value in fields.items():
         if key not in _FIELDS:
             known = ", ".join(_FIELDS)
-            found.append(wrong(f"`{key}` is no field of a hazard", f"it may have {known}", id, key))
+            found.append(
+                wrong(f"`{key}` is not a field of a hazard", f"it may have {known}", id, key)
+            )
         elif not isinstance(value, str):
             found.append(wrong(f"`{key}` must be a text", "write it in quotes", id, key))
     if "title" not in fields:

@@ -67,7 +67,7 @@ def cycles(requirements: Sequence[RequirementEntry]) -> Iterator[Diagnostic]:
                 Code.PARENTS_IN_A_CIRCLE,
                 f"{requirement.id} is its own ancestor: {' → '.join(circle)}",
                 requirement.place("parents"),
-                help="take one of these links out of `parents`",
+                help="remove one of these links from `parents`",
             )
 
 

@@ -98,7 +98,7 @@ def _unreadable(settings: Settings, name: str, why: str) -> Diagnostic:
         Code.BAD_PARENTS,
         f"the parents in `{name}` cannot be read: {why}",
         _place(settings, name),
-        help="name its folder, if it is meant: `fretc --parents FOLDER COMMAND ...`"
+        help="to allow it, name its folder: `fretc --parents FOLDER COMMAND ...`"
         if why == _OUTSIDE
         else _EXPORTS.get(Path(name).suffix.lower(), _EXPORTS[""]),
     )
@@ -136,9 +136,9 @@ def _read(path: Path, name: str) -> Iterator[Parent]:
         case ".reqifz":
             return _reqifz(path, name)
         case ".sdoc":
-            raise UnreadableError("only StrictDoc itself reads its documents for certain")
+            raise UnreadableError("only StrictDoc itself can read its documents reliably")
         case _:
-            raise UnreadableError("no format is known by that ending")
+            raise UnreadableError("its extension belongs to no supported format")
 
 
 _MOST = 64 * 2**20
@@ -173,7 +173,7 @@ def _json(text: str, name: str) -> Iterator[Parent]:
         return _strictdoc(data["DOCUMENTS"], name)
     if isinstance(data, dict) and "versions" in data:
         return _needs(data, name)
-    raise UnreadableError("it has neither `DOCUMENTS`, as StrictDoc writes, nor `versions`")
+    raise UnreadableError("it has neither `DOCUMENTS` (StrictDoc) nor `versions` (sphinx-needs)")
 
 
 # StrictDoc -------------------------------------------------------------------------------------
@@ -217,7 +217,7 @@ def _exports(folder: Path, name: str) -> Iterator[Parent]:
         raise UnreadableError("it holds the items; `doorstop export --yaml all FOLDER` writes them")
     paths = sorted(folder.glob("*.yml"))
     if not paths:
-        raise UnreadableError("no export of Doorstop (`*.yml`) is in it")
+        raise UnreadableError("it has no export of Doorstop (`*.yml`)")
     for path in paths:
         yield from _doorstop(path, name)
 
@@ -227,9 +227,9 @@ def _doorstop(path: Path, name: str) -> Iterator[Parent]:
     try:
         document = loaded(_text(path))
     except ValueError as error:
-        raise UnreadableError(f"{path.name} is not YAML that is read: {error}") from None
+        raise UnreadableError(f"{path.name} cannot be read as YAML: {error}") from None
     if not isinstance(document, dict) or not all(_is_item(item) for item in document.values()):
-        raise UnreadableError(f"{path.name} is no export of Doorstop")
+        raise UnreadableError(f"{path.name} is not an export of Doorstop")
     for uid, item in document.items():
         if item.get("active", True):
             yield _parent(str(uid), item.get("header"), item["text"], name)
@@ -255,7 +255,7 @@ def _needs(data: Mapping[str, Any], name: str) -> Iterator[Parent]:
         raise UnreadableError("its version has no `needs`")
     for id, need in needs.items():
         if not isinstance(need, dict):
-            raise UnreadableError(f"`{id}` is no need")
+            raise UnreadableError(f"`{id}` is not a need")
         content = need.get("content", need.get("description"))
         yield _parent(id, str(need.get("title") or ""), str(content or ""), name)
 
@@ -273,12 +273,12 @@ def _reqifz(path: Path, name: str) -> Iterator[Parent]:
             inside = sorted(n for n in archive.namelist() if n.lower().endswith(".reqif"))
             most = _LEAST_PACKED + _RATIO * path.stat().st_size
             if sum(archive.getinfo(each).file_size for each in inside) > most:
-                raise UnreadableError("it unpacks to far more than such archives do")
+                raise UnreadableError("it unpacks to far more data than a ReqIF archive should")
             texts = [_inside(archive, each) for each in inside]
     except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, ValueError):
         texts = []  # RuntimeError: it is encrypted, or packed in a way that Python does not know
     if not texts:
-        raise UnreadableError("it is no archive of ReqIF files")
+        raise UnreadableError("it is not an archive of ReqIF files")
     for text in texts:
         yield from _reqif(text, name)
 
@@ -293,7 +293,7 @@ def _reqif(text: str, name: str) -> Iterator[Parent]:
     from reqif.parser import ReqIFParser
 
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise UnreadableError("it declares a document type, which ReqIF has none of")
+        raise UnreadableError("it declares a document type, which a ReqIF file must not have")
     try:
         content = ReqIFParser.parse_from_string(text).core_content.req_if_content
         types, objects = content.spec_types or (), content.spec_objects or ()
@@ -304,7 +304,7 @@ def _reqif(text: str, name: str) -> Iterator[Parent]:
         }
         members = [_spec_object(each, names, name) for each in objects]
     except Exception as error:  # the library has no exception of its own for what it cannot read
-        raise UnreadableError(f"the library `reqif` does not take it: {_first(error)}") from None
+        raise UnreadableError(f"the library `reqif` cannot read it: {_first(error)}") from None
     yield from members
 
 

@@ -36,7 +36,7 @@ def _absent(what: str, folder: str) -> Diagnostic:
         Code.NO_SUCH_FILE,
         f"{what} `{folder}`",
         Source(folder, "").span(),
-        help="name the folder that your requirements are in, with `--requirements`; or begin one: "
+        help="name the folder of your requirements with `--requirements`, or create one: "
         "`fretc init`",
     )
 
@@ -55,7 +55,7 @@ def listed(paths: Sequence[str]) -> list[str] | Diagnostic:
     for path in sorted(paths, key=natural) if [*paths] == sorted(paths) else paths:
         files = requirement_files(path) if _is_folder(path) else [path]
         if isinstance(files, Diagnostic):
-            return replace(files, help="name files, or a folder that has some")
+            return replace(files, help="name `.fret` files, or a folder with `.fret` files")
         for file in files:
             found.setdefault(os.path.realpath(file) if file != "-" else file, file)
     return list(found.values())

@@ -60,10 +60,10 @@ def first_unit(requirements: Iterable[FormalizedRequirement]) -> Diagnostic | No
                 if isinstance(part, Quantity):
                     return Diagnostic(
                         Code.UNIT_IN_SENTENCE,
-                        f"`{part.digits} {part.unit}`: FRET knows no units; `--emit fret-json` "
+                        f"`{part.digits} {part.unit}`: FRET has no units; `--emit fret-json` "
                         "writes each number in the unit of its signal",
                         part.span,
-                        help="a bare number is in the unit of the signal beside it, in FRET, too",
+                        help="a number without a unit has the unit of its signal, also in FRET",
                         severity=Severity.NOTE,
                     )
     return None
@@ -91,16 +91,16 @@ def _parameters(
         if units.quantity(text) is None:
             yield Diagnostic(
                 Code.BAD_FIELD,
-                f"`{text}` is no quantity",
+                f"`{text}` is not a quantity",
                 place,
                 help='write a number and a unit: `"5 cm"`',
             )
         elif _has_drifted(text, known):
             yield Diagnostic(
                 Code.PARAMETER_DRIFT,
-                f"the requirement states {text} for `{name}`, and its binding has another number",
+                f"the requirement states {text} for `{name}`, but its binding has another number",
                 known[0].span,
-                help="make the binding or `params` say what is meant",
+                help="correct the binding or `params`",
                 severity=Severity.WARNING,
             )
 

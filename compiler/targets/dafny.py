@@ -62,7 +62,7 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
         return not_expressible("Dafny", requirement, f"the scope `{scope}`", _ELSEWHERE)
     predicate = temporal_predicate(sentence)
     if predicate is not None:
-        part = f"the predicate `{predicate}`, which speaks of other ticks,"
+        part = f"the predicate `{predicate}`, which refers to other ticks,"
         return not_expressible("Dafny", requirement, part, _ELSEWHERE)
     return None
 

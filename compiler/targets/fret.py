@@ -61,7 +61,7 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
             "FRET",
             requirement,
             "a comparison of signals in several units",
-            "bind it under a name of its own, `[proposition.NAME]`, and write that name",
+            "bind it as `[proposition.NAME]`, and write that name",
         )
     if not has_units(requirement.sentence):
         return None

@@ -52,7 +52,7 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
         return not_expressible(
             "PRISM",
             requirement,
-            "a certainty such as that",
+            "a requirement without a probability, such as that",
             "add `with probability >= 0.99` before the timing, or use `--emit smv` or `hoa`",
         )
     predicate = _looks_back(requirement)
@@ -61,7 +61,7 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
             "PRISM",
             requirement,
             f"the predicate `{predicate}`, which looks back,",
-            "say it by a condition or a timing",
+            "state it by a condition or a timing",
         )
     if _steps(requirement.pctl) > _MOST_STEPS:
         return not_expressible(

@@ -120,7 +120,7 @@ def too_long(
         Code.TOO_LARGE,
         f"the property of {requirement.id} has more than {_MOST_OPERATORS} operators",
         requirement.entry.wording,
-        help=f"{target}'s formulas have no `<->` and no `xor`: give parts names of their own",
+        help=f"{target}'s formulas have no `<->` and no `xor`: bind parts as propositions",
     )
 
 

@@ -339,6 +339,6 @@ def _conclusion(result: AjpfResult) -> Outcome:
     sizes = ", ".join("?" if c.states is None else f"{c.states:,}" for c in checks)
     seconds = sum(check.seconds for check in checks)
     return proved(
-        f"AJPF says all that is expected of the property, its controls and the mutant ({sizes} "
+        f"AJPF gives every expected verdict for the property, its controls and the mutant ({sizes} "
         f"states, {seconds:.1f} s)"
     )

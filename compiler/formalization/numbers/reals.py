@@ -150,13 +150,15 @@ class Counterexample(Protocol):
 Found = TypeVar("Found", bound=Counterexample)
 Other = TypeVar("Other")
 
-NOT_DECIDED = "whether numbers make these comparisons true and false so was not decided"
+NOT_DECIDED = (
+    "it was not decided whether numbers can make these comparisons true and false in this way"
+)
 
 
 def only_rounded(exclusion: Exclusion) -> str:
     """What is to be known of a trace that no numbers make, computed exactly."""
     made = exclusion_in_words(exclusion)
-    return f"computed exactly, no numbers make {made}; floats that round may"
+    return f"in exact arithmetic no numbers make {made}; rounded floats may"
 
 
 def by_numbers(

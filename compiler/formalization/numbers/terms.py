@@ -151,7 +151,7 @@ class Terms:
                 compared = e.COMPARE[op](a, b)
                 return z3.And(compared if value else z3.Not(compared), known(compared))
             case _:
-                raise NoTermError("is no comparison of numbers")
+                raise NoTermError("is not a comparison of numbers")
 
     # Numbers
 
@@ -176,13 +176,13 @@ class Terms:
             case e.Call(name, args):
                 return _called(name, [read(each) for each in args])
             case _:
-                raise NoTermError("is no comparison of numbers")
+                raise NoTermError("is not a comparison of numbers")
 
     def _before(self, name: str, first: Term, of: str) -> Term:
         """The number of the tick before, as a variable of its own."""
         now = self._variable(of, is_base=False)
         if now.is_int() and first.is_real():
-            raise NoTermError("begins with what is no whole number")
+            raise NoTermError("begins with a number that is not whole")
         first = z3.ToReal(first) if now.is_real() and first.is_int() else first
         made = z3.Int(name) if now.is_int() else z3.Real(name)
         self.before[name] = Before(of, first)
@@ -243,7 +243,7 @@ def _constant(part: e.Expression) -> Term:
     except ValueError:
         value = None
     if value is None:
-        raise NoTermError("computes with a number that there is not, or that is too long")
+        raise NoTermError("computes with a number that does not exist, or is too long")
     return _exact(value)
 
 

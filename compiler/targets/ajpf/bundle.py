@@ -110,8 +110,7 @@ def _not_kept(requirement: FormalizedRequirement, evidence: Sequence[Proof]) -> 
             continue
         return Diagnostic(
             Code.NOT_KEPT,
-            f"the agent that would be made of {requirement.id} is not shown to keep it: "
-            f"{line.detail}",
+            f"the agent generated from {requirement.id} is not shown to satisfy it: {line.detail}",
             requirement.entry.wording,
             help="an agent needs time to react: use `eventually`, no scope or stop condition that "
             "may come first, and few triggers",
@@ -158,7 +157,7 @@ def texts(
     return {
         "SIF.gwen": _agent(requirement, form, form.plans, "the agent of"),
         "SIF_mutant.gwen": _agent(
-            requirement, form, form.mutant, "an agent without the response, which is to break"
+            requirement, form, form.mutant, "an agent without the response, which must violate"
         ),
         "SIF.psl": ajpf.text(requirement, options),
     }
@@ -222,7 +221,7 @@ def _checks(requirement: FormalizedRequirement, options: Options) -> list[dict[s
             "SIF_mutant",
             f"{main.key}_mutant",
             ajpf.VIOLATED,
-            "an agent without the response breaks the requirement",
+            "an agent without the response violates the requirement",
         ),
     ]
 
@@ -331,14 +330,13 @@ def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Di
         return warning
     return Diagnostic(
         Code.OVER_RESPONDS,
-        f"the agent of {requirement.id} responds to every event of its condition, also where the "
-        "rest "
-        "of the condition does not hold",
+        f"the agent of {requirement.id} responds to every event of its condition, even if the "
+        "rest of the condition does not hold",
         requirement.sentence.condition.span
         if requirement.sentence.condition
         else requirement.entry.wording,
-        "percepts are believed one after the other, so that an agent which asks for the rest may "
-        "miss its trigger; where that is too often, bind the whole condition to one proposition",
+        "percepts are believed one after the other, so an agent that also checks the rest may "
+        "miss its trigger; if it responds too often, bind the whole condition to one proposition",
         Severity.WARNING,
     )
 

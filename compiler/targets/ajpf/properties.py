@@ -184,7 +184,7 @@ def _refused_name(requirement: FormalizedRequirement) -> Diagnostic | None:
     }
     for atom in requirement.propositions:
         if atom in spoken and atom not in compared:
-            fix = "give it a name of its own that begins with a small letter, and bind that"
+            fix = "bind it as a proposition whose name begins with a small letter, and use that"
             return _not(requirement, f"the proposition `{atom}`", fix)
     return None
 
@@ -195,7 +195,7 @@ def _refused_form(
     if formula is None:
         return Diagnostic(
             Code.NOT_PROVED,
-            f"the form of {requirement.id} for AJPF is not proved equal to the requirement",
+            f"the AJPF property of {requirement.id} is not proved equivalent to the requirement",
             requirement.entry.wording,
             help=f"this is a fault of fretc: report it, and {_MONITOR}",
         )
@@ -206,7 +206,7 @@ def _refused_form(
         return long
     levels = _levels(_text(formula, requirement))
     if levels > _MOST_LEVELS:
-        fix = "give parts of the expressions names of their own"
+        fix = "bind parts of the expressions as propositions"
         return _not(requirement, f"{levels} parentheses within each other", fix)
     return None
 

@@ -58,7 +58,7 @@ def main(arguments: Sequence[str]) -> int:
     """Check all keys of the bundle; print a line for each, and write the result."""
     parser = argparse.ArgumentParser(description="Check this bundle with AJPF.")
     parser.add_argument("--timeout", type=float, default=3600, help="seconds for each property")
-    parser.add_argument("--agent", help="an agent of your own, in place of SIF.gwen")
+    parser.add_argument("--agent", help="your own agent, instead of SIF.gwen")
     options = parser.parse_args(arguments)
     here = Path(__file__).resolve().parent
     own = Path(options.agent).resolve() if options.agent else None
@@ -66,8 +66,7 @@ def main(arguments: Sequence[str]) -> int:
         for place in (here, *([own] if own else [])):
             if re.search(r"[^\w./+@~-]", str(place), re.ASCII):
                 raise UnusableError(
-                    "AJPF reads paths of letters, digits and `_ . / + @ ~ -` alone, and not "
-                    f"{place}"
+                    f"AJPF reads only paths of letters, digits and `_ . / + @ ~ -`, not {place}"
                 )
         manifest = intact(here, own)
         programs = tools()
@@ -99,7 +98,7 @@ def main(arguments: Sequence[str]) -> int:
     status, words = conclusion(answers)
     try:
         if digests(here, manifest, own) != ran_on:
-            raise UnusableError("a file was changed while AJPF was at work: run it again")
+            raise UnusableError("a file was changed while AJPF was running: start run.py again")
         write(here, result(manifest, programs, own, ran_on, answers, status))
     except UnusableError as error:
         print(f"error: {error}", file=sys.stderr)
@@ -129,11 +128,11 @@ def intact(here: Path, own: Path | None) -> dict[str, Any]:
         for name, expected in files.items():
             if digest(here / name) != expected and (own is None or name != "SIF.gwen"):
                 more = "; `--agent SIF.gwen` checks an agent of your own" * (name == "SIF.gwen")
-                raise UnusableError(f"{name} is not the file that manifest.json tells of{more}")
+                raise UnusableError(f"{name} is not the file that manifest.json lists{more}")
         if {check["role"] for check in checks} != {"requirement", "control", "mutant"}:
-            raise UnusableError("manifest.json does not name all that is to be checked")
+            raise UnusableError("manifest.json does not list all files and checks")
         if any(c["expected"] not in (HOLDS, VIOLATED) or c["jpf"] not in files for c in checks):
-            raise UnusableError("manifest.json names something that cannot be checked")
+            raise UnusableError("manifest.json lists a check that cannot be run")
         if own is not None:
             check_name(own, manifest["agent"])
         return manifest
@@ -160,7 +159,7 @@ def alone(here: Path) -> IO[str]:
         pass  # a system without such locks
     except OSError:
         file.close()
-        raise UnusableError(f"another run.py is at work in {here}") from None
+        raise UnusableError(f"another run.py is running in {here}") from None
     return file
 
 
@@ -195,13 +194,13 @@ def java_version(java: str) -> str:
             [java, "-version"], capture_output=True, text=True, errors="replace", timeout=60
         )
     except (OSError, subprocess.TimeoutExpired) as error:
-        raise UnusableError(f"{java} does not tell its version: {error}") from error
+        raise UnusableError(f"{java} does not print its version: {error}") from error
     match = re.search(r'version "((?:1\.)?(\d+)[^"]*)"', f"{done.stderr}\n{done.stdout}")
     if match is None:
-        raise UnusableError(f"{java} does not tell its version")
+        raise UnusableError(f"{java} does not print its version")
     if int(match[2]) != JAVA:
         raise UnusableError(
-            f"{java} is Java {match[1]}, and AJPF needs Java {JAVA}: under another it dies with "
+            f"{java} is Java {match[1]}, and AJPF needs Java {JAVA}: other versions fail with "
             f"`NoSuchMethodError`; set JAVA_HOME to a JDK {JAVA}"
         )
     return match[1]
@@ -294,7 +293,10 @@ def ask(
 
 RESULTS = re.compile(r"^=+ results\s*$", re.MULTILINE)
 EXPLAINED = (
-    ("Could not deserialize ATN", "an ANTLR that is older than MCAPL's parsers comes first"),
+    (
+        "Could not deserialize ATN",
+        "the class path begins with an ANTLR that is older than MCAPL's parsers",
+    ),
     ("NoSuchMethodError", f"AJPF needs Java {JAVA}"),
 )
 
@@ -317,7 +319,7 @@ def verdict(text: str, status: int) -> tuple[str, str]:
     if "search constraint" in text:
         return ERROR, "the search was cut short"
     if "MODEL PRODUCED BY AJPF" in text:
-        return ERROR, "only the model was made (`ajpf.model_only`)"
+        return ERROR, "only the model was built (`ajpf.model_only`)"
     parts = RESULTS.split(text)
     results = parts[-1] if len(parts) == 2 else ""
     holds = re.search(r"^no errors detected\s*$", results, re.MULTILINE) is not None
@@ -325,7 +327,7 @@ def verdict(text: str, status: int) -> tuple[str, str]:
     path = 'ajpf.MCAPLListener "An Accepting Path has been found'
     violated = bool(errors) and all(error.startswith(path) for error in errors)
     if holds and (errors or "An Accepting Path has been found" in text):
-        return ERROR, "the output says two things"
+        return ERROR, "the output has two verdicts"
     if violated and status >= 0:
         return VIOLATED, ""
     if holds and status == 0:
@@ -425,9 +427,9 @@ def conclusion(answers: Sequence[Mapping[str, Any]]) -> tuple[int, str]:
     if any(check["role"] == "requirement" and check["told"] == VIOLATED for check in answers):
         return REFUTED, "AJPF refutes the requirement"
     if any(check["told"] != check["expected"] for check in answers):
-        words = "not shown: without each of these, the verdict about the requirement says nothing"
+        words = "not shown: the verdict about the requirement counts only if each of these is shown"
         return NOT_SHOWN, words
-    return SHOWN, "AJPF says all that is expected of it"
+    return SHOWN, "AJPF gives every expected verdict"
 
 
 def result(

@@ -77,7 +77,7 @@ def sif(requirement: FormalizedRequirement, guarded: bool = True) -> Sif | Diagn
     sentence = requirement.sentence
     comparison = next(iter(comparison_names(requirement)), None)
     if comparison is not None:
-        fix = "give it a name of its own, and bind that; `--emit ajpf` writes the property alone"
+        fix = "bind it as a proposition, and use that; `--emit ajpf` writes only the property"
         return not_expressible(_TARGET, requirement, f"`{comparison}`", fix)
     if sentence.condition is None:
         fix = "an agent reacts to an event: state what triggers it, `whenever ...`"
@@ -121,10 +121,10 @@ def _terms(
         literals = [_literal(x) for x in (part.args if isinstance(part, e.And) else (part,))]
         term = tuple(literal for literal in literals if literal is not None)
         if len(term) < len(literals):
-            fix = "write it as `a`, `a & b` or `(a & !b) | c`, or give its parts names"
+            fix = "write it as `a`, `a & b` or `(a & !b) | c`, or bind its parts as propositions"
             return not_expressible(_TARGET, requirement, "the shape of the condition", fix)
         if not any(positive for _, positive in term):
-            fix = "an absence at the start raises no event: name the opposite, and bind that"
+            fix = "a belief that is absent at the start raises no event: bind the opposite"
             return not_expressible(_TARGET, requirement, "a condition that only negates", fix)
         terms.append(term)
     return tuple(terms)
@@ -151,7 +151,7 @@ def _responses(requirement: FormalizedRequirement) -> tuple[str, ...] | Diagnost
     ids = [part.id for part in parts if isinstance(part, e.Name)]
     if len(ids) == len(parts):
         return tuple(dict.fromkeys(ids))
-    fix = "an agent does things: state what is to be so, as `a` or `a & b`"
+    fix = "an agent reacts by actions: state the response as `a` or `a & b`"
     return not_expressible(_TARGET, requirement, "the shape of the response", fix)
 
 
@@ -172,21 +172,23 @@ def _wrong_name(
 ) -> Diagnostic | None:
     for name in percepts:
         if name in responses:
-            fix = "an environment that shows the response verifies any agent: use two names"
+            fix = "if the environment shows the response, every agent is verified: use two names"
             return not_expressible(_TARGET, requirement, f"`{name}` as trigger and response", fix)
         if _modality(requirement, name) is not Modality.BELIEF:
-            fix = 'the environment shows it: leave its `modality`, or make it "B"'
+            fix = 'a trigger is a percept: remove its `modality`, or make it "B"'
             return not_expressible(
-                _TARGET, requirement, f"the trigger `{name}`, not a belief,", fix
+                _TARGET, requirement, f"the trigger `{name}` (not a belief)", fix
             )
     for name in responses:
         if _modality(requirement, name) not in (Modality.BELIEF, Modality.DONE):
             fix = 'an agent brings about a belief ("B") or does an action ("D")'
-            return not_expressible(_TARGET, requirement, f"the response `{name}`, neither,", fix)
+            return not_expressible(
+                _TARGET, requirement, f"the response `{name}` (neither a belief nor an action)", fix
+            )
         done = _modality(requirement, name) is Modality.DONE
         action = _spelt(requirement)[name] if done else _action(requirement, name)
         if action in AJPF_ACTIONS:
-            fix = "MCAPL has an action or a word of that name: use another"
+            fix = "MCAPL reserves this name: use another"
             return not_expressible(_TARGET, requirement, f"the action `{action}`", fix)
     return None
 

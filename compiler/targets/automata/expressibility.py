@@ -27,7 +27,7 @@ def no_automaton(requirement: FormalizedRequirement, target: str) -> Diagnostic 
             target,
             requirement,
             f"the predicate `{predicate}`",
-            "say it by a condition or a timing, or check it with `--emit monitor`",
+            "state it by a condition or a timing, or check it with `--emit monitor`",
         )
     return None
 

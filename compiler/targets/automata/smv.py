@@ -130,7 +130,7 @@ def _specs(
         Spec(
             f"{prefix}_pt_is_monitor",
             f"(G ({pt} <-> {ends}))",
-            "expected true: PT tells of every finite trace that ends here what the module tells",
+            "expected true: PT has the verdict of the module on every finite trace that ends here",
         ),
     ]
     if not unmet:

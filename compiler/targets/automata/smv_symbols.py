@@ -237,7 +237,7 @@ def _within(n: int) -> _Counter:
     count = _count(
         n,
         (("!due | response", "0"), (f"count = {n}", str(n)), ("TRUE", "count + 1")),
-        "ticks that the oldest open trigger has seen",
+        "ticks since the oldest open trigger, its tick included",
     )
     broken = Definition("broken", _plain(f"due & !response & count = {n}"), "the deadline")
     return _Counter((count,), (_DUE_BY_COUNT, broken))
@@ -252,7 +252,7 @@ def _for(n: int) -> _Counter:
             ("count > 0", "count - 1"),
             ("TRUE", "0"),
         ),
-        "ticks that the newest trigger is still owed",
+        "ticks for which the newest trigger still demands the response",
     )
     return _Counter((count,), (_DUE_BY_COUNT, Definition("broken", _plain("due & !response"))))
 
@@ -261,7 +261,7 @@ def _after(n: int) -> _Counter:
     count = _count(
         n + 1,
         ((f"!due | count = {n + 1}", "0"), ("TRUE", "count + 1")),
-        "ticks that the oldest open trigger has seen",
+        "ticks since the oldest open trigger, its tick included",
     )
     clash = Variable(
         "clash",

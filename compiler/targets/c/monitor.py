@@ -46,7 +46,7 @@ def too_large(requirement: FormalizedRequirement, language: str) -> Diagnostic |
     if any(isinstance(cell, Counter) and cell.most >= 2**31 for cell in cells):
         what, fix = "a bound of 2^31 ticks or more", "counters have 32 bits: choose a longer tick"
     elif any(isinstance(cell, Ring) and cell.length > _MOST_BITS for cell in cells):
-        what = f"a demand about one time more than {_MOST_BITS} ticks ago"
+        what = f"a demand about a single tick more than {_MOST_BITS} ticks ago"
         fix = "it would keep more than a mebibyte: choose a longer tick"
     else:
         return None

@@ -66,8 +66,8 @@ def _warning(code: Code, message: str, node: Interception, fix: str) -> Diagnost
 def _latching(node: Interception) -> Diagnostic:
     return _warning(
         Code.LATCHING,
-        "the interceptor latches: after the first stop nothing but a new start moves the robot, "
-        "whatever the safety function says",
+        "the interceptor latches: after the first stop the robot moves only after a restart, "
+        "whatever the safety function requests",
         node,
         "write `latching = false`, or state in a requirement that a stop is final",
     )
@@ -76,8 +76,8 @@ def _latching(node: Interception) -> Diagnostic:
 def _event_driven(node: Interception) -> Diagnostic:
     return _warning(
         Code.EVENT_DRIVEN,
-        "the interceptor speaks only when a command comes: where the planner falls silent, the "
-        "wheels keep their last velocity, whatever stop is requested",
+        "the interceptor publishes only when a command comes: if the planner stops publishing, "
+        "the wheels keep their last velocity, even if a stop is requested",
         node,
         'write `form = "timer"` and a `period`',
     )
@@ -87,17 +87,17 @@ def _unwatched(node: Interception) -> Iterator[Diagnostic]:
     if not node.stop_timeout:
         yield _warning(
             Code.UNWATCHED,
-            f"no `stop_timeout`: where the safety function dies, or `{node.stop}` is cut, the "
-            "robot moves on",
+            f"no `stop_timeout`: if the safety function dies, or `{node.stop}` is lost, the "
+            "robot keeps moving",
             node,
-            "add `stop_timeout`, some times as long as the safety function is ever silent",
+            "add `stop_timeout`: a few times the longest silence of the safety function",
         )
     if not node.scan_timeout:
         yield _warning(
             Code.UNWATCHED,
-            "no `scan_timeout`: where the sensor dies, only the safety function can notice",
+            "no `scan_timeout`: if the sensor dies, only the safety function can notice",
             node,
-            "add `scan` and `scan_timeout`, some times the period of the sensor",
+            "add `scan` and `scan_timeout`: a few times the period of the sensor",
         )
 
 
@@ -112,7 +112,7 @@ def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnost
         return
     yield _warning(
         Code.SHORT_HOLD,
-        f"zero is held for {_duration(sure)} for certain, and messages may be lost for "
+        f"zero is held for {_duration(sure)} for certain, but messages may be lost for "
         f"{_duration(gap)}: a robot that was stopped may move between two "
         "requests",
         node,

@@ -55,7 +55,7 @@ def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | N
             language,
             requirement,
             f"more than {_MOST_LEVELS} nested operators",
-            "give parts of the expression names of their own",
+            "bind parts of the expression as propositions",
         )
     ahead = next(
         (n for e in conditions(requirement.sentence) for n in calls(e) if n in LOOK_AHEAD), None
@@ -73,14 +73,14 @@ def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | N
             "a monitor",
             requirement,
             f"`FTP` within `{first}`",
-            "nothing is known of what is made of it there: state it outside",
+            "a monitor cannot evaluate it there: state it outside",
         )
     if requirement.pctl is not None:
         return not_expressible(
             "a monitor",
             requirement,
             "the probability",
-            "one run does not tell a probability: `fretc audit` estimates it over many",
+            "one run does not show a probability: `fretc audit` estimates it over many runs",
         )
     if assumed_ticks(requirement.sentence, requirement.clock) is None:
         return None
@@ -119,7 +119,7 @@ def remark(requirement: FormalizedRequirement) -> Diagnostic | None:
         Code.NEVER_DECIDED,
         f"no run, however long, can violate {requirement.id} or confirm it: it sets no bound",
         sentence.timing_span or requirement.entry.wording,
-        help="state a bound: `within ...` in place of `eventually`",
+        help="state a bound: `within ...` instead of `eventually`",
         severity=Severity.WARNING,
     )
 

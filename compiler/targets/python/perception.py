@@ -40,12 +40,12 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
 def _reasons(requirement: FormalizedRequirement) -> Iterator[tuple[str, str]]:
     declared = requirement.declarations
     if declared is None:
-        yield "there are no bindings", "say in bindings.toml what its propositions are"
+        yield "there are no bindings", "define its propositions in bindings.toml"
         return
     unbound = [name for name in requirement.watched if name not in declared.propositions]
     if unbound:
         name = unbound[0]
-        yield f"the bindings do not say what `{name}` is", way_out(requirement, name, declared)
+        yield f"the bindings do not define `{name}`", way_out(requirement, name, declared)
     yield from _of_clock(declared)
     if unbound:
         return
@@ -53,7 +53,7 @@ def _reasons(requirement: FormalizedRequirement) -> Iterator[tuple[str, str]]:
     if found is None or found.left_out:
         yield (
             "it looks back by ticks within a proposition",
-            "state it in the sentence, or by `for 200 ms`",
+            "state it in the sentence, or with `for 200 ms`",
         )
         return
     for policy in found.policies:
@@ -74,12 +74,12 @@ def _of_clock(declared: Declarations) -> Iterator[tuple[str, str]]:
         )
     if clock.time is TimeSource.PUBLISH_TIME:
         yield (
-            "its clock is the time of publication, which a subscriber is not given",
+            "its clock is the time of publication, which subscribers do not receive",
             'write `time = "log_time"` or `time = "header.stamp"`',
         )
     if clock.patience is None:
         yield (
-            "nothing says how long a tick waits for its messages",
+            "`[clock]` does not state how long a tick waits for its messages",
             'add `lateness = "50 ms"` to `[clock]`',
         )
 

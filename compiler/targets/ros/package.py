@@ -125,16 +125,21 @@ def _unsubscribable(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
         place = signal.span or requirement.entry.wording
         others = [_kind(each) for each in declared if each.path.topic == topic]
         if _TYPE.fullmatch(kind) is None:
-            what = f"is of `{kind}`, which is no type of ROS" if kind else "has no type"
+            what = f"has the type `{kind}`, which is not a ROS type" if kind else "has no type"
             fix = f'add `type = "sensor_msgs/LaserScan"`, say, to `[signal.{signal.name}]`'
             yield _refusal(requirement, f"`{signal.name}` {what}", place, fix)
         elif any(other not in ("", kind) for other in others):
-            what = f"{topic} is of `{kind}`, and of another type for another signal"
+            what = (
+                f"{topic} has the type `{kind}` for one signal and another type for another signal"
+            )
             yield _refusal(requirement, what, place, "give all signals the type of their topic")
         elif _TOPIC.fullmatch(topic) is None:
-            what = f"`{topic}` is no name of a topic in ROS"
+            what = f"`{topic}` is not a valid ROS topic name"
             yield _refusal(
-                requirement, what, place, "letters, digits, `_` and `/` make one: remap it"
+                requirement,
+                what,
+                place,
+                "a topic name has letters, digits, `_` and `/`: remap the topic",
             )
 
 
@@ -143,7 +148,7 @@ def _kind(signal: Signal) -> str:
 
 
 def _refusal(requirement: FormalizedRequirement, what: str, place: Span, fix: str) -> Diagnostic:
-    message = f"no node of ROS can judge {requirement.id}: {what}"
+    message = f"a ROS node cannot judge {requirement.id}: {what}"
     return Diagnostic(Code.NOT_EXPRESSIBLE, message, place, help=fix)
 
 
@@ -154,9 +159,9 @@ def refuse_project(options: Options) -> Diagnostic | None:
         return None
     return Diagnostic(
         Code.NO_ATTRIBUTION,
-        f"the manifest of a package needs what `[project]` of {SETTINGS} does not say: "
+        f"the manifest of a package needs fields that `[project]` of {SETTINGS} lacks: "
         f"{', '.join(missing)}",
-        help=f"say it in {SETTINGS}, in the folder of the requirements or above it:",
+        help=f"add them to {SETTINGS}, in the folder of the requirements or above it:",
         paste=EXAMPLE,
     )
 
@@ -169,10 +174,10 @@ def remarks(options: Options) -> tuple[Diagnostic, ...]:
     return (
         Diagnostic(
             Code.NO_INTERCEPTOR,
-            "the package has no interceptor: nothing in it carries out a stop",
+            "the package has no interceptor: nothing in it executes a stop",
             declared.source.span().part(0, 0),
-            help=f"add this table to {declared.source.name}, or let your base subscribe to the "
-            "topic of the stop:",
+            help=f"add this table to {declared.source.name}, or let your robot base subscribe to "
+            "the stop topic:",
             paste=TABLE,
             severity=Severity.WARNING,
         ),

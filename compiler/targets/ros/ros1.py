@@ -80,5 +80,5 @@ TARGET = Target(
     per_rule=False,
     together=True,
     of_loop=True,
-    next_step="its folder belongs into the `src` of a catkin workspace; its README.md says more",
+    next_step="put its folder into the `src` of a catkin workspace; see its README.md",
 )

@@ -63,7 +63,7 @@ def test_the_papers_agent_is_proved_where_its_trigger_comes_and_the_check_can_fa
         "the agent is always scheduled again",
     )
     assert set(main.artefacts) == {"sif.gwen", "sif.psl"}
-    assert mutant.claim == "the check can fail: an agent without the response breaks 1a"
+    assert mutant.claim == "the check can fail: an agent without the response violates 1a"
     assert mutant.result is Result.PROVED
 
 
@@ -80,7 +80,7 @@ def test_the_published_property_is_vacuous_in_any_environment(percept: str) -> N
     (main,) = lines(f"1: {PUBLISHED}", [percept])
     assert outcome(main) == vacuous(
         "never true where it counts: `B(agilex_agent,stop_moving)`: "
-        "`stop_moving` is an action, and actions are not believed"
+        "`stop_moving` is an action, and an action is never a belief"
     )
 
 
@@ -145,9 +145,7 @@ def test_what_the_environment_does_cannot_be_taken_away_from_the_agent() -> None
     doubled = two.replace(":Initial Beliefs:", ":Initial Beliefs: stopped")
     main, mutant = lines(f"1a: {R1}", ["too_close"], doubled)
     assert main.result is Result.PROVED
-    assert outcome(mutant) == vacuous(
-        "that agent keeps 1a too, so that it says nothing of the response"
-    )
+    assert outcome(mutant) == vacuous("that agent satisfies 1a, too, so 1a shows no response")
 
 
 def test_beyond_the_model_or_its_limit_nothing_is_known() -> None:

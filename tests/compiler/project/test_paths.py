@@ -32,6 +32,5 @@ def test_a_folder_that_is_missing_is_told_with_the_option(folder: Path) -> None:
     missing = requirement_files("requirements")
     assert isinstance(missing, Diagnostic)
     assert missing.help == (
-        "name the folder that your requirements are in, with `--requirements`; or begin one: "
-        "`fretc init`"
+        "name the folder of your requirements with `--requirements`, or create one: `fretc init`"
     )

@@ -236,7 +236,7 @@ def test_storm_reads_every_scope(storm: Check, scope: str) -> None:
 
 def test_a_sentence_without_a_probability_is_refused() -> None:
     assert refused("prism", "whenever p the sw shall within 3 ticks satisfy q") == (
-        "F601 PRISM cannot express a certainty such as that of R1\n"
+        "F601 PRISM cannot express a requirement without a probability, such as that of R1\n"
         "  --> r.fret:1:1\n"
         "   | whenever p the sw shall within 3 ticks satisfy q\n"
         "   | ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\n"

@@ -74,7 +74,7 @@ def test_what_is_missing_is_asked_for_once(fretc: Fretc, missing: str | None) ->
     assert run.status == 2
     assert run.err.count("F634") == 1
     names = missing or ", ".join(FIELDS)
-    assert f"what `[project]` of fretc.toml does not say: {names}\n" in run.err
+    assert f"fields that `[project]` of fretc.toml lacks: {names}\n" in run.err
     assert f"\n\n{EXAMPLE}" in run.err
     assert not Path("build").exists()
 
