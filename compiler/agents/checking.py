@@ -1,8 +1,8 @@
 """The layer AGENT of `fretc verify`: the texts of an agent and of its properties, in a model.
 
-It examines texts: the `.gwen` and `.psl` that MCAPL would read, not the requirement behind them.
-A verdict comes with two checks of the check: the controls of a property, which must be violated,
-and an agent without the response, which must violate the property.
+The texts that are checked are the `.gwen` and `.psl` files that MCAPL would read, not the
+requirement behind them. Two checks of the check accompany each verdict: the controls of a property
+must be violated, and an agent without the response must violate the property.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from fretish.diagnostics.source import Source
 from fretish.reading.recursion import with_recursion_limit
 
 STATES = 200_000
-"""The exploration stops at so many states, unless the caller asks for more."""
+"""Default limit of the number of states to explore."""
 CONTROLS = ("reach", "resp", "stop")
 """`<key>_reach` is a control of `<key>`: it must be violated."""
 _ATOM = re.compile(r"(?P<modality>[A-Za-z]+)\((?P<agent>\w+),(?P<literal>.*)\)", re.DOTALL)
@@ -56,12 +56,12 @@ def checked(
     Args:
         agent: a `.gwen`.
         properties: a `.psl`.
-        percepts: what the environment draws freely; nothing else is ever perceived.
-        limit: how many states are explored; with more, nothing is known.
+        percepts: the percepts that the environment draws freely; the agent perceives nothing else.
+        limit: the number of states to explore; a property of a larger model is not checked.
 
     Returns:
-        The evidence; or the first thing that MCAPL would read in another way (F603, F610), a
-        property of another agent (F612), or what is no percept (F613).
+        The evidence; or the first text that MCAPL would read differently (F603, F610), a property
+        of another agent (F612), or an invalid percept (F613).
     """
     return _checked(agent, properties, percepts, limit, None)
 
@@ -76,10 +76,10 @@ def agent_evidence(
     """Evidence for the texts of a bundle.
 
     Args:
-        requirement: the requirement, which gives the lines its id and nothing else.
+        requirement: its id names the evidence; nothing else of it is read.
         files: texts by the names `SIF.gwen`, `SIF_mutant.gwen` and `SIF.psl`.
-        percepts: those that the environment of the bundle draws.
-        limit: how many states are explored.
+        percepts: the percepts that the environment of the bundle draws.
+        limit: the number of states to explore.
     """
     sif, mutant, properties = (
         Source(name, files[name]) for name in ("SIF.gwen", "SIF_mutant.gwen", "SIF.psl")
@@ -134,7 +134,7 @@ def _checked(
 
 
 def _percept(name: str) -> str | Diagnostic:
-    """The name in the spelling of the agent's beliefs; F613 where it is no percept."""
+    """The name as the agent spells beliefs; F613 if it is not a percept."""
     if _PERCEPT.fullmatch(name):
         text = f"GWENDOLEN :name: a :Initial Beliefs: {name} :Initial Goals: :Plans: +a : {{True}};"
         agent = gwendolen.read(Source("percept", text))
@@ -180,7 +180,7 @@ def _text(formula: f.Formula) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Explored:
-    """A model with all of its states."""
+    """A model with all of its reachable states."""
 
     model: Model
     graph: Explored[State]
@@ -197,7 +197,7 @@ class _Explored:
         return check(self.graph.kripke, formula)
 
     def trace(self, formula: f.Formula, lasso: Lasso) -> Trace:
-        """A row for each stage: the atoms of the formula, and what led there."""
+        """The lasso as a table: a row for each state, with the atoms and the event before."""
         names = tuple(f.atoms(formula))
         labels = [self.graph.kripke.labels[state] for state in lasso.states]
         return Trace(
@@ -208,7 +208,7 @@ class _Explored:
         )
 
     def never(self, formula: f.Formula) -> list[str]:
-        """For each atom of the formula that is true in no state, why, in words."""
+        """A reason, in words, for each atom of the formula that no state makes true."""
         labels = self.graph.kripke.labels
         absent = [a for a in f.atoms(formula) if not any(a in label for label in labels)]
         return [self._why(atom) for atom in absent]
@@ -231,7 +231,7 @@ class _Lines:
     properties: tuple[Property, ...]
     explored: _Explored
     mutant: Agent | None
-    """An agent that must violate the properties; None: each property gets one of its own."""
+    """An agent that must violate the properties. None: each property gets its own mutant."""
     artefacts: Mapping[str, str]
     limit: int
 
@@ -251,7 +251,7 @@ class _Lines:
         return proof(prop.key, Layer.AGENT, claim, outcome, engine, assumed, self.artefacts)
 
     def _main_of(self, prop: Property) -> Property | None:
-        """The property that this one is a control of."""
+        """The property of which `prop` is a control."""
         main, _, name = prop.key.rpartition("_")
         if name not in CONTROLS:
             return None
@@ -309,7 +309,7 @@ def _control_claim(prop: Property) -> str:
 
 
 def _without(agent: Agent, atoms: frozenset[str]) -> Agent | None:
-    """The agent without the deeds that make the atoms true; None where it has none."""
+    """The agent without the deeds that make the atoms true; None if it has no such deed."""
     name = agent.name
 
     def makes(deed: gwendolen.Deed) -> bool:

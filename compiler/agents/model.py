@@ -2,7 +2,7 @@
 
 States are the stages of the reasoning cycle: perceive; select an intention; plan it; execute one
 deed. The environment draws each percept anew, freely, at the start, at every action that is not
-silent, and whenever the agent is idle, for ever; it never speaks of anything else.
+silent, and whenever the agent is idle, for ever. It changes nothing else.
 
 AJPF's semantics: percepts that are drawn together are believed one after the other, those that
 went first, and each change is a state of its own, which a property sees. A belief raises `+b` only
@@ -53,7 +53,7 @@ class Notice:
     change: Change
 
     def __str__(self) -> str:
-        """As a deed of its own."""
+        """The text of the notice as a deed."""
         return f"the percept {self.change}"
 
 
@@ -71,13 +71,13 @@ class State:
     """The agent and its environment between two stages."""
 
     percepts: Beliefs
-    """What the environment shows."""
+    """The percepts that the environment shows."""
     up_to_date: bool
     """Whether the agent has perceived `percepts` since the environment drew them."""
     perceived: Beliefs
     """Beliefs that come from percepts."""
     own: Beliefs
-    """Beliefs that the agent has added, or began with."""
+    """Beliefs that the agent added, or began with."""
     current: Intention | None
     waiting: tuple[Intention, ...]
     stage: ReasoningStep
@@ -88,12 +88,12 @@ class State:
 
     @property
     def beliefs(self) -> Beliefs:
-        """All that is believed."""
+        """All beliefs, perceived and own."""
         return self.perceived | self.own
 
 
 Step = tuple[str, State]
-"""An event, in words, and the state after it."""
+"""An event in words, and the state after it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,12 +105,12 @@ class Model:
 
     @property
     def initial(self) -> State:
-        """Nothing has been drawn yet."""
+        """The state before the environment draws the first percepts."""
         own = frozenset(self.agent.beliefs)
         return State(frozenset(), False, frozenset(), own, None, (), ReasoningStep.BEGIN, None)
 
     def steps(self, state: State) -> Iterator[Step]:
-        """Everything that may happen next; at least one thing."""
+        """Every possible next event with the state after it; at least one."""
         match state.stage:
             case ReasoningStep.BEGIN:
                 yield from self._drawn(state)
@@ -218,7 +218,7 @@ def _with_percepts(state: State, percepts: Beliefs) -> State:
 
 
 def _perceived(state: State) -> Iterator[Step]:
-    """Beliefs without a percept go first; then beliefs of new percepts come."""
+    """The next changes of beliefs: first those without a percept go, then new percepts come."""
     gone = [Change("-", belief) for belief in sorted(state.perceived - state.percepts)]
     come = [Change("+", belief) for belief in sorted(state.percepts - state.perceived)]
     done = replace(state, up_to_date=True, stage=ReasoningStep.SELECT)
@@ -290,9 +290,9 @@ def narration(model: Model, explored: Explored[State], numbers: tuple[int, ...])
     """The event before each state of a run, in words.
 
     Args:
-        model: whose states they are.
-        explored: all of them.
-        numbers: a run, from the initial state on.
+        model: the model of the states.
+        explored: all states of the model.
+        numbers: the states of a run, from the initial state on.
     """
     actions = ["nothing yet"]
     for before, after in pairwise(numbers):

@@ -1,4 +1,4 @@
-"""The parts of a sentence that are true of all numbers, or false: they demand nothing, or too much.
+"""Parts of a sentence that are always true or always false, whatever is measured.
 
 Only what comparisons make constant counts: `battery < 20 & battery > 30`.
 """
@@ -20,14 +20,15 @@ from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import ScopeKind
 
 _ByFirst = Mapping[str, Sequence[Exclusion]]
-"""What cannot be, by the first comparison: each part looks only at what speaks of it."""
+"""Impossible combinations by their first comparison, so that each part checks only those that
+concern it."""
 
 
 @with_recursion_limit
 def constant_parts(requirement: FormalizedRequirement) -> tuple[tuple[e.Expression, bool], ...]:
-    """Each part that has one truth value whatever is measured, and which; none within another.
+    """Each outermost part with a constant truth value, and that value.
 
-    The condition of a scope is looked at together with its mode.
+    The condition of a scope is checked together with its mode.
     """
     impossible: dict[str, list[Exclusion]] = {}
     for each in excluded(requirement):
@@ -55,7 +56,7 @@ def _constant(
 
 
 def _value(part: e.Expression, impossible: _ByFirst) -> bool | None:
-    """Its value, where that is the same in all valuations that can occur, and only in these."""
+    """The value of the part if it is constant over exactly the possible valuations; else None."""
     formula = boolean(part, Uninterpreted().alone())
     atoms = tuple(dict.fromkeys(f.atoms(formula)))
     if not atoms or len(atoms) > MOST_ATOMS:

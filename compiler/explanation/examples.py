@@ -1,4 +1,4 @@
-"""Short traces that satisfy a sentence, and short ones that violate it, each in a way of its own.
+"""Short traces that satisfy or violate a sentence, each in a different way.
 
 They are shortest words of the reference automaton (`compiler.formalization.reference`), by breadth
 first search through waypoints: answered at once, at the deadline, cut off by the end of the scope;
@@ -33,9 +33,9 @@ from compiler.formalization.reference import (
 from compiler.logic.orders import Exclusion, only_possible
 
 MOST_STATES = 120_000
-"""Seconds of search; a longer bound gets no examples."""
+"""Automata with more states get no examples: the search would take seconds."""
 WANTED = 2
-"""Of either kind."""
+"""Default number of examples of either kind."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +46,8 @@ class Example:
     prefix: tuple[Valuation, ...]
     """At least one tick: the values of `Examples.atoms`."""
     loop: tuple[Valuation, ...]
-    """What comes again and again after the prefix, on a run without end; the verdict is the same
-    where the run ends after any of the rounds. Empty: what comes does not matter, or the run ends.
+    """The ticks that repeat for ever after the prefix, on an endless run; the verdict is the same
+    if the run ends after any round. Empty: the run ends, or what follows does not matter.
     """
     decided: int | None
     """The first tick after which no continuation can change the verdict. None: there is none."""
@@ -55,21 +55,21 @@ class Example:
 
 @dataclass(frozen=True, slots=True)
 class Examples:
-    """What could be found for a sentence."""
+    """The examples of a sentence, with the reasons for those that are missing."""
 
     atoms: tuple[str, ...]
     satisfied: tuple[Example, ...]
     violated: tuple[Example, ...]
     note: str = ""
-    """Why there are none, where there are none."""
+    """The reason if there are no examples."""
     rounded: Exclusion = ()
-    """Of what was left out because no real numbers make it; floats that round may."""
+    """A combination that was left out because no real numbers make it; rounded floats may."""
     is_undecided: bool = False
-    """Whether numbers make the traces was not decided."""
+    """Whether it was not decided that numbers exist for the traces."""
 
 
 def examples(requirement: FormalizedRequirement, wanted: int = WANTED) -> Examples:
-    """The traces of a requirement: at most so many of either kind, the shortest ones first."""
+    """The examples of a requirement: at most `wanted` of either kind, the shortest first."""
     predicate = temporal_predicate(requirement.sentence)
     if predicate is not None:
         return Examples(
@@ -103,18 +103,18 @@ def examples(requirement: FormalizedRequirement, wanted: int = WANTED) -> Exampl
 
 @dataclass(frozen=True, slots=True)
 class _Chosen:
-    """For each letter a valuation that shows it."""
+    """A valuation of the atoms for each letter."""
 
     letters: Mapping[Letter, Valuation]
     undecided: frozenset[Valuation] = frozenset()
     rounded: Exclusion = ()
-    """Of a letter that no real numbers make."""
+    """The combination of a letter that no real numbers make."""
 
 
 def _chosen(
     requirement: FormalizedRequirement, atoms: Sequence[str], every: Mapping[Valuation, Letter]
 ) -> _Chosen:
-    """For each letter the one with the fewest true atoms that real numbers make."""
+    """For each letter the valuation with the fewest true atoms that real numbers make."""
     if not comparisons(requirement):
         return _Chosen(_quiet_first(every))
     from compiler.formalization.numbers.reals import Impossible, Possible, Reals
@@ -161,13 +161,13 @@ def _waiting(move: Move) -> bool:
 
 
 def _answered(move: Move) -> bool:
-    """No demand is open after it; one was, or began; and not because the interval ends."""
+    """Whether a demand is met at this tick, not ended by its interval."""
     begun = move.triggered or move.before.counted != 0
     return begun and move.enforced and move.after is not None and not move.waits
 
 
 def _cut(move: Move) -> bool:
-    """The interval ends while a demand is open, and nothing is broken by that."""
+    """Whether the interval ends with an open demand, without a violation."""
     return move.before.counted != 0 and move.after is not None and not move.enforced
 
 
@@ -189,7 +189,7 @@ class _Search:
         self.satisfiable = automaton.verdicts[0] != "violated"
 
     def satisfying(self) -> Iterator[Run]:
-        """Candidates, the instructive ones first."""
+        """Candidates for satisfying examples, the instructive ones first."""
         closed = self._closed
         ways: tuple[tuple[Waypoint, ...], ...] = (
             (_triggered, _answered),
@@ -214,7 +214,7 @@ class _Search:
             yield self.words.followed(several, accepted=True)
 
     def violating(self) -> Iterator[Run]:
-        """Candidates: broken demands, then those that nobody ever answers, then ends."""
+        """Candidates for violating examples: broken demands, unanswered demands, ends."""
         ways: tuple[tuple[Waypoint, ...], ...] = (
             (_broken,),
             (self._deadline, _broken),
@@ -256,11 +256,11 @@ class _Search:
         return move.after is not None and 0 < self.words.most == abs(move.after.counted)
 
     def _closed(self, move: Move) -> bool:
-        """FRET's verdict would be `satisfied`, were it the last tick."""
+        """Whether FRET's verdict is `satisfied` if the run ends with this tick."""
         return move.target != BROKEN and self.words.final[move.target]
 
     def _too_late(self, broken: Run) -> Run | None:
-        """The same with the response one tick after the deadline, where there is one."""
+        """The run with the response one tick after the deadline; None if there is no such run."""
         if not has_deadline(self.template):
             return None
         negated = self.template.scope is not None and self.template.scope.negates
@@ -286,7 +286,7 @@ class _Search:
 
 
 def _different(search: _Search, runs: Iterator[Run], wanted: int) -> Iterator[Example]:
-    """The first ones that behave differently, each checked by the definition."""
+    """The first runs that behave differently, each checked by the definition."""
     seen: set[tuple[object, ...]] = set()
     spare: Example | None = None
     for run in runs:
@@ -305,7 +305,7 @@ def _different(search: _Search, runs: Iterator[Run], wanted: int) -> Iterator[Ex
 
 
 def _check(search: _Search, run: Run, found: Example) -> None:
-    """The automaton and the definition agree on the trace, and on each round after it."""
+    """Check that automaton and definition agree on the trace and on each round after it."""
     word = [move.letter for move in run.moves]
     for _ in range(3 if found.loop else 1):
         m, p, q, stop = zip(*word, strict=True)

@@ -33,13 +33,13 @@ class Row:
     last: int
     values: Valuation
     repeats: bool
-    """Whether it belongs to what comes again and again."""
+    """Whether the row is part of the loop."""
     decides: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A trace as it is shown."""
+    """A trace with its verdict and reason, in rows."""
 
     satisfied: bool
     rows: tuple[Row, ...]
@@ -50,12 +50,12 @@ class Shown:
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """Everything about a requirement, in words."""
+    """Everything about a requirement that `fretc explain` shows."""
 
     requirement: FormalizedRequirement
     picture: Diagram
     propositions: tuple[str, ...]
-    """In the order of the values of a row."""
+    """The propositions, in the order of the values of a row."""
     traces: tuple[Shown, ...]
     notes: tuple[str, ...]
 
@@ -105,13 +105,13 @@ def _notes(requirement: FormalizedRequirement, found: Examples) -> Iterator[str]
 # Traces -----------------------------------------------------------------------------------------
 
 _CHECKED = 30
-"""Ticks up to which the slow definition of the operators checks a trace, too."""
+"""Traces up to this number of ticks are also checked by the slow definition of the operators."""
 
 
 def _check(requirement: FormalizedRequirement, atoms: Sequence[str], example: Example) -> None:
-    """The formulas say of the trace what the automaton does.
+    """Check that the formulas agree with the automaton on the trace.
 
-    Spot has the word of the endless trace, where the bound is small enough for it.
+    Spot evaluates the endless trace, if the bound is small enough.
     """
     prefix = [dict(zip(atoms, values, strict=True)) for values in example.prefix]
     loop = [dict(zip(atoms, values, strict=True)) for values in example.loop]
@@ -145,11 +145,11 @@ def _shown(
 
 
 _FOLDED = 4
-"""So many equal ticks are one row."""
+"""Number of equal ticks from which they are shown as one row."""
 
 
 def _rows(example: Example) -> Iterator[Row]:
-    """The ticks, long stretches of equal ones as one; the deciding tick stands for itself."""
+    """The ticks as rows; equal ticks share a row, but the deciding tick has its own."""
     start = len(example.prefix)
     ticks = [
         (values, tick >= start, tick == example.decided)
@@ -173,7 +173,7 @@ _UNDECIDED = "decided at the end only"
 
 
 def text(explained: Explanation) -> str:
-    """What the terminal shows."""
+    """The explanation as text for a terminal."""
     requirement = explained.requirement
     blocks = [visible_lines(ltl.text(requirement)), drawing.text(explained.picture, "    ")]
     blocks[1] = f"  one run, drawn\n{blocks[1]}\n"
@@ -184,7 +184,7 @@ def text(explained: Explanation) -> str:
 
 
 def visible_lines(block: str) -> str:
-    """No text of the user's can turn or hide another one."""
+    """The lines with control characters made visible: no user's text can hide another."""
     return "".join(f"{visible(line)}\n" for line in block.splitlines())
 
 
@@ -216,7 +216,7 @@ def _label(row: Row) -> str:
 
 
 def as_record(explained: Explanation) -> dict[str, Any]:
-    """Plain values, in a fixed order of keys."""
+    """The explanation as plain values for JSON, in a fixed order of keys."""
     requirement, picture = explained.requirement, explained.picture
     everything = record.record(requirement)
     kept = ("id", "title", "sentence", "meaning", "ft_infinite", "ft_finite", "pt", "tick_ns")

@@ -1,4 +1,4 @@
-"""Why a trace satisfies or violates a sentence, in words: which trigger, and what came of it."""
+"""The reason why a trace satisfies or violates a sentence, in words."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from fretish.printer import expression
 from fretish.syntax import Extent
 
 _MOST = 2
-"""Triggers that get a sentence each."""
+"""Number of triggers that are explained one by one."""
 
 
 def why(
@@ -34,15 +34,15 @@ def why(
     ends: bool = False,
     satisfied: bool | None = None,
 ) -> str:
-    """One line.
+    """The reason on one line.
 
     Args:
         requirement: the sentence.
         prefix: mode, condition, response and stop condition at each tick, at least one.
-        loop: what comes again and again after it.
-        ends: whether the run ends with the prefix. If it does not, and nothing loops, then what
-            follows does not change the verdict: the last tick is taken to last.
-        satisfied: the verdict, where it is known; it is a mistake of ours if the reason differs.
+        loop: the ticks that repeat for ever after the prefix.
+        ends: whether the run ends with the prefix. If it does not, and there is no loop, then what
+            follows does not change the verdict, and the last tick is taken to repeat.
+        satisfied: the verdict, if known; a contradicting reason is an internal error.
     """
     counted = template(requirement.sentence, requirement.ticks or 0)
     more = () if ends else tuple(loop or prefix[-1:]) * (counted.ticks + 3)
@@ -64,7 +64,7 @@ def why(
 
 
 def _nothing(requirement: FormalizedRequirement, counted: Template, m: Column) -> str:
-    """No demand begins."""
+    """The reason if no demand begins."""
     scope, condition = requirement.written.scope, requirement.written.condition
     if not intervals(counted.scope, m):
         return "the sentence is enforced at none of these ticks: nothing is demanded"
@@ -75,16 +75,16 @@ def _nothing(requirement: FormalizedRequirement, counted: Template, m: Column) -
 
 @dataclass(frozen=True, slots=True)
 class _Teller:
-    """What is known of one trace."""
+    """The words for one trace."""
 
     requirement: FormalizedRequirement
     counted: Template
     q: Column
-    """Of the ticks that are shown, and of those that follow."""
+    """The response at the ticks that are shown, and at those that follow."""
     shown: int
-    """The last tick that is shown."""
+    """The last displayed tick."""
     endless: bool
-    """Whether what follows is a loop that matters."""
+    """Whether a loop that matters follows."""
 
     def sentence(self, window: ObligationWindow, *, kept: bool) -> str:
         """`triggered at tick 1, ...`."""
@@ -104,7 +104,7 @@ class _Teller:
         return f"{start}, {clauses}"
 
     def bound(self) -> str:
-        """What the duration counts."""
+        """The bound of the sentence in words."""
         if not self._extent.counts:
             return ""
         return f"; the bound is {in_ticks(self.counted.ticks, self.requirement.clock)}"
@@ -142,7 +142,7 @@ class _Teller:
         return f"{clause} at {_ticks(part.first, part.last)}{self._end(part, window)}"
 
     def _end(self, part: TickRange, window: ObligationWindow) -> str:
-        """What ends a demand that is not counted."""
+        """The event that ends a demand without a duration."""
         if part.last < window.right:
             return f", until {self._stop}" if self._stops else ""
         if self._is_complete(part, window):
@@ -150,7 +150,7 @@ class _Teller:
         return f", where the {'scope' if self._is_closed(window) else 'run'} ends"
 
     def _is_complete(self, part: TickRange, window: ObligationWindow) -> bool:
-        """Whether the demand would end there in a longer interval, too."""
+        """Whether the demand would end at the same tick in a longer interval."""
         match self._extent:
             case Extent.TRIGGER | Extent.NEXT:
                 return True
@@ -201,7 +201,7 @@ class _Teller:
                 assert_never(self._extent)
 
     def _spared(self, window: ObligationWindow) -> str:
-        """Why a trigger asks for nothing, or for nothing more."""
+        """The reason why a trigger demands nothing, or nothing more."""
         match self._extent:
             case Extent.STOP:
                 return self._unstopped(window)
@@ -218,7 +218,7 @@ class _Teller:
                 assert_never(self._extent)
 
     def _unstopped(self, window: ObligationWindow) -> str:
-        """The stop condition comes at once, or not at all, or after the response."""
+        """The reason if the stop condition comes at once, not at all, or after the response."""
         negated = self.counted.scope is not None and self.counted.scope.negates
         if need(self.counted) in (Expectation.ALL, Expectation.NONE):
             return f"{self._stop} is true at that same tick: nothing is required"
@@ -230,7 +230,7 @@ class _Teller:
         return f"{self._name} is {value} at tick {hit}, {later}, and {self._stop} not before"
 
     def _too_short(self, window: ObligationWindow, ticks: int, *, wanted: bool) -> str:
-        """The interval ends before the deadline, with the response or without it."""
+        """The reason if the interval ends before the deadline."""
         hit = self._hit(window.trigger, value=wanted)
         if hit is not None and hit <= window.right:
             later = _later(hit - window.trigger)

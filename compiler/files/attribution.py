@@ -1,7 +1,6 @@
-"""`[project]` of `fretc.toml`: who answers for what is made of a project, and under which license.
+"""`[project]` of `fretc.toml`: maintainer and license of what is generated from a project.
 
-The fields go into manifests of packages (`package.xml`, `setup.py`), which have no other source for
-them.
+The fields go into manifests of packages (`package.xml`, `setup.py`).
 """
 
 from __future__ import annotations
@@ -12,11 +11,12 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 LONGEST = 500
-"""Characters of a field."""
+"""Maximum number of characters of a field."""
 _EMAIL = re.compile(
     r"[-\w%+]+(?:\.[-\w%+]+)*@[-a-zA-Z0-9%]+(?:\.[-a-zA-Z0-9%]+)*\.[a-zA-Z]{2,}", re.ASCII
 )
-"""Source: catkin_pkg, `Person.validate`, which colcon and catkin refuse a manifest by."""
+"""An e-mail address that manifests accept. Source: catkin_pkg, `Person.validate`; colcon and catkin
+refuse a manifest with any other."""
 EXAMPLE = """\
 [project]
 maintainer  = "NAME"
@@ -28,7 +28,7 @@ description = "WHAT THE PACKAGE IS FOR, IN ONE LINE"
 
 @dataclass(frozen=True, slots=True)
 class Attribution:
-    """Who answers for a project; a field that is not given is empty."""
+    """Maintainer, license and description of a project; a missing field is empty."""
 
     maintainer: str = ""
     email: str = ""
@@ -38,7 +38,7 @@ class Attribution:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """The fields that are not given."""
+        """The names of the missing fields."""
         return tuple(name for name in FIELDS if not getattr(self, name))
 
 
@@ -48,7 +48,7 @@ FIELDS = tuple(each.name for each in fields(Attribution))
 
 @dataclass(frozen=True, slots=True)
 class Unfit:
-    """A field that no manifest can have, and what to write."""
+    """A field with a value that no manifest accepts, and the fix."""
 
     field: str
     what: str
@@ -56,7 +56,7 @@ class Unfit:
 
 
 def attribution(table: Mapping[str, Any]) -> Attribution | Unfit:
-    """Read a table that has no other fields."""
+    """The attribution in a table without other fields."""
     for name, value in table.items():
         if not isinstance(value, str) or not value.strip():
             return Unfit(name, "must be a text", f'write `{name} = "..."`, or leave it out')

@@ -1,4 +1,4 @@
-"""The order of everything: from a requirement as written to a requirement, by way of its tree."""
+"""Formalization of one requirement: parsing, checks, and the formulas."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def formalize(
     """Parse, check and formalize one requirement.
 
     Returns:
-        The requirement, or None where there is an error; and all that there is to say.
+        The formalized requirement, or None if there is an error; and all diagnostics.
     """
     wording = requirement.wording
     reading = partial(_formalized, requirement, declarations)
@@ -90,7 +90,7 @@ def _formalized(
 def _misuses(
     written: Sentence, definitions: Definitions, declarations: Declarations | None, place: Span
 ) -> tuple[Diagnostic, ...]:
-    """F344 in the sentence, and in what its names stand for."""
+    """F344 in the sentence, and in the definitions of its names."""
     if declarations is None:
         return ()
     variables = declarations.variables
@@ -102,7 +102,7 @@ def _misuses(
 def _judged(
     written: Sentence, definitions: Definitions, declarations: Declarations | None, place: Span
 ) -> Sentence | Diagnostic:
-    """The sentence that formulas are of: with what its names stand for, in the signals' units."""
+    """The sentence to formalize: names expanded, numbers in the signals' units."""
     sentence = expanded(written, definitions)
     if isinstance(sentence, Diagnostic) or declarations is None:
         return sentence
@@ -112,10 +112,10 @@ def _judged(
 
 @with_recursion_limit
 def unreadable_sentence(requirement: RequirementEntry) -> tuple[Diagnostic, ...]:
-    """The mistakes of the sentence of a requirement whose header has some, too.
+    """The errors of the sentence of a requirement whose header has errors, too.
 
-    None where the header does not end, or the file cannot be read: nothing says what the sentence
-    is.
+    The result is empty if the header does not end, or the file cannot be read: then the sentence is
+    unknown.
     """
     wording = requirement.wording
     codes = {mistake.code for mistake in requirement.mistakes}
@@ -135,7 +135,7 @@ _WITHOUT_SENTENCE = {
 
 
 def name_collisions(requirements: Sequence[FormalizedRequirement]) -> Iterator[Diagnostic]:
-    """F116: formulas spell `a.b` as `a_DOT_b`, and another name is spelt so already."""
+    """F116 for two names with the same spelling in formulas, such as `a.b` and `a_DOT_b`."""
     spelt: dict[str, str] = {}
     for requirement in requirements:
         for name in requirement.variables:
@@ -158,7 +158,7 @@ def _rule(
     declarations: Declarations | None,
     definitions: Definitions,
 ) -> FormalizedRequirement:
-    """The three formulas and the watch, each from the same obligation."""
+    """The three formulas and the monitor specification, all from the same obligation."""
     ahead = obligation(sentence, ticks or 0, predicates.Future())
     back = obligation(sentence, ticks or 0, predicates.Past())
     finite = future(ahead)
@@ -181,9 +181,9 @@ def _rule(
 
 
 def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
-    """What is declared of each variable; a bound proposition tells its role and its text.
+    """The declaration of each variable; a bound proposition has its binding's role and text.
 
-    A modality other than belief counts wherever it is declared.
+    A modality other than belief has priority wherever it is declared.
     """
     if declarations is None:
         return {}
@@ -211,7 +211,7 @@ def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
 
 
 def _with_bound(variable: Variable, bound: Variable) -> Variable:
-    """What FRET's glossary says of a name, and what only its binding says."""
+    """The variable of FRET's glossary, completed by its binding."""
     modality = bound.modality if variable.modality is Modality.BELIEF else variable.modality
     action, role = variable.action or bound.action, variable.role or bound.role
     return replace(variable, modality=modality, action=action, role=role)
@@ -241,7 +241,7 @@ def _remarks(sentence: Sentence, declarations: Declarations | None) -> Iterator[
 
 
 def _without_signals(sentence: Sentence, declarations: Declarations | None) -> Sentence:
-    """The sentence without the comparisons that are judged as they stand: by signals."""
+    """The sentence without the comparisons that are evaluated directly over signals."""
     signals = declarations.signals if declarations else {}
 
     def answered(comparison: Comparison) -> Expression:
@@ -251,10 +251,10 @@ def _without_signals(sentence: Sentence, declarations: Declarations | None) -> S
 
 
 def duplicate_ids(requirements: Sequence[RequirementEntry]) -> Mapping[int, Diagnostic]:
-    """F201 for every id that comes again; capitals, `-`, `_` and `.` do not tell files apart.
+    """F201 for every repeated id; case, `-`, `_` and `.` do not distinguish ids.
 
     Returns:
-        By the `id()` of each requirement whose id is not its own, the first one's too.
+        The diagnostic by the `id()` of each requirement with a repeated id, the first one included.
     """
     first: dict[str, RequirementEntry] = {}
     found: dict[int, Diagnostic] = {}

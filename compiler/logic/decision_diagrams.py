@@ -1,8 +1,9 @@
-"""Boolean functions as binary decision diagrams: BuDDy, as it comes with Spot.
+"""Boolean functions as binary decision diagrams, computed by BuDDy, which is part of Spot.
 
-A variable is a number, and numbers are the order of variables: those that are read together stand
-side by side, or diagrams grow. Functions have the operators `&`, `|`, `^`, `-f` and `f - g`; equal
-functions are equal. All of a process share one table of nodes, and one numbering.
+A variable is a number, and numbers give the order of variables: variables that are read together
+should be adjacent, or diagrams grow. Functions have the operators `&`, `|`, `^`, `-f` and `f - g`;
+equal functions are equal objects. All users in a process share one table of nodes, and one
+numbering.
 
 Source: Bryant, Graph-based algorithms for Boolean function manipulation, IEEE Trans. Computers 35
 (1986); Duret-Lutz et al., From Spot 2.0 to Spot 2.10, CAV 2022.
@@ -16,7 +17,7 @@ from functools import lru_cache
 from typing import Any
 
 Function = Any
-"""A diagram; its library has no types."""
+"""A diagram; the library has no type stubs."""
 
 
 @lru_cache(maxsize=1)
@@ -83,12 +84,12 @@ def choice(condition: Function, then: Function, otherwise: Function) -> Function
 
 
 def some(function: Function, variables: Function) -> Function:
-    """Whether some values of the variables of a cube make it true."""
+    """Existential quantification over the variables of a cube."""
     return _buddy().bdd_exist(function, variables)
 
 
 def every(function: Function, variables: Function) -> Function:
-    """Whether all values of the variables of a cube make it true."""
+    """Universal quantification over the variables of a cube."""
     return _buddy().bdd_forall(function, variables)
 
 
@@ -105,17 +106,17 @@ def every_implied(left: Function, right: Function, variables: Function) -> Funct
 
 
 def composed(function: Function, number: int, value: Function) -> Function:
-    """The function with another one in the place of a variable."""
+    """The function with a variable replaced by another function."""
     return _buddy().bdd_compose(function, value, number)
 
 
 def at(function: Function, known: Function) -> Function:
-    """The function where the literals of a cube hold."""
+    """The function restricted by the literals of a cube."""
     return _buddy().bdd_restrict(function, known)
 
 
 def support(function: Function) -> tuple[int, ...]:
-    """The variables that it depends on, in their order."""
+    """The variables on which the function depends, in their order."""
     buddy = _buddy()
     found, rest = [], buddy.bdd_support(function)
     while rest != buddy.bddtrue:
@@ -125,7 +126,7 @@ def support(function: Function) -> tuple[int, ...]:
 
 
 def witness(function: Function, prefer: bool = False) -> dict[int, bool]:
-    """Values of some variables that make it true; each is `prefer` where it can be.
+    """Values of some variables that make the function true, each `prefer` where possible.
 
     Args:
         function: not false.
@@ -143,18 +144,18 @@ def witness(function: Function, prefer: bool = False) -> dict[int, bool]:
 
 
 def size(function: Function) -> int:
-    """How many nodes it has."""
+    """The number of nodes."""
     return int(_buddy().bdd_nodecount(function))
 
 
 def branches(function: Function) -> tuple[int, Function, Function]:
-    """The topmost variable of a function that is not constant; where it is true, and where not."""
+    """The topmost variable of a non-constant function, and the cofactors for true and for false."""
     buddy = _buddy()
     return buddy.bdd_var(function), buddy.bdd_high(function), buddy.bdd_low(function)
 
 
 def parts(functions: Iterable[Function]) -> tuple[Function, ...]:
-    """Every function within the diagrams that is not constant, each after those that it needs."""
+    """The non-constant nodes of the diagrams, each after its successors."""
     found: dict[Function, None] = {}
     waiting = [*functions]
     while waiting:

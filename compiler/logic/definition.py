@@ -1,6 +1,6 @@
-"""The definition of every operator, written down once, slow and obvious.
+"""The definition of every temporal operator, written plainly: slow, for tests.
 
-Nothing in the product calls this: it is what the fast ways are compared with.
+The product uses it only to check short example traces; tests compare the fast evaluation with it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Names for propositions in languages that know plain identifiers only."""
+"""Names for propositions in languages that allow only plain identifiers."""
 
 from __future__ import annotations
 
@@ -36,19 +36,19 @@ def legal_names(
     variants: Callable[[str], Iterator[str]] = numbered,
     brings: Callable[[str], Iterable[str]] = lambda name: (name,),
 ) -> Mapping[str, str]:
-    """A name for each proposition: letters, digits and `_`, none of them twice or reserved.
+    """A unique, unreserved identifier for each proposition, of letters, digits and `_`.
 
-    What is legal as it is keeps its name, whatever the others are: `init_2` stays beside `init`,
-    which becomes `init_3`. Comparisons come last: `x_gt_3` keeps its name, and `(x > 3)` beside it
-    becomes `x_gt_3_2`.
+    A legal name is kept, whatever the others are: `init_2` stays beside `init`, which becomes
+    `init_3`. Comparisons come last: `x_gt_3` keeps its name, and `(x > 3)` beside it becomes
+    `x_gt_3_2`.
 
     Args:
         propositions: names of variables, and texts of comparisons and calls.
-        reserved: what a name may not be; capitals count.
-        prefix: what all names begin with.
-        names: what some propositions are called where that is not reserved.
-        variants: a name, and what it becomes where it is taken.
-        brings: all the identifiers that come with a name; none of them is reserved, or another's.
+        reserved: the reserved names; case matters.
+        prefix: the beginning of all names.
+        names: preferred names of some propositions, used unless reserved.
+        variants: yields a name and its replacements if it is taken.
+        brings: all identifiers that a name introduces; none may be reserved or taken.
     """
     taken = set[str]()
     found: dict[str, str] = {}
@@ -74,7 +74,7 @@ def legal_names(
 
 
 def _plain(name: str) -> str:
-    """`x_gt_3` for `(x > 3)`; it begins with a letter."""
+    """`x_gt_3` for `(x > 3)`; the result begins with a letter."""
     if is_compound(name):
         spelt = _SYMBOL.sub(lambda match: _OPERATORS[match[0]], name)
         name = "_".join(re.findall(r"\w+", spelt))

@@ -1,7 +1,8 @@
-"""Counters of a program that are as old as an open demand, so that none of its own is needed.
+"""Existing counters of a program that also measure the age of an open demand.
 
-A demand is open while a counter of the oldest witness is not negative. Where a witness never comes
-without the guard, the counter starts when the demand opens, and is not set back while it is open.
+Such a counter saves a cell for the age of a demand. A demand is open while a counter of the oldest
+witness is not negative. If a witness never comes without the guard, the counter starts when the
+demand opens, and is not reset while it is open.
 """
 
 from __future__ import annotations
@@ -16,18 +17,18 @@ from compiler.program.values import Age, And, Comparison, Value, Variable
 
 
 def clocks(program: Program) -> Mapping[str, str]:
-    """The counter of the open demand of requirements, by their ids; some have none."""
+    """The counter of the open demand by requirement id, where there is one."""
     blocks = {block.name: block for block in program.blocks}
     found = ((each.id, _clock(each, blocks)) for each in program.requirements)
     return {id: counter for id, counter in found if counter is not None}
 
 
 def lengthened(program: Program, clocks: Mapping[str, str]) -> Program:
-    """The program whose counters tell a deadline's tick from later ones.
+    """The program with counters that distinguish the deadline's tick from later ones.
 
     Args:
-        program: whose comparisons all hold of a counter's largest value as of any above it.
-        clocks: the counter of requirements, by their ids.
+        program: its comparisons do not distinguish a counter's largest value from larger ones.
+        clocks: requirement id → counter.
     """
     most: dict[str, int] = {}
     for each in program.requirements:
@@ -58,7 +59,7 @@ def _clock(requirement: Requirement, blocks: Mapping[str, Block]) -> str | None:
 
 
 def _starts_once(block: Block) -> bool:
-    """Whether the counter grows until it is -1, and then starts from 0."""
+    """Whether the counter grows until it is -1, and then restarts from 0."""
     there = Age(block.name, Comparison.AT_LEAST, 0)
     match block.instructions:
         case (Choose(((kept, Advance()), (witness, Count(_, 0))), Count(_, -1)),):
@@ -74,7 +75,7 @@ def _conjuncts(value: Value) -> frozenset[Value]:
 
 
 def _longer(block: Block, most: int) -> Block:
-    """The block whose counter grows to `most`, or further if it did."""
+    """The block with its counter's maximum raised to `most`."""
     made = list[Instruction]()
     for instruction in block.instructions:
         assert isinstance(instruction, Choose)

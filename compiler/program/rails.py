@@ -1,4 +1,4 @@
-"""A program as languages without objects need it: the size of every cell is known beforehand.
+"""Programs for languages without objects: the size of every cell is known in advance.
 
 A window is a ring of bits: `guard S[lo,hi] witness` holds when the latest witness that is `lo`
 ticks old or older, with the guard true ever since, became that old at most `hi - lo` ticks ago. So
@@ -68,7 +68,7 @@ class StatementGroup:
 
 @dataclass(frozen=True, slots=True)
 class Deadline:
-    """Of a demand that is open: `horizon` less the counter, where that is not negative."""
+    """The ticks left of an open demand: `horizon` less the counter, unless that is negative."""
 
     counter: str
     horizon: int
@@ -76,13 +76,13 @@ class Deadline:
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What one rail tells of a requirement after a tick."""
+    """The values to read of a requirement after a tick."""
 
     id: str
     prefix: str
     truths: Mapping[str, Value]
     deadline: Deadline | None
-    """None: no demand has one."""
+    """The deadline of the open demand; None if demands have no deadline."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,11 +96,11 @@ class Rail:
 
 
 def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
-    """The program without what no signal needs, with rings for windows, and with marks as cells.
+    """The program reduced to what signals need, with rings for windows and cells for marks.
 
     Args:
-        program: of any requirements.
-        prefixes: of each requirement's id, what the names of its own cells begin with.
+        program: the program of any requirements.
+        prefixes: requirement id → prefix of the names of its cells.
     """
     known = clocks(program)
     program = lengthened(program, known)
@@ -129,7 +129,7 @@ def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
 
 
 def _literals(program: Program, blocks: Iterable[Block]) -> tuple[Literal, ...]:
-    """Those that are read."""
+    """The literals that are read."""
     values = [*_told(program), *(value for block in blocks for value in _values(block))]
     used = {value for value in values if isinstance(value, Literal)}
     return tuple(literal for literal in program.literals if literal in used)
@@ -159,7 +159,7 @@ def _needed(program: Program) -> tuple[Block, ...]:
 
 
 def _values(block: Block) -> Iterator[Value]:
-    """Whatever its instructions read, but the cells that they move."""
+    """The values that the block's instructions read, without the cells that they move."""
     for instruction in block.instructions:
         for value in _read(instruction):
             yield from parts(value)
@@ -178,7 +178,7 @@ def _read(instruction: Instruction) -> Iterable[Value]:
 
 
 def _cells(block: Block) -> Iterator[str]:
-    """Names of cells that a block may have."""
+    """The names of the cells of a block."""
     yield block.name
     for instruction in block.instructions:
         if isinstance(instruction, Shift):
@@ -188,7 +188,7 @@ def _cells(block: Block) -> Iterator[str]:
 def _static(
     instruction: Instruction, windows: Mapping[str, Window]
 ) -> tuple[tuple[Cell, ...], tuple[Step, ...]]:
-    """The instruction without windows, and the cells that it needs for that."""
+    """The instruction with windows replaced, and the cells needed for that."""
     if isinstance(instruction, Slide):
         return _slid(instruction, windows[instruction.window])
     return (), (instruction,)
@@ -219,7 +219,7 @@ def _slid(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, .
 def _remembered(
     requirement: Requirement, prefix: str, clock: str | None
 ) -> tuple[list[Cell], StatementGroup, Reading]:
-    """The cells of a requirement's own, how they move, and what is read of them.
+    """The marks of a requirement as cells, with the statements that update them and its reading.
 
     `clock`: the counter that is as old as the open demand, if there is one.
     """

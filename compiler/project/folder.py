@@ -14,8 +14,8 @@ from compiler.formalization.formalize import duplicate_ids, formalize, unreadabl
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.resolution import extended
 from compiler.project.acceptances import acceptances, answered
+from compiler.project.hazards import cycles, unknown_parents
 from compiler.project.hazards import hazards as read_hazards
-from compiler.project.parent_graph import cycles, unknown_parents
 from compiler.project.paths import (
     BINDINGS,
     HAZARDS,

@@ -1,8 +1,8 @@
-"""Whether real numbers make the comparisons of a sentence true and false as a valuation has them.
+"""Whether real numbers exist that give the comparisons of a sentence the values of a valuation.
 
-It is decided exactly, of whole numbers where a signal has no others. Monitors compute in floats,
-where rounding makes `x + 1 > x` false of a large x. So what is impossible here chooses among
-the traces that people see, and no proof rests on it: `compiler.logic.orders` says on what they do.
+The decision is exact, over integers for signals that have only integers. Monitors compute in
+floats, where rounding makes `x + 1 > x` false for a large x. So impossibility here only selects the
+traces that are displayed, and no proof rests on it; `compiler.logic.orders` is sound for floats.
 """
 
 from __future__ import annotations
@@ -21,46 +21,48 @@ from compiler.logic.orders import Exclusion
 from fretish import expressions as e
 
 MOST_STEPS = 300_000
-"""Of z3 for one question, in its own measure: the same answer on every machine."""
+"""Resource limit of z3 for one query, in z3's own unit, so that every machine gives the same
+answer."""
 MOST_QUESTIONS = 400
-"""About one sentence."""
+"""Maximum number of queries for one sentence."""
 _UNANSWERED = 20
-"""As so many questions counts one that took all of its steps."""
+"""Number of queries that one query counts as if it used its whole limit."""
 MOST_ROUNDS = 10
-"""Of the search for a trace that numbers make."""
+"""Maximum number of rounds of the search for a trace with numbers."""
 MOST_SEARCHED = 10_000
-"""States in each of them: what is refuted must not become undecided by the time that this takes."""
+"""Maximum number of states in each round; the limit must not turn a refutation into an undecided
+result."""
 
 
 @dataclass(frozen=True, slots=True)
 class Possible:
-    """These numbers make it so, of the signals in their units."""
+    """Numbers that give the comparisons these values, in the signals' units."""
 
     numbers: Mapping[str, Fraction]
-    """Without those that are no fractions, such as a root."""
+    """Values by variable; irrational numbers are left out."""
 
 
 @dataclass(frozen=True, slots=True)
 class Impossible:
-    """No real numbers make it so."""
+    """No real numbers give the comparisons these values."""
 
     exclusion: Exclusion
-    """What of it they do not: nothing of that can be spared."""
+    """A minimal part of the valuation that is impossible."""
 
 
 @dataclass(frozen=True, slots=True)
 class Undecided:
-    """It is not known."""
+    """It was not decided whether such numbers exist."""
 
 
 Answer = Possible | Impossible | Undecided
 
 
 class Reals:
-    """The comparisons of a requirement, to be asked about."""
+    """Queries about the comparisons of a requirement."""
 
     def __init__(self, requirement: FormalizedRequirement) -> None:
-        """Nothing is asked yet."""
+        """Prepare the queries; z3 is not called yet."""
         compared = comparisons(requirement)
         terms = Terms([requirement], is_linear=False)
         self._solver = z3.Solver()
@@ -82,7 +84,7 @@ class Reals:
         self._left = MOST_QUESTIONS
 
     def answer(self, valuation: Mapping[str, bool | None]) -> Answer:
-        """Whether numbers make it so; atoms that compare no numbers are free."""
+        """Whether numbers exist for the valuation; atoms that are not comparisons are free."""
         for each in self._excluded:
             if all(valuation.get(name) is value for name, value in each):
                 return Impossible(each)
@@ -97,7 +99,7 @@ class Reals:
         return Possible(dict(self._numbers()))
 
     def _impossible(self, literals: Exclusion) -> Impossible:
-        """Without literals that can be spared."""
+        """The impossible literals, reduced to a minimal set."""
         core = {str(each) for each in self._solver.unsat_core()}
         needed = tuple(each for each in literals if str(self._literal(each)) in core)
         for literal in needed:
@@ -127,7 +129,7 @@ class Reals:
 
 
 def _meets_others(name: str, compared: Mapping[str, e.Comparison]) -> bool:
-    """Whether another comparison reads what this one does; else it is free, as far as is known."""
+    """Whether another comparison reads the same variables; if not, the comparison is free."""
     own = {each.id for each in e.names(compared[name])}
     return any(
         not own.isdisjoint(each.id for each in e.names(part))
@@ -140,7 +142,7 @@ def _meets_others(name: str, compared: Mapping[str, e.Comparison]) -> bool:
 
 
 class Counterexample(Protocol):
-    """A trace that shows a fault."""
+    """A trace that refutes a claim."""
 
     @property
     def word(self) -> Sequence[Sequence[bool | None]]:
@@ -156,7 +158,7 @@ NOT_DECIDED = (
 
 
 def only_rounded(exclusion: Exclusion) -> str:
-    """What is to be known of a trace that no numbers make, computed exactly."""
+    """The note for a trace that no exact numbers make."""
     made = exclusion_in_words(exclusion)
     return f"in exact arithmetic no numbers make {made}; rounded floats may"
 
@@ -167,18 +169,18 @@ def by_numbers(
     kind: type[Found],
     compare: Callable[[Sequence[Exclusion]], Found | Other],
 ) -> tuple[Found | Other, str]:
-    """What a comparison finds: a counterexample that real numbers make, where it finds one.
+    """The result of a comparison; a counterexample has numbers where possible.
 
     Args:
-        requirement: whose comparisons its atoms are.
+        requirement: the requirement with the compared atoms.
         atoms: the order of the values of a tick.
-        kind: of counterexamples.
-        compare: searches for one without valuations that have any of these, where there are any
-            among at most `MOST_SEARCHED` states.
+        kind: the class of counterexamples.
+        compare: the search for a counterexample without the given combinations, among at most
+            `MOST_SEARCHED` states if there are any combinations.
 
     Returns:
-        What it finds when nothing is left out, or another counterexample; and what is to be said
-        of its numbers. Whatever is left out, a counterexample becomes no proof.
+        The result without excluded combinations, or another counterexample; and a note about its
+        numbers. Excluding combinations never turns a counterexample into a proof.
     """
     first = compare(())
     if not isinstance(first, kind) or not comparisons(requirement):

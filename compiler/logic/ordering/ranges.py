@@ -1,7 +1,7 @@
-"""What comparisons of one term cannot be together, where it is compared with constants or words.
+"""Impossible combinations of comparisons of one term with constants or enumeration values.
 
-The constants cut the line into cells, and the term lies in one. Two constants that are no 32-bit
-floats may be one number: then a cell is equal to both.
+The constants divide the line into cells, and the term lies in one of them. Two constants that are
+not 32-bit floats may round to the same number: then a cell equals both.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from compiler.logic.ordering.relations import (
 from fretish import expressions as e
 
 MOST = 10_000_000
-"""Cells times comparisons; with more, the further comparisons are left possible."""
+"""Limit of cells times comparisons; further comparisons count as possible."""
 MOST_STEPS = 5_000_000
-"""Of the search among cells, about a second."""
+"""Step limit of the search among cells, about a second."""
 _TRUE: Mapping[e.ComparisonOperator, str] = {
     "<": "<", "<=": "<=", ">": ">", ">=": ">=", "=": "=", "!=": "<>",
 }  # fmt: skip
-"""How the left side lies to the right one where the comparison is true."""
+"""The order of the left and the right side if the comparison is true."""
 _TABLES = [
     str.maketrans({sign: str(int(sign in true)) for sign in "<=>"}) for true in _TRUE.values()
 ]
 
 
 def is_of_one_term(relations: Mapping[str, Relation]) -> bool:
-    """Whether all compare the same term with constants, or with words."""
+    """Whether all relations compare the same term with constants, or with enumeration values."""
     (left, *others) = dict.fromkeys(relation.left for relation in relations.values())
     if others or not isinstance(left, Term) or is_word(left):
         return False
@@ -50,12 +50,12 @@ def is_of_one_term(relations: Mapping[str, Relation]) -> bool:
 def exclusions(
     relations: Mapping[str, Relation], words: Mapping[str, Sequence[str]], share: Fraction
 ) -> Sequence[tuple[tuple[str, bool], ...]]:
-    """The least sets of literals that are true in no cell.
+    """The minimal sets of literals that are true in no cell.
 
     Args:
-        relations: of one term, by their names.
-        words: what each enumerated signal may be.
-        share: of the steps that it may take.
+        relations: the comparisons of one term, by their names.
+        words: the values of each enumerated signal.
+        share: the part of the step limit that the search may use.
     """
     names = tuple(relations)
     while True:
@@ -82,7 +82,7 @@ def _columns(relations: Sequence[Relation], words: Mapping[str, Sequence[str]]) 
 def _signs(
     relations: Sequence[Relation], words: Mapping[str, Sequence[str]]
 ) -> tuple[Sequence[Point], Iterator[str]]:
-    """What the term is compared with; and for each cell, how it lies to each of them there."""
+    """The points that the term is compared with; for each cell the term's order to each."""
     limits = {each.right for each in relations if isinstance(each.right, Constant)}
     term = relations[0].left
     assert isinstance(term, Term)
@@ -98,7 +98,7 @@ def _signs(
 
 
 def _on_line(row: Sequence[Constant]) -> Iterator[str]:
-    """Between the constants, and at each, together with those after it that may be the same."""
+    """The cells between constants, and at each, with later ones that may be equal."""
     ends = [each.ends for each in row]
     for i in range(len(row) + 1):
         yield ">" * i + "<" * (len(row) - i)
@@ -111,7 +111,7 @@ def _on_line(row: Sequence[Constant]) -> Iterator[str]:
 
 
 def _among(spoken: Sequence[Point], words: Sequence[str]) -> Iterator[str]:
-    """One of the words, or another one where there is one."""
+    """The cells of an enumerated term: one for each value, and one for other values."""
     for i in range(len(spoken)):
         yield "<" * i + "=" + "<" * (len(spoken) - i - 1)
     texts = {
