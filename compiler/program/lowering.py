@@ -74,7 +74,7 @@ class _Counter:
     most: int = 0
 
     def cells(self) -> tuple[Cell, ...]:
-        """Counters: the youngest witness up to `most` + 1 (none), the oldest to `most` (-1: none)."""
+        """Counters: the youngest witness to `most` + 1 (none), the oldest to `most` (-1: none)."""
         least, most = (0, self.most + 1) if self.youngest else (-1, self.most)
         none = self._none
         return (Counter(self.name, none, least, most, f"{self.comment}; {none}: none"),)

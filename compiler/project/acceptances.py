@@ -1,7 +1,7 @@
 """Warnings that the project accepts, each with its reason.
 
-What is about a requirement is accepted in its header; the rest in the settings, for one topic or
-hazard, or for the whole project. An accepted warning stays one: it is counted and shown.
+A warning about a requirement is accepted in its header; other warnings in the settings, for one
+topic or hazard or for the whole project. An accepted warning is still counted and shown.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ _CODES = {code.number: code for code in Code}
 
 @dataclass(frozen=True, slots=True)
 class Acceptance:
-    """Warnings of one code, and why they may stand."""
+    """Accepted warnings of one code, with the reason."""
 
     code: Code
     reason: str
     span: Span = field(compare=False, repr=False)
     requirement: RequirementEntry | None = field(default=None, repr=False)
-    """The one whose header has it; None: it is in the settings."""
+    """The requirement whose header has the acceptance; None if it is in the settings."""
     subject: str = ""
-    """The topic or the hazard; empty: whatever it is."""
+    """The topic or the hazard; empty: any."""
 
     @property
     def name(self) -> str:
@@ -41,14 +41,14 @@ class Acceptance:
 
     @property
     def about(self) -> str:
-        """What a warning of the code is about: a key of `ACCEPTANCES`."""
+        """The kind of subject of the code's warnings: a key of `ACCEPTANCES`."""
         return explanation(self.code).accept
 
 
 def acceptances(
     requirements: Iterable[RequirementEntry], settings: Settings | None
 ) -> tuple[tuple[Acceptance, ...], tuple[Diagnostic, ...]]:
-    """Those of headers, then those of the settings; and F549 for each that can answer nothing."""
+    """The acceptances of headers, then those of settings; and F549 for each that is invalid."""
     written = [(each, code) for each in requirements for code in each.accept]
     found = [
         _acceptance(code, each.accept[code], each.place("accept", code), each)
@@ -61,7 +61,7 @@ def acceptances(
 
 
 def _of_settings(settings: Settings) -> Iterator[Acceptance | Diagnostic]:
-    """Those of one topic or hazard come first: they are more to the point."""
+    """The acceptances of the settings, the most specific (of one topic or hazard) first."""
     for code, reasons in settings.accept.items():
         for subject, reason in reasons.items() if isinstance(reasons, Mapping) else ():
             place = settings.place("accept", code, subject)
@@ -106,13 +106,13 @@ def _bad(message: str, place: Span, fix: str) -> Diagnostic:
 
 
 _ByCode = Mapping[tuple[Code, str], Sequence[Acceptance]]
-"""By code and file those of headers, in their order in it; by code and `""` the others."""
+"""Acceptances of headers by code and file, in their order; the others by code and `""`."""
 
 
 def answered(
     diagnostics: Iterable[Diagnostic], known: Sequence[Acceptance]
 ) -> tuple[Diagnostic, ...]:
-    """The same, each accepted warning with the reason of the first acceptance that answers it."""
+    """The diagnostics, each accepted warning with the reason of its first acceptance."""
     by_code = _by_code(known)
     return tuple(_answered(diagnostic, by_code) for diagnostic in diagnostics)
 
@@ -131,7 +131,7 @@ def _by_code(known: Iterable[Acceptance]) -> _ByCode:
 
 
 def _answers(diagnostic: Diagnostic, known: _ByCode) -> Iterator[Acceptance]:
-    """The acceptances of a warning, those that are the most to the point first."""
+    """The acceptances of a warning, the most specific first."""
     if diagnostic.severity is not Severity.WARNING:
         return
     place = diagnostic.span
@@ -150,13 +150,13 @@ def idle(
     declarations: Declarations | None,
     recorded: Collection[str] | None,
 ) -> Iterator[Diagnostic]:
-    """F550 for each acceptance that answers none of the warnings.
+    """F550 for each acceptance without a matching warning.
 
     Args:
-        known: the acceptances; those in headers of retired requirements are passed over.
-        warnings: every one that there is of the project, and of the logs that were audited.
+        known: the acceptances; those in headers of retired requirements are skipped.
+        warnings: all warnings of the project, and of the audited logs.
         declarations: the bindings, if there are any.
-        recorded: the topics of the logs that were audited; None: no log was.
+        recorded: the topics of the audited logs; None if none was audited.
     """
     by_code = _by_code(known)
     used = {id(each) for warning in warnings for each in _answers(warning, by_code)}
@@ -176,9 +176,9 @@ def idle(
 def _may_come(
     topic: str, declarations: Declarations | None, recorded: Collection[str] | None
 ) -> bool:
-    """Whether a log that was not audited yet may tell F315 of a topic; of any, if it is empty.
+    """Whether a log that was not audited may give F315 for a topic; for any topic if empty.
 
-    It never does where each signal of the topic states how long a sample counts.
+    It cannot if each signal of the topic states how long a sample counts.
     """
     signals = declarations.signals.values() if declarations else ()
     topics = {signal.path.topic for signal in signals if signal.max_age is None}

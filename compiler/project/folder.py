@@ -1,4 +1,4 @@
-"""A requirements folder read as one thing: a `Project`."""
+"""Reading a requirements folder into a `Project`."""
 
 from __future__ import annotations
 
@@ -43,15 +43,15 @@ def load(
     parents: bool = False,
     reads: Collection[str] = SHARED,
 ) -> Project:
-    """Read requirements, and what stands beside them.
+    """Read requirement files, their bindings, hazards, settings and parents.
 
     Args:
         paths: `.fret` files; `-` is standard input.
         bindings: their `bindings.toml`; None: the one in the folder of the first file, if any.
         hazards: their `hazards.toml`; None: no hazards are read.
         parents: whether parents in other tools are read, as the settings name them.
-        reads: the shared tables of the bindings that the caller reads; a mistake in any other one
-            keeps back nothing.
+        reads: the shared tables of the bindings that the caller reads; an error in another table
+            refuses nothing.
     """
     declarations, of_bindings = _declarations(
         bindings or first_sibling_path(paths, BINDINGS), reads
@@ -94,7 +94,7 @@ def load(
 def _with_atoms(
     declarations: Declarations | None, requirements: Sequence[FormalizedRequirement]
 ) -> Declarations | None:
-    """The declarations with the atoms of all requirements that signals decide."""
+    """The declarations extended by the atoms over signals of all requirements."""
     for requirement in requirements:
         if declarations is not None and requirement.declarations is not None:
             own = requirement.declarations
@@ -103,7 +103,7 @@ def _with_atoms(
 
 
 def _written(paths: Sequence[str]) -> list[RequirementEntry]:
-    """Every requirement; one that stands for the whole of each file that cannot be read."""
+    """Every requirement; an unreadable file counts as one."""
     found: list[RequirementEntry] = []
     for path in paths:
         source = read(path)
@@ -115,7 +115,8 @@ def _written(paths: Sequence[str]) -> list[RequirementEntry]:
 
 
 _MOST_BROKEN_HEADERS = 100
-"""Below so many mistaken headers sentences are read, too: a file of thousands is none to fix."""
+"""Up to this number of erroneous headers their sentences are checked, too; a file with thousands is
+not fixed by hand."""
 
 
 def _formalized(
@@ -126,12 +127,12 @@ def _formalized(
     dict[int, Diagnostic],
     list[Diagnostic],
 ]:
-    """What is formalized, what is not, mistakes of those that are, and all there is to say.
+    """Formalized requirements, failed ones, errors of formalized ones, and all diagnostics.
 
     Args:
-        written: as read.
-        declarations: None where there are none, or they are `broken`: a clock may be among them.
-        broken: whether the bindings have a mistake for which none of them can be used.
+        written: the requirements of the files.
+        declarations: None if there are none, or they are `broken`; they may include a clock.
+        broken: whether an error makes all bindings unusable.
     """
     unsaid = frozenset({Code.NO_CLOCK}) if broken else frozenset()
     mistaken = dict(duplicate_ids(written))
@@ -159,10 +160,10 @@ def _formalized(
 def load_folder(
     folder: str, bindings: str | None = None, hazards: str | None = None
 ) -> Project | Diagnostic:
-    """A requirements folder (or one file) with all that stands beside it, and parents elsewhere.
+    """The project of a folder (or one file), with bindings, hazards, and parents in other tools.
 
     Args:
-        folder: of the requirements.
+        folder: the folder of the requirements.
         bindings: None: the `bindings.toml` of the folder, if there is one.
         hazards: None: the `hazards.toml` of the folder, if there is one.
     """
@@ -178,7 +179,7 @@ def load_folder(
 
 
 def _settings(paths: Sequence[str]) -> Settings | Diagnostic | None:
-    """The settings of the project; None where it is read from standard input."""
+    """The settings of the project; None if it is read from standard input."""
     first = next((path for path in paths if path != "-"), None)
     return settings(str(Path(first).parent)) if first else None
 
@@ -186,7 +187,7 @@ def _settings(paths: Sequence[str]) -> Settings | Diagnostic | None:
 def _above(
     chosen: Settings | Diagnostic | None,
 ) -> tuple[Mapping[str, Parent], tuple[Diagnostic, ...]]:
-    """The parents that live in other tools, by the settings of the project."""
+    """The parents in other tools, as the settings name them."""
     if isinstance(chosen, Diagnostic):
         return {}, (chosen,)
     if chosen is None:
@@ -197,7 +198,7 @@ def _above(
 
 
 def _reason(remarks: Sequence[Diagnostic]) -> Diagnostic:
-    """The error among them; the note where the requirement is free text."""
+    """The first error; the note if the requirement is free text."""
     return next((remark for remark in remarks if remark.is_error), remarks[0])
 
 

@@ -1,8 +1,8 @@
-"""FRET's exchange formats → `.fret` files and `bindings.toml`.
+"""Import of FRET's exchange formats as `.fret` files and `bindings.toml`.
 
-The import takes what a person wrote: sentences, names, comments. It takes no formulas of FRET: an
-export can carry those of an older sentence, so fretc derives formulas from the sentence.
-Source: NASA FRET v3.1, its export of requirements and variables (JSON), and its import of CSV.
+The import reads what a person wrote: sentences, names, comments. It ignores FRET's formulas: an
+export can contain those of an older sentence, so fretc derives formulas from the sentence. Source:
+NASA FRET v3.1, its export of requirements and variables (JSON), and its import of CSV.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ from fretish.printer import expression
 from fretish.reading.limits import with_budget
 
 STATUSES = {"completed": "approved", "deprecated": "retired"}
-"""FRET's status → ours; every other one is a draft."""
+"""FRET's status → the status of fretc; every other status becomes a draft."""
 
 OWN = "fretc"
-"""Where a record of `--emit fret-json` has the title and the text, for which FRET has no field."""
+"""The key in a record of `--emit fret-json` for title and text, which FRET has no fields for."""
 _FRET_FIELDS = ("project", "comments", "status", "_id", "reqid")
 _VARIABLE_FIELDS = frozenset(
     "_id project component_name variable_name dataType idType description reqs".split()
 )
 _IGNORED_FIELDS = frozenset({"modeldoc", "_rev", OWN})
 KEPT = "variable"
-"""The records of `[[fret.variable]]`: variables of FRET that are none here."""
+"""The table `[[fret.variable]]`: variables of FRET that are not imported."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class Imported:
 
 @dataclass(frozen=True, slots=True)
 class Import:
-    """What an export becomes."""
+    """The result of an import: files and diagnostics."""
 
     artifacts: tuple[Artifact, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
@@ -108,7 +108,7 @@ def _from_json(source: Source) -> Import:
 
 
 def _parts(data: Any) -> tuple[list[Mapping[str, Any]], list[Mapping[str, Any]]] | str:
-    """The requirements and the variables of an export, old or new; or what is wrong with it."""
+    """The requirements and the variables of an export, in any version; or the error."""
     if isinstance(data, list):
         records = _records(data)
         if len(records) < len(data):
@@ -168,14 +168,14 @@ def _requirements(
 
 
 def _unfenced(text: str) -> str:
-    """A line `+++` would end the sentence and begin a header: it is moved in by a space."""
+    """The text with each line `+++` indented, so that it does not begin a header."""
     return re.sub(r"^\ufeff?(?=\+\+\+)", " ", text, flags=re.MULTILINE)
 
 
 def _header(
     id: str, record: Mapping[str, Any], ids: Mapping[tuple[str, str], str]
 ) -> dict[str, Any]:
-    """The `.fret` header; what fretc does not use goes below `fret`."""
+    """The `.fret` header; fields that fretc does not use go below `fret`."""
     fret = {key: _text(record.get(key)) for key in _FRET_FIELDS}
     if fret["reqid"] == id:
         del fret["reqid"]
@@ -200,7 +200,7 @@ def _header(
 
 
 def _unread(id: str, fulltext: str) -> Iterator[Diagnostic]:
-    """A warning where the imported sentence is no FRETish; it is imported unchanged."""
+    """A warning if the imported sentence is not FRETish; it is imported unchanged."""
     source = Source(f"{id} (fulltext)", fulltext)
     if re.fullmatch(r'"[^"]*"', fulltext):
         return
@@ -210,13 +210,13 @@ def _unread(id: str, fulltext: str) -> Iterator[Diagnostic]:
 
 
 def _id(text: str) -> str:
-    """Letters, digits, `_`, `-` and `.`: what an id may have."""
+    """The text with all characters replaced that an id must not have."""
     cleaned = re.sub(r"[^A-Za-z0-9_.-]+", "-", text).strip("-._")
     return cleaned or "requirement"
 
 
 def _unique(id: str, project: str, taken: set[str]) -> str:
-    """Ids differ by more than capitals; FRET's differ within a project only."""
+    """A unique id: ids of fretc are unique without case, FRET's only within a project."""
     candidates = [id, f"{_id(project)}-{id}" if project else f"{id}-2"]
     candidates += [f"{id}-{n}" for n in range(2, len(taken) + 3)]
     free = next(c for c in candidates if c.lower() not in taken)
@@ -225,7 +225,7 @@ def _unique(id: str, project: str, taken: set[str]) -> str:
 
 
 def _text(value: Any) -> str:
-    """FRET writes lists and null where there is no text."""
+    """The value as text; empty for the list or null that FRET writes for no text."""
     text = value if isinstance(value, str) else "" if value in (None, [], {}) else str(value)
     return text.encode("utf-8", "replace").decode()  # half of a character is none
 
@@ -255,18 +255,17 @@ def _variables(
     diagnostics: list[Diagnostic],
     kept: list[Mapping[str, Any]],
 ) -> dict[str, dict[str, Any]]:
-    """`[variable.NAME]` tables: names are those of one folder, whatever project they are of.
+    """The tables `[variable.NAME]`; names belong to the folder, not to a project.
 
-    What a name is for another component stands in a table `of` that component. Of several
-    variables of one name and one component the first is read; F530 names the differences of the
-    others.
+    The meaning of a name for another component is a table `of` that component. Of several variables
+    with the same name and component the first is read; F530 names the differences of the others.
 
     Args:
-        records: of the export.
+        records: the records of the export.
         source: the export.
-        diagnostics: where what there is to say goes.
-        kept: where records go that are not read: what FRET has of a model, and other ones of a
-            variable that is read.
+        diagnostics: the list that receives diagnostics.
+        kept: the list that receives records that are not read: FRET's models, and further records
+            of a variable.
     """
     tables: dict[str, dict[str, Any]] = {}
     components: dict[str, dict[str, dict[str, Any]]] = {}
@@ -294,12 +293,12 @@ def _variables(
 
 
 def unquoted(name: str) -> str:
-    """FRET keeps the quotes of a name; in a sentence `"T"` is `T`."""
+    """The name without the quotes that FRET keeps; in a sentence `"T"` is `T`."""
     return name[1:-1] if re.fullmatch(r'"[^"\n]+"', name) else name
 
 
 def _without_circles(tables: Mapping[str, dict[str, Any]], source: Source) -> Iterator[Diagnostic]:
-    """F342 for variables that stand for one another: each keeps its assignment as a mere text."""
+    """F342 for variables with circular assignments; each keeps its assignment as text."""
     values: dict[str, e.Expression] = {}
     for name, table in tables.items():
         value = parse_value(Source(name, table.get("value", "")).span())
@@ -344,33 +343,33 @@ def _variable(record: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _id_of_variable(record: Mapping[str, Any]) -> dict[str, str]:
-    """The `_id` that FRET does not make of the names of project, component and variable."""
+    """The `_id`, unless FRET derives it from the names of project, component and variable."""
     names = ("project", "component_name", "variable_name")
     id = _text(record.get("_id"))
     return {"_id": id} if id not in ("", "".join(_text(record.get(n)) for n in names)) else {}
 
 
 def _record(record: Mapping[str, Any]) -> dict[str, Any]:
-    """All that FRET keeps of a variable, as TOML has it."""
+    """FRET's record of a variable as TOML values."""
     ignored = {"_rev", OWN}
     return {k: _plain(v) for k, v in record.items() if k not in ignored and v is not None}
 
 
 def assignment_field(role: str) -> str:
-    """Where FRET keeps what a variable stands for; a mode has a place of its own for that."""
+    """The field of FRET for the assignment of a variable; modes have a different one."""
     return "modeRequirement" if role == Role.MODE else "assignment"
 
 
 def stands_for_something(role: str) -> bool:
-    """Whether FRET reads an assignment: what an input is nobody defines."""
+    """Whether FRET reads an assignment for the role; inputs have none."""
     return role in (Role.INTERNAL, Role.MODE)
 
 
 def _value(record: Mapping[str, Any], written: str) -> e.Expression | None:
-    """What a variable stands for: as fretc has written it, where FRET has kept what goes with it.
+    """The assignment of a variable, as fretc wrote it if FRET's copy still agrees.
 
-    None where it stands for nothing, as inputs and outputs do, or its assignment cannot be said
-    in FRETish.
+    None if it has no assignment, as inputs and outputs, or the assignment has no equivalent in
+    FRETish.
     """
     defines = stands_for_something(_text(record.get("idType")).lower())
     if not defines or record.get("variable_name") == "FTP":  # FRETish's own name of the first tick
@@ -409,7 +408,7 @@ def _merged(
 
 
 def _plain(value: Any) -> Any:
-    """As TOML has it: texts, numbers, and lists of them; what it lacks as JSON text."""
+    """The value in TOML's types; other values become JSON text."""
     if isinstance(value, str):
         return _text(value)
     if isinstance(value, int | float):
@@ -477,10 +476,10 @@ _DELIMITERS = ",;\t"
 
 
 def _delimiter(text: str) -> str:
-    """What parts the header into the most columns: a comma, a semicolon or a tab.
+    """The delimiter that splits the header into the most columns: comma, semicolon or tab.
 
-    Spreadsheets write semicolons where a comma parts the digits of a number. The first of these
-    wins where two part it alike.
+    Spreadsheets write semicolons where the decimal separator is a comma. If two delimiters split it
+    alike, the first one counts.
     """
 
     def columns(delimiter: str) -> int:
@@ -495,7 +494,7 @@ def _delimiter(text: str) -> str:
 def _columns(
     names: Sequence[str], options: Mapping[str, str], source: Source
 ) -> dict[str, str] | Diagnostic:
-    """Which column is which: as asked for, or by its name."""
+    """The names of the columns, as requested or recognized."""
     chosen: dict[str, str] = {}
     for part, guesses in _GUESSES.items():
         wanted = options.get(part)
@@ -520,7 +519,7 @@ def _columns(
 
 
 def _row(row: Mapping[str | None, Any], chosen: Mapping[str, str]) -> dict[str, Any]:
-    """As a FRET record; text that is no FRETish is quoted, as FRET does, and kept as free text."""
+    """The row as a FRET record; text that is not FRETish is quoted, and kept as free text."""
     text = _text(row.get(chosen["text"])).strip()
     if text and isinstance(parse(Source("row", text).span()), Diagnostic):
         text = '"' + text.replace('"', "'") + '"'

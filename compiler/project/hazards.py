@@ -72,13 +72,13 @@ def unknown_parents(
 ) -> Iterator[Diagnostic]:
     """F501 for each parent that is neither a hazard, nor a requirement, here or in another tool.
 
-    Where no file could declare a parent, one diagnostic stands for all of them.
+    If no file can declare a parent, one diagnostic covers all of them.
 
     Args:
         requirements: the requirements.
         hazards: ids of the hazards.
         external: ids of the parents in other tools.
-        file: where the hazards are; None where there are none.
+        file: the hazards file; None if there is none.
     """
     ids = [requirement.id for requirement in requirements]
     declared = [*sorted({*hazards, *external}, key=natural), *ids]
@@ -146,10 +146,10 @@ def _circle(start: str, by_id: dict[str, RequirementEntry]) -> list[str]:
 def without_hazard(
     active: Sequence[RequirementEntry], declared: Collection[str]
 ) -> Iterator[RequirementEntry]:
-    """The requirements that name parents, none of which leads to anything declared.
+    """The requirements with parents of which none leads to anything declared.
 
     Args:
-        active: those in force; the way to a hazard leads through no others.
+        active: the requirements that are not retired; the path to a hazard uses no others.
         declared: ids of hazards, and of parents in other tools.
     """
     reached = {requirement.id for requirement in active if {*declared} & {*requirement.parents}}

@@ -1,9 +1,9 @@
-"""Requirements that live in other tools, as parents of ours: their ids, titles and texts.
+"""Parent requirements in documents of other tools: their ids, titles and texts.
 
-Each tool's own reading counts, never one that looks like it: of StrictDoc, Doorstop and
-sphinx-needs the file is read that the tool itself exports, and ReqIF by the library `reqif`. An
-export is plain data, so nothing of an untrusted document is executed; StrictDoc's library would run
-`strictdoc_config.py`, and needs some seventy packages; Doorstop's follows `!include`.
+Only each tool's own interpretation is used: for StrictDoc, Doorstop and sphinx-needs the export
+that the tool writes, and for ReqIF the library `reqif`. An export is plain data, so no content of
+an untrusted document is executed; StrictDoc's library would run `strictdoc_config.py` and needs
+some seventy packages; Doorstop's library follows `!include`.
 
 Sources: StrictDoc, `strictdoc export --formats=json`; Doorstop, `doorstop export --yaml`;
 sphinx-needs, needs.json; OMG, Requirements Interchange Format (ReqIF) 1.2.
@@ -39,15 +39,15 @@ class Parent:
     title: str
     text: str
     source: str
-    """The document that it is in."""
+    """The path of its document."""
 
 
 class UnreadableError(Exception):
-    """The document is not what its name says; the text says why."""
+    """The document is not in the format of its name; the message says why."""
 
 
 def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic, ...]]:
-    """Every parent in the documents of the settings, and what is wrong with these."""
+    """The parents in the documents of the settings, by id; and diagnostics."""
     by_id: dict[str, Parent] = {}
     diagnostics = []
     for name in settings.parents:
@@ -69,10 +69,10 @@ def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic,
 
 
 def _demand_within(settings: Settings, path: Path) -> None:
-    """The settings may be somebody else's: they make us read nothing outside of his project.
+    """Check that a document lies in the project, since settings may come from somebody else.
 
     Raises:
-        UnreadableError: it, or a document in it, is outside.
+        UnreadableError: the path, or a document in it, lies outside.
     """
     for each in (path, *(sorted(path.glob("*.yml")) if path.is_dir() else ())):
         if not settings.holds(each):
@@ -87,7 +87,7 @@ def _all(path: Path, name: str) -> tuple[Parent, ...]:
 
 
 def _size(path: Path) -> int:
-    """Bytes of a document, or of a folder of documents."""
+    """The size in bytes of a document, or of a folder of documents."""
     return sum(
         document.stat().st_size for document in (path.glob("*.yml") if path.is_dir() else [path])
     )
@@ -142,7 +142,7 @@ def _read(path: Path, name: str) -> Iterator[Parent]:
 
 
 _MOST = 64 * 2**20
-"""Bytes of a document; more is none of requirements."""
+"""Maximum number of bytes of a document."""
 
 
 def _text(path: Path) -> str:
@@ -182,7 +182,7 @@ _NO_TEXT = ("UID", "MID", "TITLE", "NODES", "RELATIONS", "GRAMMAR", "OPTIONS", "
 
 
 def _strictdoc(documents: Sequence[Any], name: str) -> Iterator[Parent]:
-    """Every node with a UID below the documents, of whatever type their grammars have."""
+    """Every node with a UID in the documents, of any type."""
     waiting = [node for document in reversed(documents) for node in _nodes(document)]
     while waiting:
         node = waiting.pop()
@@ -193,7 +193,7 @@ def _strictdoc(documents: Sequence[Any], name: str) -> Iterator[Parent]:
 
 
 def _nodes(node: Any) -> list[dict[str, Any]]:
-    """What is below it, the first one last."""
+    """The child nodes, in reverse order."""
     below = node.get("NODES", []) if isinstance(node, dict) else None
     if not isinstance(below, list) or not all(isinstance(each, dict) for each in below):
         raise UnreadableError("its nodes are not as StrictDoc writes them")
@@ -201,7 +201,7 @@ def _nodes(node: Any) -> list[dict[str, Any]]:
 
 
 def _statement(node: Mapping[str, Any]) -> str:
-    """Its statement; all other texts of a node whose grammar has none."""
+    """The statement of a node; if its grammar has none, all of its other texts."""
     if "STATEMENT" in node:
         return str(node["STATEMENT"])
     texts = {k: v for k, v in node.items() if k not in _NO_TEXT and not k.startswith("_")}
@@ -245,7 +245,7 @@ def _is_item(item: Any) -> bool:
 
 
 def _needs(data: Mapping[str, Any], name: str) -> Iterator[Parent]:
-    """The needs of the current version."""
+    """The needs of the current version of needs.json."""
     versions, current = data["versions"], data.get("current_version")
     if not isinstance(versions, dict) or not isinstance(current, str) or current not in versions:
         raise UnreadableError("its `current_version` is not among its `versions`")
@@ -263,7 +263,8 @@ def _needs(data: Mapping[str, Any], name: str) -> Iterator[Parent]:
 # ReqIF -----------------------------------------------------------------------------------------
 
 _LEAST_PACKED, _RATIO = 2**22, 50
-"""An archive unpacks to so many bytes, and so many more for each of its own: XML packs well."""
+"""Limit of unpacking an archive: bytes, and bytes for each byte of the archive, because XML
+compresses well."""
 _NAMES = ("ReqIF.ForeignID", "ReqIF.Name", "ReqIF.ChapterName", "ReqIF.Text", "UID", "TITLE")
 
 
@@ -289,7 +290,7 @@ def _inside(archive: zipfile.ZipFile, member: str) -> str:
 
 
 def _reqif(text: str, name: str) -> Iterator[Parent]:
-    """Every SPEC-OBJECT, by its foreign id where it has one, else by its identifier."""
+    """Every SPEC-OBJECT, with its foreign id if it has one, else its identifier."""
     from reqif.parser import ReqIFParser
 
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
@@ -309,7 +310,7 @@ def _reqif(text: str, name: str) -> Iterator[Parent]:
 
 
 def _first(error: Exception) -> str:
-    """The first line of what it says."""
+    """The first line of the error message."""
     return next(iter(str(error).splitlines()), "") or type(error).__name__
 
 
@@ -332,7 +333,7 @@ def _spec_object(spec: Any, names: Mapping[str, str], source: str) -> Parent:
 
 
 def _value(attribute: Any) -> str:
-    """The value as text; of XHTML without its elements."""
+    """The value as text, without XHTML elements."""
     value = attribute.value
     if isinstance(value, list):
         return ", ".join(map(str, value))

@@ -1,4 +1,4 @@
-"""What a mistake in a project reaches: the requirements that read it, and no others."""
+"""The requirements that an error in a project affects: those that read the erroneous text."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ def refused(
     declarations: Declarations | None,
     unusable: Iterable[Diagnostic],
 ) -> tuple[Refused, ...]:
-    """The requirements that some mistake reaches, in their order.
+    """The requirements with an error in what they read, in order.
 
     Args:
         requirements: all of them.
-        formalized: those that could be formalized.
-        own: the mistake of a requirement in its file, by its `id()`; a note is none.
-        declarations: the bindings; None where there are none.
-        unusable: mistakes in the bindings that every requirement reads.
+        formalized: the formalized ones among them.
+        own: the diagnostic of a requirement in its file, by the entry's `id()`; notes are ignored.
+        declarations: the bindings; None if there are none.
+        unusable: errors in the parts of the bindings that every requirement reads.
     """
     rule_of = {id(requirement.entry): requirement for requirement in formalized}
     of_all = [each for each in unusable if each.is_error]
@@ -45,10 +45,10 @@ def refused(
 
 
 def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
-    """The requirements whose chain up to the hazards a mistake reaches, by their `id()`.
+    """The errors that prevent a trace or a review, by the `id()` of each requirement.
 
-    Beside those that nothing can be made of: a trace, a review or a comparison of a requirement
-    reads the headers and hazards above it, and the warnings that are accepted.
+    They include the errors of refused requirements. A trace also reads the headers and hazards
+    above a requirement, and the accepted warnings.
     """
     found = {id(each.requirement): [*each.why] for each in project.refused}
     of_headers = {mistake for each in project.requirements for mistake in each.mistakes}
@@ -72,15 +72,15 @@ _OF_SETTINGS = (Code.BAD_SETTINGS, Code.BAD_ACCEPTANCE)
 
 @dataclass(frozen=True, slots=True)
 class _Way:
-    """The way from a requirement up to what it is there for."""
+    """The path from a requirement up to its hazards."""
 
     above: Sequence[RequirementEntry]
-    """It, and the requirements above it."""
+    """The requirement, and the requirements above it."""
     leaves: bool
-    """Whether it leads to a parent that is no requirement."""
+    """Whether the path leads to a parent that is not a requirement."""
     is_lost: bool
-    """Whether it leads to one that nothing declares: perhaps a requirement whose header cannot be
-    read."""
+    """Whether the path leads to an undeclared parent, which may be a requirement whose header
+    cannot be read."""
 
     @classmethod
     def of(cls, requirement: RequirementEntry, project: Project) -> _Way:
@@ -96,11 +96,11 @@ class _Way:
         return cls(above, bool(ends), bool(lost))
 
     def reads(self, mistake: Diagnostic, owners: Sequence[RequirementEntry]) -> bool:
-        """Whether a mistake is on the way, or in the settings of all.
+        """Whether an error is on the path, or in settings that concern every requirement.
 
         Args:
             mistake: an error.
-            owners: the requirements that it is in.
+            owners: the requirements that contain the error.
         """
         if not owners:
             return self.leaves or mistake.code in _OF_SETTINGS

@@ -1,6 +1,6 @@
-"""Numbers that stand in two places: in the sentence and its bindings, and in the words beside it.
+"""Checks that numbers in titles, texts and `params` agree with the sentence and its bindings.
 
-A title that says 5 cm beside a binding of 0.9 m misleads everyone who reads only one of them.
+A title with 5 cm and a binding with 0.9 m mislead everyone who reads only one of them.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _QUANTITY = re.compile(
 def check_stated_numbers(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[Diagnostic]:
-    """F310 and F351: `params`, title or text state a number, and the bindings have another one."""
+    """F310 and F351 for numbers in `params`, title or text that the bindings contradict."""
     yield from _parameters(requirement, declarations)
     yield from _prose(requirement, declarations)
 
@@ -45,7 +45,7 @@ def check_stated_numbers(
 def drifted(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[tuple[str, str]]:
-    """The same as field and number: `("title", "0.40 m/s")`, `("params", "0.40 m/s")`."""
+    """The contradicted numbers as field and text: `("title", "0.40 m/s")`."""
     for name, text in requirement.entry.params.items():
         if _has_drifted(text, _propositions(requirement, declarations, name)):
             yield "params", text
@@ -75,7 +75,7 @@ def first_unit(requirements: Iterable[FormalizedRequirement]) -> Diagnostic | No
 def _parameters(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[Diagnostic]:
-    """F310; a number of `params` belongs to a proposition, or to a signal that is compared."""
+    """F310; a number of `params` belongs to a proposition, or to a compared signal."""
     for name, text in requirement.entry.params.items():
         place = requirement.entry.place("params", name)
         known = _propositions(requirement, declarations, name)
@@ -106,7 +106,7 @@ def _parameters(
 
 
 def _has_drifted(text: str, known: Sequence[Proposition]) -> bool:
-    """Whether a quantity of `params` is a number of none of its propositions."""
+    """Whether no proposition has the quantity of `params`."""
     stated = units.quantity(text)
     return stated is not None and bool(known) and not _is_stated(stated, known)
 
@@ -118,7 +118,7 @@ def _is_stated(number: Exact, known: Iterable[Proposition]) -> bool:
 def _propositions(
     requirement: FormalizedRequirement, declarations: Declarations, name: str
 ) -> list[Proposition]:
-    """The proposition of that name; for a signal those of the sentence that read it."""
+    """The proposition with the name; for a signal the propositions of the sentence that read it."""
     if name in declarations.propositions:
         return [declarations.propositions[name]]
     own = (declarations.propositions.get(each) for each in requirement.watched)
@@ -129,7 +129,7 @@ def _propositions(
 
 
 def _prose(requirement: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
-    """F351 for each quantity in title and text that is none of those that are judged."""
+    """F351 for each quantity in title and text that the requirement does not use."""
     for field, words, elsewhere in _drifted_words(requirement, declarations):
         yield _differs(requirement, field, words, requirement.entry.place(field), elsewhere)
 
@@ -137,7 +137,7 @@ def _prose(requirement: FormalizedRequirement, declarations: Declarations) -> It
 def _drifted_words(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[tuple[str, str, Span | None]]:
-    """Field, quantity, and where the requirement rests on another one of its dimension."""
+    """Field, quantity, and the span of the number of its dimension that the requirement uses."""
     known = _numbers(requirement, declarations)
     for field in ("title", "text"):
         for words, stated in _quantities(getattr(requirement.entry, field)):
@@ -150,7 +150,7 @@ def _drifted_words(
 def _numbers(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> list[tuple[Exact, Span | None]]:
-    """Every number of the sentence and of what it is bound to, and where it stands."""
+    """Every number of the sentence and its bindings, with its span."""
     bound = [declarations.propositions.get(name) for name in requirement.watched]
     found = [
         (number, each.span)
@@ -166,7 +166,7 @@ def _numbers(
 
 
 def _quantities(text: str) -> Iterator[tuple[str, Exact]]:
-    """The quantities that a text states: `5 cm`, `0.4 m/s`, `20 percent`, `200 milliseconds`."""
+    """The quantities in a text: `5 cm`, `0.4 m/s`, `20 percent`, `200 milliseconds`."""
     for match in _QUANTITY.finditer(text):
         word = match["unit"]
         single = word[:-1] if word.endswith("s") and len(word) > 2 else word

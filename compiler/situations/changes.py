@@ -1,4 +1,4 @@
-"""Small changes of an expression: one operand, one operator, one threshold."""
+"""Small changes of an expression, for mutants: one operand, one operator, one threshold."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fretish import expressions as e
 from fretish.printer import expression
 
 MOST_PARTS = 100
-"""Of an expression with more, as a tree, no part is changed alone."""
+"""Maximum number of nodes of an expression whose parts are changed one by one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,19 +21,19 @@ class Change:
     operator: str
     """`dropped`, `negated`, `operator`, `compared` or `threshold`."""
     about: str
-    """As it is printed: the operand that is dropped or negated, else what stands there now."""
+    """The text to print: the dropped or negated operand, else the new text."""
     words: str
     whole: e.Expression
 
 
 def changes(whole: e.Expression) -> Iterator[Change]:
-    """Each change of one part of an expression, outer parts first; none of a large one."""
+    """Each change of one part of an expression, outer parts first; none if it is large."""
     if not is_large(whole):
         yield from _changes(whole)
 
 
 def is_large(whole: e.Expression) -> bool:
-    """Whether its parts are not looked at one by one."""
+    """Whether the expression is too large to change its parts one by one."""
     return sum(1 for _ in islice(e.parts(whole), MOST_PARTS + 1)) > MOST_PARTS
 
 
@@ -62,12 +62,12 @@ def _within(whole: e.Expression) -> Iterator[Change]:
 
 
 def opposite(part: e.Expression) -> e.Expression:
-    """Its negation, without two of them in a row."""
+    """The negation, without double negation."""
     return part.arg if isinstance(part, e.Not) else e.Not(part)
 
 
 def _dropped(whole: e.Expression) -> Iterator[Change]:
-    """One operand of a conjunction or disjunction is left out."""
+    """The changes that drop one operand of a conjunction or disjunction."""
     if not isinstance(whole, e.And | e.Or):
         return
     for place, operand in enumerate(whole.args):
@@ -78,7 +78,7 @@ def _dropped(whole: e.Expression) -> Iterator[Change]:
 
 
 def _other_operator(whole: e.Expression) -> Iterator[Change]:
-    """`|` for `&`, and the like."""
+    """The changes of an operator, such as `|` for `&`."""
     match whole:
         case e.And(args):
             yield _replaced("operator", whole, e.with_children(e.Or(args), args))
@@ -102,7 +102,7 @@ _NEAR: Mapping[e.ComparisonOperator, tuple[e.ComparisonOperator, ...]] = {
     "=": (),
     "!=": (),
 }
-"""For `=` there is `negated` already."""
+"""Similar comparison operators; `=` has none, since `negated` covers it."""
 
 
 def _comparison(whole: e.Comparison) -> Iterator[Change]:
@@ -115,7 +115,7 @@ def _comparison(whole: e.Comparison) -> Iterator[Change]:
 
 
 def _moved(side: e.Expression) -> Iterator[e.Expression]:
-    """A number by a step more, and less."""
+    """The number plus and minus one step."""
     number = written(side)
     if number is not None:
         yield from (number.moved(number.step), number.moved(-number.step))

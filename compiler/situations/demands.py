@@ -1,6 +1,6 @@
-"""The situations of each timing: answered at once, at the last tick, one tick too late, never.
+"""The coverage goals of each timing: answered at once, at the last tick, one tick too late, never.
 
-Of an `only` scope they are those of the dual, for that is what it demands outside of itself.
+For an `only` scope they are the goals of the dual, which it demands outside of the scope.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from compiler.logic import formula as f
 from compiler.situations.tick_predicates import TickPredicates
 
 Rows = Iterator[tuple[str, f.Formula]]
-"""Keys, and formulas of the past; FALSE where no interval ends."""
+"""Keys with past-time formulas; FALSE if no interval ends."""
 
 
 def of_demand(known: TickPredicates) -> Rows:
-    """The situations that the timing of a sentence has."""
+    """The coverage goals of a sentence's timing."""
     return _rows(known.demand.kind)(known)
 
 
@@ -167,10 +167,10 @@ def _before(known: TickPredicates) -> Rows:
 
 
 def _late(known: TickPredicates, missed: f.Formula) -> f.Formula:
-    """The answer comes at the tick after the one at which it was missed, in the same interval."""
+    """Formula: the answer comes in the same interval, one tick after it was missed."""
     return f.and_(known.inside, f.previous(missed), known.answer)
 
 
 def _at_its_end(known: TickPredicates, last: f.Formula) -> f.Formula:
-    """The interval is over, and this held at its last tick."""
+    """Formula: the interval is over, and `last` held at its last tick."""
     return f.and_(known.ended, f.previous(last))

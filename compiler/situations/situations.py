@@ -1,8 +1,8 @@
-"""The ways in which a run can meet a sentence: what tests should show, and recorded runs show.
+"""Coverage goals (situations): the ways in which a run can meet a sentence.
 
-A list for each sentence, always in the order of `MEANINGS`. What makes no sense for a sentence is
-not in its list (no last tick without a bound); what makes sense and cannot happen is, for only a
-search can tell.
+Each sentence has a list of goals, always in the order of `MEANINGS`. Meaningless goals are left out
+(no last tick without a bound). Goals that cannot be reached are included, because only a search can
+decide that.
 """
 
 from __future__ import annotations
@@ -62,41 +62,43 @@ MEANINGS: Mapping[str, str] = {
     "threshold-above": "`{measured}` one step above the threshold of `{operand}` ({number})",
     "unknown": "`{operand}` is unknown where it decides the {part}",
 }
-"""What a run shows, by the key of the situation."""
+"""The description of each goal, by the first part of its key."""
 
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """A way in which a run can meet a sentence: what a test or a recorded run should show.
+    """A coverage goal: a way to meet a sentence that a test or a recorded run should show.
 
-    A run has come by it at the first tick at which all holds that it asks for.
+    A run reaches the goal at the first tick at which all of its conditions hold.
     """
 
     key: str
-    """From `MEANINGS`, behind a colon what it is about; unique within a requirement."""
+    """A key of `MEANINGS`, a colon and its subject; unique within a requirement."""
     words: str
-    """For people."""
+    """The description for people."""
     formula: f.Formula
-    """Of the past, over the atoms of the sentence."""
+    """A past-time formula over the atoms of the sentence."""
     at_end: bool = False
-    """Whether the last tick of a run alone counts."""
+    """Whether only the last tick of a run counts."""
     unknown: str | None = None
-    """An atom that must be unknown at that tick. The formula says that its value decides; where
-    parts of the sentence share the atom, it has to hold whatever the atom is there."""
+    """An atom that must be unknown at that tick. The formula says that the value of the atom
+    decides; if parts of the sentence share the atom, the formula must hold for both of its
+    values."""
     place: Place | None = None
-    """Where a number must be at that tick, too: over signals as bindings have them, or over the
-    variables of the sentence, where none are bound."""
+    """The required position of a number relative to a threshold at that tick: over signals as in
+    the bindings, or over the variables of the sentence without bindings."""
 
 
 @with_recursion_limit
 def situations(requirement: FormalizedRequirement, *, exact: bool = False) -> tuple[Situation, ...]:
-    """Those of a requirement, in the order of `MEANINGS`.
+    """The coverage goals of a requirement, in the order of `MEANINGS`.
 
-    None of a sentence with predicates that look ahead: no formula of the past says what they are.
+    A sentence with predicates that look ahead has none, because no past-time formula describes
+    them.
 
     Args:
-        requirement: of which they are.
-        exact: exact after a missed deadline, too, for recorded runs
+        requirement: the requirement.
+        exact: whether formulas are exact after a missed deadline, too, for recorded runs
             (`compiler.situations.tick_predicates`); formulas for a search are not.
     """
     if any(name in LOOK_AHEAD for each in conditions(requirement.sentence) for name in calls(each)):
@@ -110,7 +112,7 @@ def situations(requirement: FormalizedRequirement, *, exact: bool = False) -> tu
 
 
 def _of_time(requirement: FormalizedRequirement, known: TickPredicates) -> Iterator[Situation]:
-    """Those that ask when something happens."""
+    """The goals about the time of events."""
     passing = dict([*_of_scope(known), *_of_triggers(known), *of_demand(known)])
     passing["scope-ends-open"] = _ends_open(known)
     ending = dict(_of_the_end(known))
@@ -125,7 +127,7 @@ _Rows = Iterator[tuple[str, f.Formula]]
 
 
 def _of_scope(known: TickPredicates) -> _Rows:
-    """How the interval comes, and comes again."""
+    """The goals about the begin and the recurrence of intervals."""
     inside, triggered = known.inside, known.triggered
     scope, mode = known.whole.scope, known.whole.mode
     match scope:
@@ -153,7 +155,7 @@ def _of_scope(known: TickPredicates) -> _Rows:
 
 
 def _begins_with_run(scope: s.ScopeKind) -> bool:
-    """Whether its one interval begins at tick 0, or never."""
+    """Whether the scope's single interval begins at tick 0, or never."""
     match scope:
         case s.ScopeKind.BEFORE | s.ScopeKind.ONLY_AFTER:
             return True
@@ -166,7 +168,7 @@ def _begins_with_run(scope: s.ScopeKind) -> bool:
 
 
 def _of_triggers(known: TickPredicates) -> _Rows:
-    """When a demand begins, and again."""
+    """The goals about first and repeated triggers."""
     triggered = known.triggered
     scope, each = known.whole.scope, known.whole.condition is None
     if not (each and (scope is None or _begins_with_run(scope))):  # else each first one does
@@ -183,7 +185,7 @@ def _of_triggers(known: TickPredicates) -> _Rows:
 
 
 def _lasts(kind: Kind) -> bool:
-    """Whether a demand is open as long as its interval, whatever is answered."""
+    """Whether a demand stays open as long as its interval, whatever is answered."""
     match kind:
         case Kind.FINALLY | Kind.ALWAYS:
             return True
@@ -196,14 +198,14 @@ def _lasts(kind: Kind) -> bool:
 
 
 def _ends_open(known: TickPredicates) -> f.Formula:
-    """The interval is over, and a demand was open that its end decides or voids."""
+    """Formula: the interval is over, and its end decided or cancelled an open demand."""
     if Trait.LAST in TRAITS[known.demand.kind]:
         return f.FALSE  # it says already which last ticks there are
     return f.and_(known.ended, f.previous(known.open))
 
 
 def _of_the_end(known: TickPredicates) -> _Rows:
-    """What the last tick of the whole run tells."""
+    """The goals about the last tick of the run."""
     if known.stage.left != f.FIRST:  # else the first tick lies in it
         yield "never-enforced", f.not_(f.once(known.inside))
     if known.whole.condition is not None:
@@ -219,7 +221,7 @@ def _of_the_end(known: TickPredicates) -> _Rows:
 
 
 def _of_operands(requirement: FormalizedRequirement, known: TickPredicates) -> Iterator[Situation]:
-    """Those of single operands, by their keys in the order of `MEANINGS`."""
+    """The goals about single operands, in the order of `MEANINGS`."""
     found = [
         each
         for operand in operands(requirement, known)
@@ -262,7 +264,7 @@ def _numbers(place: Place) -> Mapping[str, str]:
 
 
 def _places(stated: e.Expression) -> Iterator[tuple[e.Comparison, str, Place]]:
-    """Those of each comparison in an operand, or in the proposition that it is."""
+    """The thresholds of each comparison in an operand, or in its proposition."""
     for part in dict.fromkeys(e.parts(stated)):
         if isinstance(part, e.Comparison):
             yield from ((part, f"threshold-{key}", place) for key, place in places(part))
@@ -276,7 +278,7 @@ def _short(part: e.Expression) -> str:
 
 
 def _words(requirement: FormalizedRequirement, known: TickPredicates) -> Mapping[str, str]:
-    """What stands in `MEANINGS` for the parts of a sentence."""
+    """The words for the placeholders in `MEANINGS`."""
     sentence = requirement.written
     stop, response = s.stop(sentence.timing), expression(sentence.response)
     texts = {
@@ -291,14 +293,14 @@ def _words(requirement: FormalizedRequirement, known: TickPredicates) -> Mapping
 
 
 def _is_negative(sentence: s.Sentence, kind: Kind) -> bool:
-    """Whether the response is demanded to be false."""
+    """Whether the response must be false."""
     never = s.SHAPES[type(sentence.timing)].quantifier is s.Quantifier.NONE
     negates = sentence.scope is not None and sentence.scope.kind.negates
     return never is not (negates and Trait.OPPOSITES not in TRAITS[kind])
 
 
 def _last(sentence: s.Sentence, kind: Kind) -> str:
-    """The last tick that a demand is about."""
+    """The words for the last tick of a demand."""
     bound = s.duration(sentence.timing)
     span = "" if bound is None else duration_text(bound)
     several = sentence.condition is not None

@@ -1,4 +1,4 @@
-"""Shortest runs to each kind of verdict, for tests beside monitors: words of the reference."""
+"""Shortest runs to each verdict, from the reference automaton, for generated tests."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MOST_STATES = 2_000
 
 @dataclass(frozen=True, slots=True)
 class RepeatedTick:
-    """Equal ticks, one after the other, after each of which the verdicts are the same."""
+    """Consecutive equal ticks, after each of which the verdicts are equal."""
 
     count: int
     values: dict[str, bool]
@@ -32,16 +32,16 @@ class RepeatedTick:
 
 @dataclass(frozen=True, slots=True)
 class WitnessTrace:
-    """A run to a verdict."""
+    """A run that ends with a verdict."""
 
     name: str
     ticks: tuple[RepeatedTick, ...]
 
 
 def words(requirement: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
-    """The shortest run to each verdict that there is, and to the state that is the last to reach.
+    """The shortest run to each possible verdict, and to the state that takes longest to reach.
 
-    There is none where the reference does not know the sentence, or is too large.
+    Empty if the reference cannot express the sentence, or is too large.
     """
     atoms = atoms_of(requirement.sentence)
     if temporal_predicate(requirement.sentence) is not None or len(atoms) > MOST_ATOMS:
@@ -64,7 +64,7 @@ def words(requirement: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
 
 
 def _runs(counted: Automaton) -> Iterator[tuple[str, tuple[int, ...]]]:
-    """Places of letters, by breadth first search."""
+    """For each verdict the indices of the letters of a shortest run, by breadth first search."""
     runs: dict[int, tuple[int, ...]] = {0: ()}
     broken: tuple[int, ...] | None = None
     for state in range(len(counted.states)):  # in the order in which they were found

@@ -149,7 +149,7 @@ def digests(here: Path, manifest: Mapping[str, Any], own: Path | None) -> dict[s
 
 
 def alone(here: Path) -> IO[str]:
-    """A lock, as long as it is open: two runs in one folder would read each other's files."""
+    """A lock, held while the file is open: two runs in one folder would read each other's files."""
     file = (here / "run.lock").open("w")
     try:
         import fcntl
@@ -164,7 +164,7 @@ def alone(here: Path) -> IO[str]:
 
 
 def check_name(own: Path, name: str) -> None:
-    """Demand of the user's own agent the name in the properties: AJPF crashes on another."""
+    """Check that the user's agent has the name in the properties: AJPF crashes on any other."""
     match = re.search(r"^\s*:name:\s*(\S+)", own.read_text(encoding="utf-8"), re.MULTILINE)
     if match is None or match[1] != name:
         fault = f"is called `{match[1]}`" if match else "has no `:name:`"
@@ -188,7 +188,7 @@ def tools() -> Tools:
 
 
 def java_version(java: str) -> str:
-    """`11.0.22`; any other than Java 11 dies within Java PathFinder."""
+    """The version, such as `11.0.22`; Java PathFinder runs on Java 11 only."""
     try:
         done = subprocess.run(
             [java, "-version"], capture_output=True, text=True, errors="replace", timeout=60
@@ -207,7 +207,7 @@ def java_version(java: str) -> str:
 
 
 def class_path(home: Path) -> str:
-    """What MCAPL has compiled, then all its libraries, the newest ANTLR before the others."""
+    """The class path: MCAPL's classes, then all its libraries, the newest ANTLR first."""
     compiled = [home / "bin", *sorted((home / "build").glob("*"))]
     libraries = sorted((home / "lib").rglob("*.jar"))
     if not any(jar.name == "RunJPF.jar" for jar in libraries):
@@ -302,10 +302,10 @@ EXPLAINED = (
 
 
 def verdict(text: str, status: int) -> tuple[str, str]:
-    """The verdict of a whole output; ERROR where it is not clear.
+    """The verdict of an output; ERROR if it is not clear.
 
-    A complaint of a parser overrides any verdict: AJPF goes on with another property than the one
-    in the file.
+    A parser error overrides any verdict: AJPF continues with a property that differs from the
+    file's.
     """
     for sign, why in EXPLAINED:
         if sign in text:
@@ -338,7 +338,7 @@ def verdict(text: str, status: int) -> tuple[str, str]:
 
 
 def states(text: str) -> dict[str, int]:
-    """The numbers of the line `states:  new=303,visited=52,...`; none where there is no such."""
+    """The numbers of the line `states:  new=303,visited=52,...`; empty if there is no such line."""
     lines = re.findall(r"^states:\s+(\S+)\s*$", text, re.MULTILINE)
     parts = lines[-1].split(",") if lines else []
     numbers = (re.fullmatch(r"(\w+)=(\d+)", part) for part in parts)
@@ -346,11 +346,11 @@ def states(text: str) -> dict[str, int]:
 
 
 def trace(text: str) -> dict[str, Any] | None:
-    """The run that breaks a property, a row for each state of the program; None: there is none.
+    """The run that violates a property, a row for each state of the program; None if there is none.
 
-    AJPF logs the changes of a state after its `New State is N`; other values stay as they were on
-    the way there, and are None before their first change. It logs an action before the state that
-    the action leads to.
+    AJPF logs the changes of a state after its `New State is N`. Other values are those of the state
+    before, and None before their first change. An action is logged before the state to which it
+    leads.
     """
     path = [int(state) for state in _path(text)]
     if not path:
@@ -383,7 +383,7 @@ def _path(text: str) -> Iterator[str]:
 
 
 def folded(path: Sequence[int]) -> tuple[list[int], int | None]:
-    """The run without its second round, and where its end leads back to; None: nowhere."""
+    """The run without its second round, and the index where its end leads back; None: no loop."""
     for length in range(1, len(path) + 1):
         for start in range(length):
             period = length - start
@@ -394,7 +394,7 @@ def folded(path: Sequence[int]) -> tuple[list[int], int | None]:
 
 
 def logged(text: str) -> tuple[dict[int, dict[str, bool]], dict[int, str]]:
-    """Of each new state, its changes of truth values, and the action that led there."""
+    """The changes of truth values of each new state, and the action that led to it."""
     changes: dict[int, dict[str, bool]] = {}
     actions: dict[int, str] = {}
     state, action = None, ""
@@ -457,7 +457,7 @@ def result(
 
 
 def commit(home: Path) -> str | None:
-    """The commit of a checkout, read off its `.git`; None where there is none."""
+    """The commit of a checkout, from its `.git`; None if there is none."""
     try:
         git = home / ".git"
         head = (git / "HEAD").read_text(encoding="utf-8").strip()

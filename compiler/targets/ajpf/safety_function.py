@@ -1,14 +1,14 @@
-"""The safety instrumented function of one requirement: which agent reacts to its trigger.
+"""The safety instrumented function of one requirement: the agent that reacts to its trigger.
 
 A condition in disjunctive form becomes plans: one for each event that can make it true, guarded by
-what else has to hold. The response is an action for each of its propositions, and the belief that
-it was done. Percepts come one after the other: where one of them is negated, a property sees the
-condition true between two of them, and by the time the event is planned the guard drops it. The
-form without those guards responds to every such event, also where the rest does not hold.
-One trigger with one response is released when it goes, without a guard: with one, the event of a
-trigger that comes back during the release is discarded, and the response is lost. All others are
-not released: events would come faster than they are handled. They respond once, and a guard tells
-that they have.
+the rest of the condition. The response is an action for each of its propositions, and the belief
+that it was done. Percepts are believed one after the other. If one of them is negated, a property
+sees the condition true between two of them, but when the event is planned the guard rejects it. The
+form without those guards responds to every such event, even if the rest does not hold. One trigger
+with one response is released when the trigger goes, without a guard: with a guard, the event of a
+trigger that returns during the release would be discarded, and the response lost. All other
+responses are not released, because events would come faster than they are handled. They respond
+once, and a guard records that.
 """
 
 from __future__ import annotations
@@ -48,18 +48,18 @@ class Sif:
     """Propositions of the scope, the condition and the stop condition, in this order."""
     responses: tuple[str, ...]
     names: Mapping[str, str]
-    """What percepts, responses and other propositions are called in the texts."""
+    """The names of percepts, responses and other propositions in the texts."""
     plans: tuple[Reaction, ...]
     mutant: tuple[Reaction, ...]
     """The plans without the deeds that make the response true."""
     released: bool
     """Whether the response is taken back when the trigger goes."""
     over_responds: bool
-    """Whether plans skip the rest of the condition, and so respond without it too."""
+    """Whether plans ignore the rest of the condition, and so respond without it, too."""
 
     @property
     def drawn(self) -> tuple[str, ...]:
-        """The percepts by their names in the texts."""
+        """The names of the percepts in the texts."""
         return tuple(self.names[name] for name in self.percepts)
 
 
@@ -68,11 +68,11 @@ Term = tuple[tuple[str, bool], ...]
 
 
 def sif(requirement: FormalizedRequirement, guarded: bool = True) -> Sif | Diagnostic:
-    """The agent that reacts as the requirement demands; or F601 if there is no such agent.
+    """The agent that reacts as the requirement demands; F601 if there is no such agent.
 
     Args:
         requirement: the requirement.
-        guarded: whether plans ask for the rest of the condition, where there is any.
+        guarded: whether plans check the rest of the condition, if there is any.
     """
     sentence = requirement.sentence
     comparison = next(iter(comparison_names(requirement)), None)
@@ -194,7 +194,7 @@ def _wrong_name(
 
 
 def _spelt(requirement: FormalizedRequirement) -> Mapping[str, str]:
-    """The names in the texts, also by names as the syntax tree has them: without quotes."""
+    """The names in the texts, also by names in the syntax tree, which have no quotes."""
     spelt = names.spelt(requirement)
     return {**spelt, **{atom[1:-1]: spelt[atom] for atom in spelt if atom.startswith('"')}}
 
@@ -209,14 +209,14 @@ def _is_belief(requirement: FormalizedRequirement, *names: str) -> bool:
 
 
 def _answer(requirement: FormalizedRequirement, name: str) -> tuple[Deed, ...]:
-    """An action and the belief that it was done; only the action where that is the response."""
+    """An action and the belief that it was done; only the action if that is the response."""
     if not _is_belief(requirement, name):
         return (Action(_spelt(requirement)[name]),)
     return Action(_action(requirement, name)), Change("+", _spelt(requirement)[name])
 
 
 def _action(requirement: FormalizedRequirement, name: str) -> str:
-    """What the agent does to make it true, as the bindings call it."""
+    """The action that makes the proposition true, as the bindings name it."""
     declared = requirement.glossary.get(name)
     return (declared.action if declared else "") or f"do_{_spelt(requirement)[name]}"
 
@@ -241,7 +241,7 @@ def _reactions(
 
 
 def _releases(terms: tuple[Term, ...], response: str) -> tuple[Reaction, ...]:
-    """The only response is taken back when the only trigger goes."""
+    """The plan that takes the only response back when the only trigger goes."""
     (((trigger, _),),) = terms
     deeds = (Action(f"undo_{response}"), Change("-", response))
     return (Reaction(Change("-", trigger), (), deeds),)

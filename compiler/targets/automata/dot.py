@@ -27,9 +27,10 @@ from fretish.meaning import meaning
 from fretish.reading.recursion import with_recursion_limit
 
 _LONGEST = 32
-"""Characters of an expression on an edge; a longer one gets a name, and stands below."""
+"""Maximum number of characters of an expression on an edge; a longer one gets a name, and is
+printed below."""
 _WIDTH = 76
-"""Characters of a line below the picture."""
+"""Width of a line below the picture."""
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
@@ -123,7 +124,7 @@ def _expression(terms: Sequence[Term], spelt: Mapping[int, f.Formula]) -> str:
 
 
 def _lines(texts: Iterable[str]) -> str:
-    """A label in double quotes, one text a line; none of it is a command of Graphviz."""
+    """A label in double quotes, one text a line; Graphviz interprets no escape in it."""
     escaped = (text.replace("\\", "\\\\").replace('"', '\\"') for text in texts)
     return '"' + r"\n".join(escaped) + '"'
 

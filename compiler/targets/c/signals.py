@@ -1,6 +1,6 @@
-"""Beside a monitor in C: from typed samples to the truth of its propositions, as an audit has it.
+"""C functions from typed samples to the inputs of a monitor, as an audit computes them.
 
-Functions without memory; the header has the numbers that they compute with, in exact C99.
+The functions have no state. The header has the constants, in exact C99.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ def files(
     names: Mapping[str, str],
     reserved: Container[str],
 ) -> tuple[Artifact, ...]:
-    """The header and the source beside the monitor `name`; none where no bindings are at hand.
+    """The header and the source beside the monitor `name`; empty without bindings.
 
     Args:
-        name: of the monitor's files, without their ending.
-        base: what the monitor's functions begin with.
-        requirements: those of the monitor.
+        name: the name of the monitor's files, without extension.
+        base: the prefix of the monitor's functions.
+        requirements: the requirements of the monitor.
         names: the monitor's input of each proposition.
-        reserved: what no name may be.
+        reserved: reserved names.
     """
     found = functions(requirements, names, LANGUAGE, reserved)
     if found is None:
@@ -55,7 +55,7 @@ def files(
 
 
 def guard(file: str) -> str:
-    """The macro that a header of this name defines; a file may begin with a digit, as an id."""
+    """The include guard of a header; a file name may begin with a digit, like an id."""
     return f"{'FRETC_' if file[:1].isdigit() else ''}{file.upper()}_H"
 
 

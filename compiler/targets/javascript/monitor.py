@@ -1,7 +1,7 @@
-"""`--emit js`: a monitor as an ES module that needs nothing else.
+"""`--emit js`: a monitor as an ES module without dependencies.
 
-Both rails are stepped at every tick, and an outcome has the verdict, what it rests on, and what
-each rail says.
+Certain and possible values are computed at every tick. An outcome has the verdict, its reasons, and
+both values of each signal.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
 _NAMES = ("REQUIREMENTS", "PROPOSITIONS", "VARIABLES", "init", "step", "truths", "judge")
-"""What a module exports."""
+"""The exports of a module."""
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
@@ -53,7 +53,7 @@ def _files(name: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Ar
 
 
 def text(*requirements: FormalizedRequirement) -> str:
-    """The module of one monitor for all of the requirements.
+    """The text of the module with one monitor for all requirements.
 
     Args:
         requirements: at least one, each with an id of its own, and all on one clock.
@@ -72,18 +72,18 @@ def text(*requirements: FormalizedRequirement) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """The code of a monitor, without what makes a module of it."""
+    """The code of a monitor, without the parts that make it a module."""
 
     text: str
     exports: tuple[str, ...]
     front: InputAdapter | None
-    """None: its variables are its propositions."""
+    """The adapter from variables to propositions; None: the variables are the propositions."""
     propositions: tuple[str, ...]
 
 
 @with_recursion_limit
 def body(*requirements: FormalizedRequirement) -> Body:
-    """The code of one monitor for all of the requirements; they are as those of `text`."""
+    """The code of one monitor for all requirements, with the conditions of `text`."""
     propositions = tuple(
         dict.fromkeys(name for requirement in requirements for name in requirement.watched)
     )
@@ -126,19 +126,20 @@ def body(*requirements: FormalizedRequirement) -> Body:
 
 @dataclass(frozen=True, slots=True)
 class _Front:
-    """The text that makes truth values of variables."""
+    """The code that computes truth values from variables."""
 
     constants: tuple[str, ...]
     row: tuple[tuple[str, str], ...]
-    """Each proposition, and the text of its truth."""
+    """Each proposition with the code of its truth value."""
     earlier: tuple[tuple[str, str, str], ...]
-    """What is looked back at: the name of its value, what it was at first, and its present one."""
+    """Values kept for `preReal` and the like: (variable name, initial value, expression for the
+    current tick)."""
 
     @classmethod
     def of(
         cls, compared: InputAdapter, propositions: Sequence[str], names: Mapping[str, str]
     ) -> _Front:
-        """By the names of its variables and propositions."""
+        """The code for given names of variables and propositions."""
         constants = Constants()
         variables = {name: f"v_{names[name]}" for name in compared.inputs}
         writer = Writer(variables, Spelling(constants.name, scale, truth))

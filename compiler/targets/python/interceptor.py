@@ -1,6 +1,6 @@
 """`--emit interceptor`: the node between the planner and the wheels, as one Python file.
 
-The core is the text of `monitors/interceptor.py`; the options are those of the bindings; below a
+The core is the text of `monitors/interceptor.py`, and the options come from the bindings. Below a
 marked line is a thin ROS node around them. All requirements share it.
 """
 
@@ -25,11 +25,11 @@ from monitors.source_text import interceptor as core
 
 NAME = "interceptor.py"
 MARKER = "# The ROS node ".ljust(97, "-")
-"""The core and its options stand before this line, the node after it."""
+"""The line between the core with its options and the node."""
 
 
 def refuse(options: Options) -> Diagnostic | None:
-    """F323: nothing says between which topics the interceptor stands."""
+    """F323: the topics of the interceptor are not declared."""
     declared = options.declarations
     if declared is not None and declared.interceptor is not None:
         return None
@@ -48,7 +48,7 @@ def refuse(options: Options) -> Diagnostic | None:
 
 
 def remarks(options: Options) -> tuple[Diagnostic, ...]:
-    """F630 to F633: dangers that remain although the node works as declared."""
+    """F630 to F633: hazards that remain even if the node works as declared."""
     declared = options.declarations
     if declared is None or declared.interceptor is None:
         return ()
@@ -102,7 +102,7 @@ def _unwatched(node: Interception) -> Iterator[Diagnostic]:
 
 
 def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnostic]:
-    """Requests may be lost, `lost` in a row, before one arrives."""
+    """The warning that `lost` requests may be lost in a row before one arrives."""
     assumed, period = declared.assumed, declared.clock.period
     if assumed is None or not assumed.lost or period is None:
         return
@@ -129,7 +129,7 @@ def emit(
     """`interceptor.py`.
 
     Raises:
-        AssertionError: it was to be refused.
+        AssertionError: the target had to be refused.
     """
     assert options.declarations is not None
     assert options.declarations.interceptor is not None
@@ -142,7 +142,7 @@ def text(interception: Interception, source: str) -> str:
 
     Args:
         interception: what the bindings declare.
-        source: the name of their file.
+        source: the name of the bindings' file.
     """
     return render(
         "interceptor/interceptor.py.j2",
@@ -157,7 +157,7 @@ def text(interception: Interception, source: str) -> str:
 
 
 def _options(node: Interception) -> Iterator[tuple[str, Any, str]]:
-    """Name, value, and where it comes from."""
+    """The name, the value and the source of each option."""
     core_options = counted(node)
     for name in ("hold", "stop_timeout", "scan_timeout", "command_timeout"):
         duration = getattr(node, name)

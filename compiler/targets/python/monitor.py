@@ -1,8 +1,8 @@
-"""`--emit monitor`: a standalone Python file, straight-line code over the watches of requirements.
+"""`--emit monitor`: a standalone Python file with straight-line code for the monitor.
 
-Every temporal sub-formula has one variable, stepped at every tick, and one column over whole
-traces; requirements in one file share what they have in common. The text of `monitors/kernel/` is
-copied in, so the file needs the standard library and nothing else.
+Every temporal sub-formula has one variable, updated at every tick, and one column over whole
+traces; requirements in one file share sub-formulas. The text of `monitors/kernel/` is copied into
+the file, so it needs only the standard library.
 """
 
 from __future__ import annotations
@@ -40,15 +40,15 @@ from monitors.source_text import kernel, kernel_of_variables
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """F312 and F601: what a monitor in Python cannot be made of."""
+    """F312 and F601 for requirements without a monitor in Python."""
     return refusal(requirement, "Python")
 
 
 def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | None:
-    """F312: a monitor steps by ticks, so it must be known how long a tick is.
+    """F312 if a duration has no number of ticks; F601 if no monitor can evaluate the sentence.
 
-    F601: Python reads no more than 200 parentheses within each other, and what it refuses is in no
-    other language either; and one run cannot show a probability.
+    Python reads at most 200 nested parentheses, and all languages refuse the same sentences; and
+    one run cannot show a probability.
     """
     if not is_readable(requirement):
         return not_expressible(
@@ -93,12 +93,12 @@ def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | N
 
 
 def is_readable(requirement: FormalizedRequirement) -> bool:
-    """Whether Python reads the monitor: it takes no more than 200 parentheses within each other."""
+    """Whether Python can read the monitor, which allows at most 200 nested parentheses."""
     return max(map(depth, conditions(requirement.sentence))) <= _MOST_LEVELS
 
 
 _ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
-"""An atom whose text has the first tick in it; a quoted name only looks like one."""
+"""An atom whose text contains `FTP`, the first tick; a quoted name does not count."""
 
 
 @with_recursion_limit
@@ -127,7 +127,7 @@ def remark(requirement: FormalizedRequirement) -> Diagnostic | None:
 def emit(
     requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>_monitor.py` for each requirement, or one file; they need Python 3.11 alone."""
+    """`<id>_monitor.py` for each requirement, or one file; they need only Python 3.11."""
     if options.one_file:
         return (Artifact(PurePosixPath("monitors.py"), text(*requirements)),)
     return tuple(
@@ -139,7 +139,7 @@ def emit(
 def text(*requirements: FormalizedRequirement) -> str:
     """The Python source of one monitor for all of the requirements.
 
-    Of a sentence with a probability it is the monitor of the same sentence without it, and says so.
+    For a sentence with a probability it is the monitor of the sentence without it, with a remark.
 
     Args:
         requirements: at least one, each with an id of its own, and all on one clock.
@@ -187,14 +187,14 @@ def text(*requirements: FormalizedRequirement) -> str:
 
 
 def is_inlined(requirements: int, inputs: int) -> bool:
-    """Whether a step has the code of a tick in it: a call would cost as much as the tick."""
+    """Whether `step` contains the code of a tick, because a call costs as much as the tick."""
     return requirements == 1 and inputs <= MOST_PARAMETERS
 
 
 def _digest(
     code: Program, requirements: Sequence[FormalizedRequirement], front: _Lines | None
 ) -> str:
-    """SHA-256 of everything that the meaning of what is kept depends on."""
+    """SHA-256 of everything that defines the meaning of the saved state."""
     identities = [
         (requirement.id, requirement.fingerprint, requirement.ticks) for requirement in requirements
     ]
@@ -207,14 +207,14 @@ def _tuple(names: Sequence[str]) -> str:
 
 
 def _slots(code: Program) -> list[str]:
-    """The slots of a rail, numbers in names in their order."""
+    """The `__slots__` of the state, in natural order."""
     marks = {name for signals in code.requirements for name in marks_of(signals.prefix)}
     names = {"doubt", "tick", *(cell.name for cell in code.cells), *marks}
     return sorted(names, key=_natural)
 
 
 def _natural(name: str) -> list[str]:
-    """Numbers within names are in their own order."""
+    """A sort key that compares numbers within names by value."""
     return [part.zfill(9) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
 
 
@@ -232,27 +232,28 @@ class _Variable:
 
 @dataclass(frozen=True, slots=True)
 class _Lines:
-    """The text that makes truth values of variables."""
+    """The code that computes truth values from variables."""
 
     variables: tuple[_Variable, ...]
     comparisons: tuple[tuple[str, str, str], ...]
-    """Each proposition that is a comparison, its name, and its text."""
+    """Each proposition that is a comparison, with its name and code."""
     earlier: tuple[tuple[str, str, str], ...]
-    """What is looked back at: the name of its value, what it was at first, and its present one."""
+    """Values kept for `preReal` and the like: (variable name, initial value, expression for the
+    current tick)."""
 
     @property
     def row(self) -> str:
-        """The variables of a tick."""
+        """The code for the variables of a tick."""
         return _tuple([each.name for each in self.variables])
 
     @property
     def now(self) -> str:
-        """What the next tick looks back at."""
+        """The code for the values that the next tick looks back at."""
         return _tuple([text for _, _, text in self.earlier])
 
     @classmethod
     def of(cls, compared: InputAdapter, parameters: Mapping[str, str]) -> _Lines:
-        """By the names of its variables and propositions."""
+        """The code for given names of variables and propositions."""
         writer = Writer({name: parameters[name] for name in compared.inputs})
         comparisons = tuple(
             (name, parameters[name], writer.comparison(each))
@@ -280,7 +281,7 @@ class _Input:
     proposition: str
     name: str
     negated: bool
-    """Whether its negation is needed too."""
+    """Whether the negation is needed, too."""
 
 
 def _is_negated(proposition: str, code: Program) -> bool:
@@ -300,7 +301,7 @@ def _probability_note(requirement: FormalizedRequirement) -> dict[str, str]:
 
 
 def described(requirement: FormalizedRequirement) -> dict[str, object]:
-    """What the head of a monitor says of a requirement."""
+    """The description of a requirement at the top of a monitor."""
     return {
         "id": requirement.id,
         "sentence": " ".join(requirement.entry.wording.text.split()),
@@ -313,11 +314,11 @@ def described(requirement: FormalizedRequirement) -> dict[str, object]:
 
 
 _RUN_TIME = frozenset(re.findall(r"^class (\w+)", kernel_of_variables().text, re.MULTILINE))
-"""Its classes."""
+"""The classes of the copied kernel."""
 
 
 def _class_name(id: str) -> str:
-    """What the names of its two classes begin with; `Variable_` for `Variable`."""
+    """The prefix of the two classes of a requirement; `Variable_` for `Variable`."""
     name = _identifier(id)
     wanted = underlined(f"{name[0].upper()}{name[1:]}")
     return next(n for n in wanted if _RUN_TIME.isdisjoint({f"{n}Rail", f"{n}Monitor"}))
@@ -329,7 +330,7 @@ def _identifier(id: str) -> str:
 
 
 def module(name: str) -> str:
-    """The name of a file that can be imported."""
+    """The file name as a module name that can be imported."""
     return re.sub(r"[^a-z0-9_]", "_", name)
 
 
@@ -346,17 +347,17 @@ def prefixes_of(ids: Iterable[str]) -> dict[str, str]:
 
 _MOST_LEVELS = 60
 MOST_PARAMETERS = 60
-"""Python compares each argument of a call with one parameter after the other: a step with more
-parameters takes them as a mapping."""
+"""Maximum number of parameters of a step, which takes a mapping if there are more: Python compares
+each argument of a call with one parameter after the other."""
 _SPOKEN = {"<=": "_le_", ">=": "_ge_", "!=": "_ne_", "<": "_lt_", ">": "_gt_", "=": "_eq_"}
 
 
 def parameters_of(
     names: Iterable[str], prefixes: Iterable[str], variables: Iterable[str] = ()
 ) -> dict[str, str]:
-    """A parameter for each proposition: its name as an identifier, all different.
+    """A unique parameter for each proposition: its name as an identifier.
 
-    Where a monitor is stepped by variables, one for each of these, too.
+    If a monitor is stepped by variables, these get parameters, too.
     """
     variables = tuple(variables)
     marks = {name for prefix in prefixes for name in marks_of(prefix)}
@@ -381,7 +382,7 @@ def _names(requirement: FormalizedRequirement) -> Mapping[str, str]:
 
 
 def _parameter(name: str) -> str:
-    """As an identifier; a comparison is spoken."""
+    """The name as an identifier; a comparison is spelt in words."""
     text = _spoken(name) if printing.is_compound(name) else printing.identifier(name)
     return text if text[0].isalpha() else f"p_{text}"
 

@@ -1,8 +1,8 @@
-"""Bindings → the Python text of what a live node makes of messages, beside its monitor.
+"""The Python code that turns messages into propositions in a live node, from the bindings.
 
-The text of `monitors/voice.py` and of what it needs is copied in; below it stands one table,
+The text of `monitors/voice.py` and of its dependencies is copied in. Below stands one table,
 `SETTING`: a policy for each signal and a meaning for each proposition, whose expressions call the
-functions of `monitors.kernel.readings`, as `compiler.signals` has them.
+functions of `monitors.kernel.readings`, as `compiler.signals` defines them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from monitors.source_text import perception as runtime
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """F601: what a live node cannot compute, or not as an audit does."""
+    """F601 for what a live node cannot compute, or not with an audit's result."""
     reason = next(_reasons(requirement), None)
     if reason is None:
         return None
@@ -85,10 +85,10 @@ def _of_clock(declared: Declarations) -> Iterator[tuple[str, str]]:
 
 
 def text(requirements: Sequence[FormalizedRequirement]) -> str:
-    """The file: `SETTING`, and above it all that it needs of the standard library.
+    """The text of the file: `SETTING`, below the code that it needs.
 
     Args:
-        requirements: none of which was refused, of one project.
+        requirements: requirements of one project that were not refused.
     """
     joined = runtime()
     return render(
@@ -101,7 +101,7 @@ def text(requirements: Sequence[FormalizedRequirement]) -> str:
 
 
 def setting(requirements: Sequence[FormalizedRequirement]) -> Setting:
-    """The table of some requirements that were not refused."""
+    """The table of requirements that were not refused."""
     found = instant(requirements)
     declared = requirements[0].declarations
     assert found is not None, "it is refused"
@@ -120,7 +120,7 @@ def setting(requirements: Sequence[FormalizedRequirement]) -> Setting:
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """The texts of the table."""
+    """The entries of the table, as code."""
 
     policies: tuple[str, ...]
     meanings: tuple[str, ...]
@@ -132,7 +132,7 @@ class Setting:
 
 
 def topics_of(requirement: FormalizedRequirement) -> tuple[str, ...]:
-    """The topics that its propositions read."""
+    """The topics that the requirement's propositions read."""
     found = instant([requirement])
     assert found is not None, "it is refused"
     return tuple(dict.fromkeys(policy.signal.path.topic for policy in found.policies))
@@ -169,12 +169,12 @@ def _policy(policy: Policy) -> str:
 
 
 def _besides(policy: Policy) -> dict[str, str]:
-    """The fields that `valid` reads, each with the name of a parameter."""
+    """The fields that `valid` reads, with their parameters."""
     return {name: f"beside{i}" for i, name in enumerate(policy.fields)}
 
 
 def _measured(policy: Policy) -> str | None:
-    """`valid` in Python's own logic, where nothing in it can be unknown, or needs rounding."""
+    """`valid` in plain Python if nothing in it can be unknown or needs rounding; else None."""
     if not policy.signal.path.each:
         return None
     if policy.valid is None:
@@ -227,7 +227,7 @@ def _named(texts: dict[str, str]) -> Iterator[str]:
 
 
 def lookback(tree: n.Truth, meaning: Meaning) -> int:
-    """The durations within each other, added up."""
+    """The sum of nested durations."""
     return max(
         (
             meaning.held[place][1] + lookback(meaning.held[place][0], meaning)
@@ -238,7 +238,7 @@ def lookback(tree: n.Truth, meaning: Meaning) -> int:
 
 
 def signals_of(meaning: Meaning) -> Iterator[str]:
-    """The signals that it reads, some more than once."""
+    """The signals that the meaning reads, possibly repeated."""
     for tree in (meaning.truth, *(part for part, _ in meaning.held)):
         for part in _parts(tree):
             if isinstance(part, n.Flag | n.SignalValue):
@@ -246,7 +246,7 @@ def signals_of(meaning: Meaning) -> Iterator[str]:
 
 
 def places(tree: n.Truth) -> list[int]:
-    """Of what has to hold for a duration, that it asks for."""
+    """The indices of the conditions that have to hold for a duration."""
     return [part.place for part in _parts(tree) if isinstance(part, n.HeldFor)]
 
 

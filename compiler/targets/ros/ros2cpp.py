@@ -1,7 +1,7 @@
 """`--emit ros2-cpp-package`: a package of ROS 2 around the monitor in C (`ament_cmake`, rclcpp).
 
-It watches beside the package in Python, by other texts: its requests to stop are on a topic of its
-own, until somebody remaps it.
+The package can run beside the one in Python, with different code: its stop requests are on a
+separate topic until they are remapped.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _TEMPLATES = {
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """F312 and F601: what no monitor in C, and no node of ROS, can be made of."""
+    """F312 and F601 for requirements without a monitor in C, or a ROS node."""
     return shared.refuse(requirement) or monitor.refuse(requirement)
 
 
@@ -57,7 +57,7 @@ def emit(
     """A folder with the name of the package.
 
     Raises:
-        AssertionError: some requirements were to be refused.
+        AssertionError: some requirement had to be refused.
     """
     whole = shared.package(requirements, options)
     package = replace(whole, name=f"{whole.name}_cpp", interception=None)

@@ -1,7 +1,7 @@
 """`--emit rust`: a crate with a monitor for controllers, without a standard library or a heap.
 
-It is the program of `--emit monitor`, on two rails at every tick: what holds for certain, and what
-may hold. A step takes the same time whatever was unknown, and for any bound.
+It computes the program of `--emit monitor` twice at every tick: the certain and the possible
+values. A step takes the same time for any unknown values and any bound.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ from fretish.reading.recursion import with_recursion_limit
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """As a monitor in Python; and F601 for bounds beyond what a controller can keep."""
+    """The refusals of a monitor in Python; and F601 for bounds that need too much memory."""
     return refusal(requirement, "Rust") or too_large(requirement, "Rust")
 
 
 def emit(
     requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """A crate for each requirement, or one for all; and one that makes truths of samples."""
+    """A crate for each requirement, or one for all; and a crate for samples beside it."""
     if options.one_file:
         return _crate("monitors", requirements)
     return tuple(

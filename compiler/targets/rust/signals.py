@@ -1,6 +1,6 @@
-"""Beside a monitor in Rust: a crate from typed samples to the inputs of the monitor.
+"""A Rust crate beside a monitor's crate: from typed samples to the inputs of the monitor.
 
-It stands beside the crate of the monitor, whose text it leaves as it is.
+The crate of the monitor stays unchanged.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ def files(
     names: Mapping[str, str],
     reserved: Container[str],
 ) -> dict[str, str]:
-    """The texts of the crate beside the crate `monitor`; none where no bindings are at hand.
+    """The files of the crate beside the crate `monitor`; empty without bindings.
 
     Args:
         monitor: the name of the crate.
-        requirements: those of the monitor.
+        requirements: the requirements of the monitor.
         names: the monitor's input of each proposition.
-        reserved: what no name may be.
+        reserved: reserved names.
     """
     found = functions(requirements, names, _LANGUAGE, reserved)
     if found is None:
