@@ -58,9 +58,9 @@ TARGETS: Mapping[str, Target] = _Targets()
 
 def renamed(requirement: FormalizedRequirement) -> dict[str, dict[str, str]]:
     """For each kind of file: the names that are spelt differently there, with the spelling."""
-    found: dict[str, dict[str, str]] = {}
+    renamed_names: dict[str, dict[str, str]] = {}
     for kind, target in TARGETS.items():
         names = target.names(requirement).items()
         own = {name: new for name, new in names if name != new and not is_compound(name)}
-        found |= {kind: own} if own else {}
-    return found
+        renamed_names |= {kind: own} if own else {}
+    return renamed_names

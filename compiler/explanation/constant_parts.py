@@ -31,8 +31,8 @@ def constant_parts(requirement: FormalizedRequirement) -> tuple[tuple[e.Expressi
     The condition of a scope is checked together with its mode.
     """
     impossible: dict[str, list[Exclusion]] = {}
-    for each in excluded(requirement):
-        impossible.setdefault(each[0][0], []).append(each)
+    for exclusion in excluded(requirement):
+        impossible.setdefault(exclusion[0][0], []).append(exclusion)
     if not impossible or temporal_predicate(requirement.sentence):
         return ()
     parts = tuple(_constant(tuple(conditions(requirement.sentence)), impossible))
@@ -62,10 +62,10 @@ def _value(part: e.Expression, impossible: _ByFirst) -> bool | None:
     if not atoms or len(atoms) > MOST_ATOMS:
         return None
     every = tuple(product((False, True), repeat=len(atoms)))
-    spoken = [each for name in atoms for each in impossible.get(name, ())]
-    possible = only_possible(every, atoms, spoken)
-    found, all_ = ({*_values(formula, atoms, some)} for some in (possible, every))
-    return found.pop() if len(found) == 1 and len(all_) == 2 else None
+    exclusions = [exclusion for name in atoms for exclusion in impossible.get(name, ())]
+    possible = only_possible(every, atoms, exclusions)
+    values, all_ = ({*_values(formula, atoms, valuations)} for valuations in (possible, every))
+    return values.pop() if len(values) == 1 and len(all_) == 2 else None
 
 
 def _values(

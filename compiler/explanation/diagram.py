@@ -107,7 +107,7 @@ def diagram(requirement: FormalizedRequirement) -> Diagram:
     """The diagram of a formalized sentence, for any bound."""
     drawn = template(requirement.sentence, requirement.ticks or 0)
     trace = _trace(drawn)
-    found = windows(drawn, trace.m, trace.p, trace.s)
+    obligations = windows(drawn, trace.m, trace.p, trace.s)
     ticks = len(trace.m)
     ends = s.SHAPES[drawn.timing].extent.needs_end and s.ends_with_run(drawn.scope)
     return Diagram(
@@ -115,9 +115,9 @@ def diagram(requirement: FormalizedRequirement) -> Diagram:
         ticks=ticks,
         ends=ends,
         period=requirement.clock.period if requirement.clock else None,
-        lanes=tuple(_lanes(requirement, drawn, trace, found, ticks if ends else ticks - 1)),
+        lanes=tuple(_lanes(requirement, drawn, trace, obligations, ticks if ends else ticks - 1)),
         trace=trace,
-        windows=found,
+        windows=obligations,
     )
 
 
@@ -186,7 +186,7 @@ def _lanes(
     requirement: FormalizedRequirement,
     drawn: Template,
     trace: Trace,
-    found: Sequence[ObligationWindow],
+    obligations: Sequence[ObligationWindow],
     end: int,
 ) -> Iterator[Lane]:
     """The lanes from top to bottom: scope, triggers, bound, response."""
@@ -201,19 +201,22 @@ def _lanes(
     yield Lane(Kind.SCOPE, "", "enforced", enforced)
     if condition is not None:
         yield Lane(Kind.CONDITION, expression(condition.expression), "true", _true(trace.p))
-    starts = tuple(Stretch(window.trigger, window.trigger) for window in found)
+    starts = tuple(Stretch(window.trigger, window.trigger) for window in obligations)
     yield Lane(Kind.TRIGGER, "", "triggers" if condition else "begins", starts)
     if stop is not None:
         yield Lane(Kind.STOP, expression(stop), "true", _true(trace.s))
-    yield from _needs(requirement, drawn, found, end)
+    yield from _needs(requirement, drawn, obligations, end)
 
 
 def _needs(
-    requirement: FormalizedRequirement, drawn: Template, found: Sequence[ObligationWindow], end: int
+    requirement: FormalizedRequirement,
+    drawn: Template,
+    obligations: Sequence[ObligationWindow],
+    end: int,
 ) -> Iterator[Lane]:
     q = expression(requirement.written.response)
-    several = len(found) > 1
-    for window in found:
+    several = len(obligations) > 1
+    for window in obligations:
         whose = window.trigger if several else None
         if s.duration(requirement.sentence.timing) is not None:
             reach = Stretch(window.trigger, window.trigger + drawn.ticks)

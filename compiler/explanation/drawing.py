@@ -34,15 +34,15 @@ def slots(drawn: Diagram) -> tuple[Slot, ...]:
         for stretch in lane.stretches:
             cuts.update((stretch.first, stretch.last + 1))
     edges = sorted(cut for cut in cuts if 0 <= cut <= drawn.ticks)
-    found: list[Slot] = []
+    columns: list[Slot] = []
     for first, after in pairwise(edges):
         if drawn.ticks <= _PLAIN or after - first <= _ALIKE:
-            found.extend(Slot(t, t) for t in range(first, after))
+            columns.extend(Slot(t, t) for t in range(first, after))
         else:
-            found.extend(
+            columns.extend(
                 (Slot(first, first), Slot(first + 1, after - 2), Slot(after - 1, after - 1))
             )
-    return tuple(found)
+    return tuple(columns)
 
 
 def _places(columns: Sequence[Slot], stretch: Stretch) -> tuple[int, int] | None:
@@ -278,7 +278,7 @@ def _labels(drawn: Diagram, columns: Sequence[Slot]) -> Iterator[tuple[float, st
             changes.update((stretch.first, stretch.last))
     plain = [(i, slot.first) for i, slot in enumerate(columns) if slot.first == slot.last]
     taken: list[tuple[float, float]] = []
-    for i, tick in sorted(plain, key=lambda each: each[1] not in changes):
+    for i, tick in sorted(plain, key=lambda label: label[1] not in changes):
         middle = _x(i, columns) + _step(columns) / 2
         half = len(str(tick)) * _DIGIT / 2 + 2
         if all(middle + half <= start or middle - half >= end for start, end in taken):

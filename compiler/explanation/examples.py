@@ -93,7 +93,11 @@ def examples(requirement: FormalizedRequirement, wanted: int = WANTED) -> Exampl
     search = _Search(automaton, letters)
     satisfied = tuple(_different(search, search.satisfying(), wanted))
     violated = tuple(_different(search, search.violating(), wanted))
-    shown = {each for found in (*satisfied, *violated) for each in (*found.prefix, *found.loop)}
+    shown = {
+        valuation
+        for example in (*satisfied, *violated)
+        for valuation in (*example.prefix, *example.loop)
+    }
     is_undecided = not chosen.undecided.isdisjoint(shown)
     return Examples(atoms, satisfied, violated, "", chosen.rounded, is_undecided)
 
@@ -137,16 +141,16 @@ def _chosen(
     return _Chosen(letters, frozenset(spare), next(gone, ()))
 
 
-def _quiet_first(found: Mapping[Valuation, Letter]) -> dict[Letter, Valuation]:
+def _quiet_first(letter_of: Mapping[Valuation, Letter]) -> dict[Letter, Valuation]:
     """For each letter the valuation with the fewest true atoms; the quietest letters first."""
     chosen: dict[Letter, Valuation] = {}
-    for valuation, letter in _by_noise(found):
+    for valuation, letter in _by_noise(letter_of):
         chosen.setdefault(letter, valuation)
     return chosen
 
 
-def _by_noise(found: Mapping[Valuation, Letter]) -> Sequence[tuple[Valuation, Letter]]:
-    return sorted(found.items(), key=lambda pair: (sum(pair[0]), pair[0][::-1]))
+def _by_noise(letter_of: Mapping[Valuation, Letter]) -> Sequence[tuple[Valuation, Letter]]:
+    return sorted(letter_of.items(), key=lambda pair: (sum(pair[0]), pair[0][::-1]))
 
 
 # The search -------------------------------------------------------------------------------------
@@ -203,9 +207,9 @@ class _Search:
             (_triggered, _triggered),
         )
         for way in ways:
-            found = self.words.shortest(way, closed)
-            if found is not None:
-                yield self.words.followed(found, accepted=True)
+            run = self.words.shortest(way, closed)
+            if run is not None:
+                yield self.words.followed(run, accepted=True)
         silent = self.words.shortest((), closed, among=lambda move: not move.triggered)
         if silent is not None:
             yield self.words.followed(silent, accepted=True)
@@ -225,11 +229,11 @@ class _Search:
         )
         first = True
         for way in ways:
-            found = self.words.shortest(way, lambda move: True)
-            if found is None:
+            run = self.words.shortest(way, lambda move: True)
+            if run is None:
                 continue
-            yield found
-            late = self._too_late(found) if first else None
+            yield run
+            late = self._too_late(run) if first else None
             first = False
             if late is not None:
                 yield late
@@ -248,9 +252,9 @@ class _Search:
             (lambda move: not move.triggered, unanswered),
         )
         for way in ways:
-            found = self.words.shortest(way, lambda move: True)
-            if found is not None:
-                yield self.words.followed(found, accepted=False)
+            run = self.words.shortest(way, lambda move: True)
+            if run is not None:
+                yield self.words.followed(run, accepted=False)
 
     def _deadline(self, move: Move) -> bool:
         return move.after is not None and 0 < self.words.most == abs(move.after.counted)
@@ -292,22 +296,22 @@ def _different(search: _Search, runs: Iterator[Run], wanted: int) -> Iterator[Ex
     for run in runs:
         if len(seen) == wanted:
             return
-        found = search.example(run)
-        left_open = run.is_open and not search.words.needs_end and found.decided is None
+        example = search.example(run)
+        left_open = run.is_open and not search.words.needs_end and example.decided is None
         if left_open:
-            spare = spare or found
+            spare = spare or example
         elif run.behaviour not in seen:
             seen.add(run.behaviour)
-            _check(search, run, found)
-            yield found
+            _check(search, run, example)
+            yield example
     if not seen and spare is not None and search.satisfiable:
         yield spare
 
 
-def _check(search: _Search, run: Run, found: Example) -> None:
+def _check(search: _Search, run: Run, example: Example) -> None:
     """Check that automaton and definition agree on the trace and on each round after it."""
     word = [move.letter for move in run.moves]
-    for _ in range(3 if found.loop else 1):
+    for _ in range(3 if example.loop else 1):
         m, p, q, stop = zip(*word, strict=True)
-        assert kept(search.template, m, p, q, stop) is found.satisfied, (search.template, word)
+        assert kept(search.template, m, p, q, stop) is example.satisfied, (search.template, word)
         word += [move.letter for move in run.loop]

@@ -63,29 +63,29 @@ class Explanation:
 @with_recursion_limit
 def explanation(requirement: FormalizedRequirement) -> Explanation:
     """Explain a formalized requirement; every trace in it has been checked."""
-    found = examples(requirement)
-    every = (*found.satisfied, *found.violated)
-    letters = meanings(requirement.sentence, found.atoms) if every else {}
+    traces = examples(requirement)
+    every = (*traces.satisfied, *traces.violated)
+    letters = meanings(requirement.sentence, traces.atoms) if every else {}
     for example in every:
-        _check(requirement, found.atoms, example)
+        _check(requirement, traces.atoms, example)
     shown = tuple(_shown(requirement, letters, example) for example in every)
-    notes = tuple(_notes(requirement, found))
-    return Explanation(requirement, diagram(requirement), found.atoms, shown, notes)
+    notes = tuple(_notes(requirement, traces))
+    return Explanation(requirement, diagram(requirement), traces.atoms, shown, notes)
 
 
-def _notes(requirement: FormalizedRequirement, found: Examples) -> Iterator[str]:
-    if found.note:
-        yield f"no traces are shown: {found.note}"
+def _notes(requirement: FormalizedRequirement, traces: Examples) -> Iterator[str]:
+    if traces.note:
+        yield f"no traces are shown: {traces.note}"
         return
-    satisfied, violated = len(found.satisfied), len(found.violated)
-    if found.rounded or found.is_undecided:
+    satisfied, violated = len(traces.satisfied), len(traces.violated)
+    if traces.rounded or traces.is_undecided:
         from compiler.formalization.numbers.reals import NOT_DECIDED, only_rounded
 
-        if found.rounded:
-            yield only_rounded(found.rounded)
-        if found.is_undecided:
+        if traces.rounded:
+            yield only_rounded(traces.rounded)
+        if traces.is_undecided:
             yield NOT_DECIDED
-    exactly = ", computed exactly" if found.rounded else ""
+    exactly = ", computed exactly" if traces.rounded else ""
     if not satisfied:
         yield f"no run that goes on satisfies the sentence{exactly}"
     if not violated:
@@ -237,7 +237,8 @@ def as_record(explained: Explanation) -> dict[str, Any]:
 
 def _lane(lane: Lane) -> dict[str, Any]:
     stretches = [
-        {"first": each.first, "last": each.last, "goes_on": each.goes_on} for each in lane.stretches
+        {"first": stretch.first, "last": stretch.last, "goes_on": stretch.goes_on}
+        for stretch in lane.stretches
     ]
     return {"kind": lane.kind.value, "name": lane.name, "note": lane.remark, "ticks": stretches}
 

@@ -49,16 +49,16 @@ def why(
     m, p, q, stop = (tuple(column) for column in zip(*prefix, *more, strict=True))
     shown = len(prefix) + len(loop)
     every = [w for w in windows(counted, m, p, stop) if w.trigger < shown]
-    found = [w for w in every if w.trigger < len(prefix)] or every
+    displayed = [w for w in every if w.trigger < len(prefix)] or every
     teller = _Teller(requirement, counted, q, len(prefix) - 1, endless=bool(loop))
     broken = [window for window in every if not window.kept(q)]
     assert satisfied is None or satisfied is not bool(broken), (counted, prefix, loop)
     if broken:
         return f"{teller.sentence(broken[0], kept=False)}{teller.bound()}"
-    if not found:
+    if not displayed:
         return _nothing(requirement, counted, m)
-    sentences = [teller.sentence(window, kept=True) for window in found[:_MOST]]
-    left = len(found) - _MOST
+    sentences = [teller.sentence(window, kept=True) for window in displayed[:_MOST]]
+    left = len(displayed) - _MOST
     rest = [f"and so on, {left} more time{'s' * (left > 1)}"] if left > 0 else []
     return f"{'; '.join([*sentences, *rest])}{teller.bound()}"
 
@@ -194,8 +194,8 @@ class _Teller:
             case Extent.INTERVAL:
                 return f"; it must be {wanted} from tick {part.first} on"
             case Extent.TRIGGER | Extent.NEXT | Extent.DURATION | Extent.BEYOND:
-                one = part.first == part.last
-                where = "there" if one else f"at {_ticks(part.first, part.last)}"
+                is_one_tick = part.first == part.last
+                where = "there" if is_one_tick else f"at {_ticks(part.first, part.last)}"
                 return f"; it must be {wanted} {where}"
             case _:
                 assert_never(self._extent)

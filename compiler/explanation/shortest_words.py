@@ -110,18 +110,18 @@ class Words:
             after = None if target == BROKEN else automaton.states[target]
             yield Move(state, letter, after, target, happens.enforced, happens.triggered)
 
-    def followed(self, found: Run, *, accepted: bool) -> Run:
+    def followed(self, run: Run, *, accepted: bool) -> Run:
         """The run with a tick appended that can repeat for ever without changing the verdict."""
-        start = found.moves[-1].target
-        if self.decided(found, satisfied=accepted) is not None:
-            return found
+        start = run.moves[-1].target
+        if self.decided(run, satisfied=accepted) is not None:
+            return run
         if self.needs_end and not accepted:
-            return found  # an interval that never ends has no last tick
+            return run  # an interval that never ends has no last tick
         for first in self._moves(start):
             second = self._after(first)
             if second is not None and self._stays(first, second, accepted=accepted):
-                return Run(found.moves, (first,))
-        return found
+                return Run(run.moves, (first,))
+        return run
 
     def _after(self, move: Move) -> Move | None:
         """The move with the same letter once more."""
@@ -163,13 +163,13 @@ class Words:
                 before[after].append(state)
         rows = enumerate(self.automaton.moves)
         waiting = [state for state, row in rows if BROKEN in row or not self.final[state]]
-        found = set(waiting)
+        states = set(waiting)
         while waiting:
             for state in before[waiting.pop()]:
-                if state not in found:
-                    found.add(state)
+                if state not in states:
+                    states.add(state)
                     waiting.append(state)
-        return found
+        return states
 
 
 def _path(origins: Mapping[_Place, tuple[_Place, Move] | None], place: _Place) -> list[Move]:

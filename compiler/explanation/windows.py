@@ -107,16 +107,16 @@ def intervals(scope: ScopeKind | None, m: Column) -> list[tuple[int, int]]:
         case ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
             return _runs([not value for value in m])
         case ScopeKind.BEFORE:
-            found = (0, runs[0][0] - 1) if runs else (0, last)
+            interval = (0, runs[0][0] - 1) if runs else (0, last)
         case ScopeKind.AFTER:
-            found = (runs[0][1] + 1, last) if runs else (1, 0)
+            interval = (runs[0][1] + 1, last) if runs else (1, 0)
         case ScopeKind.ONLY_BEFORE:
-            found = (runs[0][0], last) if runs else (1, 0)
+            interval = (runs[0][0], last) if runs else (1, 0)
         case ScopeKind.ONLY_AFTER:
-            found = (0, runs[0][1]) if runs else (0, last)
+            interval = (0, runs[0][1]) if runs else (0, last)
         case _:
             assert_never(scope)
-    return [found] if found[0] <= found[1] else []
+    return [interval] if interval[0] <= interval[1] else []
 
 
 def _runs(column: Column) -> list[tuple[int, int]]:
@@ -141,7 +141,7 @@ def triggers(condition: ConditionKind | None, p: Column, left: int, right: int) 
 def window(template: Template, t: int, right: int, stops: Column) -> ObligationWindow:
     """The demand of the trigger at tick `t`, in an interval that ends with tick `right`."""
     negated = template.scope is not None and template.scope.negates
-    each = Expectation.NONE if negated else Expectation.ALL
+    throughout = Expectation.NONE if negated else Expectation.ALL
     whole, n = need(template), template.ticks
     waits = whole in (Expectation.SOME, Expectation.MISS)
 
@@ -151,11 +151,11 @@ def window(template: Template, t: int, right: int, stops: Column) -> ObligationW
     extent = s.SHAPES[template.timing].extent
     match extent:
         case Extent.TRIGGER:
-            return asks((t, t, each))
+            return asks((t, t, throughout))
         case Extent.NEXT:
-            return asks((t + 1, t + 1, each)) if t < right else asks()
+            return asks((t + 1, t + 1, throughout)) if t < right else asks()
         case Extent.LAST:
-            return asks((right, right, each))
+            return asks((right, right, throughout))
         case Extent.INTERVAL:
             return asks((t, right, whole))
         case Extent.DURATION if waits:  # a short interval asks for nothing
@@ -163,7 +163,7 @@ def window(template: Template, t: int, right: int, stops: Column) -> ObligationW
         case Extent.DURATION:
             return asks((t, min(t + n, right), whole))
         case Extent.BEYOND:
-            late = (t + n + 1, t + n + 1, each)
+            late = (t + n + 1, t + n + 1, throughout)
             if negated:
                 return (
                     asks((t, t + n, Expectation.SOME), late, either=True)

@@ -74,15 +74,15 @@ def plain(record: object) -> Any:
 
 def json_schema(kind: type[Record], id: str, title: str, description: str) -> dict[str, Any]:
     """The JSON Schema of the files that hold such a record."""
-    found = msgspec.json.schema(kind)
-    whole = found["$defs"].pop(kind.__name__)
+    schema = msgspec.json.schema(kind)
+    whole = schema["$defs"].pop(kind.__name__)
     head = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "$id": id,
         "title": title,
         "description": description,
     }
-    return {**head, **{k: v for k, v in whole.items() if k not in head}, "$defs": found["$defs"]}
+    return {**head, **{k: v for k, v in whole.items() if k not in head}, "$defs": schema["$defs"]}
 
 
 def _in_words(message: str) -> str:

@@ -101,12 +101,12 @@ def _read(path: Path, root: Path, table: tuple[str, ...]) -> Settings | Diagnost
     tables = read_tables(source.span(), Code.BAD_SETTINGS, path.name)
     if isinstance(tables, Diagnostic):
         return tables
-    found: Any = tables.data
+    table_value: Any = tables.data
     for key in table:
-        found = found.get(key)
-        if found is None:
+        table_value = table_value.get(key)
+        if table_value is None:
             return None
-    return _settings(Settings(path.parent, tables=tables, table=table, root=root), found)
+    return _settings(Settings(path.parent, tables=tables, table=table, root=root), table_value)
 
 
 def _display_path(path: Path) -> str:
@@ -140,7 +140,7 @@ def _settings(empty: Settings, table: Any) -> Settings | Diagnostic:
         return _bad_settings(empty, "`accept` must be a table", f"write {_ACCEPT}", "accept")
     for code, reason in accept.items():
         reasons = reason.values() if isinstance(reason, dict) else [reason]
-        if not all(isinstance(each, str) for each in reasons):
+        if not all(isinstance(text, str) for text in reasons):
             message = f"`{code}` must have a reason, or a table of reasons"
             return _bad_settings(empty, message, f"write {_ACCEPT}", "accept", code)
     project = _project_table(empty, table.get("project", {}))
@@ -159,11 +159,11 @@ def _project_table(empty: Settings, table: Any) -> Attribution | Diagnostic:
             span = empty.tables.place(*empty.table, "project", key)
             where = f"[{'.'.join((*empty.table, 'project'))}]"
             return unknown_key(Code.BAD_SETTINGS, key, FIELDS, span, where)
-    found = attribution(table)
-    if isinstance(found, Unfit):
-        message = f"`{found.field}` {found.what}"
-        return _bad_settings(empty, message, found.fix, "project", found.field)
-    return found
+    project = attribution(table)
+    if isinstance(project, Unfit):
+        message = f"`{project.field}` {project.what}"
+        return _bad_settings(empty, message, project.fix, "project", project.field)
+    return project
 
 
 _ACCEPT = '`F631 = "the reason"`, or `F315 = { "/battery" = "the reason" }`, under `[accept]`'

@@ -105,9 +105,9 @@ def python(value: object) -> str:
     return ascii(value)
 
 
-def _character(one: str) -> str:
+def _character(character: str) -> str:
     """The character in a Python string; JSON would write a surrogate pair beyond 16 bits."""
-    return json.dumps(one)[1:-1] if ord(one) < 0x10000 else f"\\U{ord(one):08x}"
+    return json.dumps(character)[1:-1] if ord(character) < 0x10000 else f"\\U{ord(character):08x}"
 
 
 def script(text: str) -> str:

@@ -156,7 +156,7 @@ def write(files: Mapping[Path, str | bytes | Iterable[str]]) -> Diagnostic | Non
 def _fill(temporary: Path, content: str | bytes | Iterable[str], *, like: Path) -> None:
     """Write a new file, with the permissions of the one that it will replace, if there is one."""
     whole = (content,) if isinstance(content, str | bytes) else content
-    pieces = (each.encode() if isinstance(each, str) else each for each in whole)
+    pieces = (piece.encode() if isinstance(piece, str) else piece for piece in whole)
     data = next(pieces, b"")
     mode = stat.S_IMODE(like.stat().st_mode) if like.exists() else _usual()
     if data.startswith(b"#!"):

@@ -57,8 +57,8 @@ def anticipated(sentence: s.Sentence, obligation: Obligation, watch: MonitorSpec
     return replace(watch, doom=_more(watch.doom, lost), settled=_more(watch.settled, safe))
 
 
-def _more(known: f.Formula, found: f.Formula) -> f.Formula:
-    return known if found == f.FALSE else f.or_(known, found)
+def _more(given: f.Formula, derived: f.Formula) -> f.Formula:
+    return given if derived == f.FALSE else f.or_(given, derived)
 
 
 def _automaton(sentence: s.Sentence, obligation: Obligation) -> Automaton | None:

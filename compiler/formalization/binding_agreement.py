@@ -55,9 +55,9 @@ def _agreed(
         return terms if _is_same(stated, declared, declarations) else None
     sided = _constant(stated.left) is not None or _constant(stated.right) is not None
     if stated.op == declared.op:
-        found = terms.fit(stated, declared.left, declared.right)
-        if found is not None:
-            return found
+        extended = terms.fit(stated, declared.left, declared.right)
+        if extended is not None:
+            return extended
     turned = sided or stated.op in ("=", "!=")  # of two names nothing says which is which
     if turned and _MIRRORED[stated.op] == declared.op:
         return terms.fit(stated, declared.right, declared.left)
@@ -133,8 +133,8 @@ _Kind = tuple[str, units.Dimension]
 
 def _units(number: e.Expression) -> list[units.Unit]:
     """The unit of a number, if it has one."""
-    found = (units.unit(p.unit) for p in e.parts(number) if isinstance(p, e.Quantity))
-    return [unit for unit in found if unit is not None]
+    candidates = (units.unit(p.unit) for p in e.parts(number) if isinstance(p, e.Quantity))
+    return [unit for unit in candidates if unit is not None]
 
 
 def _constant(expression: e.Expression) -> Fraction | None:
@@ -207,7 +207,7 @@ def _mistakes(
     name: str, stated: e.Expression | None, declarations: Declarations
 ) -> list[Diagnostic]:
     """The errors in the table of a proposition, and in those of the signals that it compares."""
-    read = [("signal", each.id) for each in e.names(stated)] if stated is not None else []
+    read = [("signal", name_node.id) for name_node in e.names(stated)] if stated is not None else []
     parts = [("proposition", name), *read]
     return [mistake for part in parts for mistake in declarations.mistakes.get(part, ())]
 
@@ -228,7 +228,7 @@ def missing_signals(
         return ()
     words = stated.op in ("=", "!=") and isinstance(stated.left, e.Name)
     read = stated.left if words and isinstance(stated.right, e.Name) else stated
-    return tuple(dict.fromkeys(each.id for each in e.names(read) if each.id not in signals))
+    return tuple(dict.fromkeys(part.id for part in e.names(read) if part.id not in signals))
 
 
 def way_out(requirement: FormalizedRequirement, name: str, declarations: Declarations) -> str:
@@ -239,7 +239,7 @@ def way_out(requirement: FormalizedRequirement, name: str, declarations: Declara
     file = declarations.source.name
     missing = missing_signals(requirement, name, declarations.signals)
     if missing:
-        tables = " and ".join(f"`[signal.{as_key(each)}]`" for each in missing)
+        tables = " and ".join(f"`[signal.{as_key(signal_name)}]`" for signal_name in missing)
         return f"add {tables} with its `path` to {file}; `fretc bind --from LOG` drafts signals"
     bind = f"add `[proposition.{as_key(name)}]` with its `expr` to {file}"
     signal = next((s.name for s in declarations.signals.values() if name in s.values), None)

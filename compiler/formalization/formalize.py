@@ -46,8 +46,8 @@ def formalize(
     """
     wording = requirement.wording
     reading = partial(_formalized, requirement, declarations)
-    found = with_budget(wording.end - wording.start, wording, reading)
-    return (None, (found,)) if isinstance(found, Diagnostic) else found
+    result = with_budget(wording.end - wording.start, wording, reading)
+    return (None, (result,)) if isinstance(result, Diagnostic) else result
 
 
 def _formalized(
@@ -94,7 +94,7 @@ def _misuses(
     if declarations is None:
         return ()
     variables = declarations.variables
-    inside = [misuses(each, variables, place) for each in conditions(written)]
+    inside = [misuses(expression, variables, place) for expression in conditions(written)]
     values = [misuses_of_value(variables[name], variables) for name in definitions]
     return tuple(dict.fromkeys(chain(*inside, *values)))
 
@@ -121,8 +121,8 @@ def unreadable_sentence(requirement: RequirementEntry) -> tuple[Diagnostic, ...]
     codes = {mistake.code for mistake in requirement.mistakes}
     if not codes or codes & _WITHOUT_SENTENCE or requirement.is_free_text:
         return ()
-    found = with_budget(wording.end - wording.start, wording, partial(mistakes, wording))
-    return (found,) if isinstance(found, Diagnostic) else found
+    diagnostics = with_budget(wording.end - wording.start, wording, partial(mistakes, wording))
+    return (diagnostics,) if isinstance(diagnostics, Diagnostic) else diagnostics
 
 
 _WITHOUT_SENTENCE = {
@@ -257,16 +257,16 @@ def duplicate_ids(requirements: Sequence[RequirementEntry]) -> Mapping[int, Diag
         The diagnostic by the `id()` of each requirement with a repeated id, the first one included.
     """
     first: dict[str, RequirementEntry] = {}
-    found: dict[int, Diagnostic] = {}
+    diagnostics: dict[int, Diagnostic] = {}
     for requirement in requirements:
         earlier = first.setdefault(re.sub(r"[-.]", "_", requirement.id.lower()), requirement)
         if earlier is not requirement:
             place = earlier.place("id")
-            found[id(requirement)] = Diagnostic(
+            diagnostics[id(requirement)] = Diagnostic(
                 Code.DUPLICATE_ID,
                 f"the id `{requirement.id}` is taken: {place.source.name}:{place.line}",
                 requirement.place("id"),
                 help="give each requirement another id; case, `-`, `_` and `.` do not count",
             )
-            found.setdefault(id(earlier), found[id(requirement)])
-    return found
+            diagnostics.setdefault(id(earlier), diagnostics[id(requirement)])
+    return diagnostics

@@ -81,8 +81,8 @@ class FormalizedRequirement:
         counted: tuple[str, ...] = ()
         if self.sentence.probability is not None:
             counted = self.demanded.atoms
-        known = dict.fromkeys((*self.propositions, *counted))
-        return tuple(name for name in known if name in needed or name in counted)
+        names = dict.fromkeys((*self.propositions, *counted))
+        return tuple(name for name in names if name in needed or name in counted)
 
     @cached_property
     def demanded(self) -> Obligation:
@@ -92,13 +92,13 @@ class FormalizedRequirement:
     @cached_property
     def variables(self) -> tuple[str, ...]:
         """Every variable of the sentence, in order of appearance, also within comparisons."""
-        found = [
+        occurrences = [
             name
             for expression in conditions(self.sentence)
             for name in names(expression)
             if name.id != "FTP"
         ]
-        return tuple(dict.fromkeys(name.id for name in sorted(found, key=_place)))
+        return tuple(dict.fromkeys(name.id for name in sorted(occurrences, key=_place)))
 
     @cached_property
     @with_recursion_limit
@@ -108,19 +108,19 @@ class FormalizedRequirement:
         A quoted name that reads as a comparison counts as one. A predicate that looks back, within
         another call, is left out: it is never an atom there.
         """
-        found: dict[str, e.Expression] = {}
+        expressions: dict[str, e.Expression] = {}
         waiting = [(expression, False) for expression in conditions(self.sentence)]
         while waiting:
             part, inside = waiting.pop()
             expanded = inside and isinstance(part, e.Call) and part.name in LOOK_BACK
             if isinstance(part, e.Comparison | e.Call) and not expanded:
-                found[atom(part)] = part
+                expressions[atom(part)] = part
             elif isinstance(part, e.Name):
                 quoted = _quoted(part)
-                found |= {variable(part.id): quoted} if quoted is not None else {}
+                expressions |= {variable(part.id): quoted} if quoted is not None else {}
             inside |= isinstance(part, e.Call)
-            waiting.extend((each, inside) for each in e.children(part))
-        return found
+            waiting.extend((child, inside) for child in e.children(part))
+        return expressions
 
     @cached_property
     @with_recursion_limit
@@ -131,24 +131,24 @@ class FormalizedRequirement:
         """
         whole = expanded(self.written, self.definitions)
         assert isinstance(whole, Sentence), "the requirement has been made of it"
-        found: dict[str, str] = {}
+        texts: dict[str, str] = {}
         waiting = [*zip(conditions(self.sentence), conditions(whole), strict=True)]
         while waiting:
             own, part = waiting.pop()
             if isinstance(own, e.Comparison | e.Call) and expression(own) != expression(part):
-                found.setdefault(atom(own), f"({expression(part)})")
+                texts.setdefault(atom(own), f"({expression(part)})")
             if not isinstance(own, e.Comparison):
                 waiting.extend(zip(e.children(own), e.children(part), strict=True))
-        return found
+        return texts
 
     @cached_property
     def mentions(self) -> Mapping[str, Span]:
         """The first occurrence of each variable in the sentence."""
-        found: dict[str, Span] = {}
+        spans: dict[str, Span] = {}
         for name in chain.from_iterable(map(names, conditions(self.sentence))):
             if name.span is not None:
-                found.setdefault(name.id, name.span)
-        return found
+                spans.setdefault(name.id, name.span)
+        return spans
 
     @cached_property
     def fingerprint(self) -> str:

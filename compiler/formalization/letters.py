@@ -60,14 +60,14 @@ def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, L
 def letters(sentence: s.Sentence, atoms: Sequence[str]) -> tuple[Letter, ...]:
     """The letters of all valuations of the atoms, sorted."""
     every = (1 << 2 ** len(atoms)) - 1
-    found: list[tuple[tuple[bool, ...], int]] = [((), every)]
+    groups: list[tuple[tuple[bool, ...], int]] = [((), every)]
     for column in _columns(sentence, atoms):
-        found = [
+        groups = [
             ((*letter, value), where & half)
-            for letter, where in found
+            for letter, where in groups
             for value, half in ((False, every ^ column), (True, column))
         ]
-    return tuple((m, p, q, stop) for (m, p, q, stop), where in found if where)
+    return tuple((m, p, q, stop) for (m, p, q, stop), where in groups if where)
 
 
 def _columns(sentence: s.Sentence, atoms: Sequence[str]) -> list[int]:
@@ -163,7 +163,7 @@ def comparisons(requirement: FormalizedRequirement) -> Mapping[str, e.Comparison
 
 def _is_of_one_moment(name: str, part: e.Comparison, declarations: Declarations) -> bool:
     signals = declarations.signals
-    read = [signals[each.id] for each in e.names(part) if each.id in signals]
+    read = [signals[node.id] for node in e.names(part) if node.id in signals]
     if any(signal.scale != signal.unit.factor for signal in read):
         return False  # its numbers are not compared in the unit of the sentence
     declared = declarations.propositions.get(name)

@@ -103,8 +103,8 @@ class Future:
             return _ahead(lo, hi, p, LAST)
 
         def next_occurrence(p: Formula, q: Formula) -> Formula:
-            found = until(and_(not_(LAST), not_(p)), and_(p, q))
-            return and_(not_(LAST), next_(found))
+            occurrence = until(and_(not_(LAST), not_(p)), and_(p, q))
+            return and_(not_(LAST), next_(occurrence))
 
         return _expand(
             {"persists": lambda lo, hi, p: not_(occurs(lo, hi, not_(p))), "occurs": occurs},

@@ -369,7 +369,7 @@ def explore(template: Template, letters: Iterable[Letter], limit: int = 10**6) -
     alphabet = tuple(dict.fromkeys(letters))
     assert alphabet
     start = initial(template)
-    found = {start: 0}
+    numbers = {start: 0}
     states, moves = [start], []
     for state in states:  # grows while it is read: breadth first
         row = []
@@ -378,7 +378,7 @@ def explore(template: Template, letters: Iterable[Letter], limit: int = 10**6) -
             if after is None:
                 row.append(BROKEN)
                 continue
-            index = found.setdefault(after, len(states))
+            index = numbers.setdefault(after, len(states))
             if index == len(states):
                 states.append(after)
             row.append(index)

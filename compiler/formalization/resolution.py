@@ -45,7 +45,7 @@ def in_own_units(
     worded = _worded(sentence, declarations, place)
     if isinstance(worded, Diagnostic):
         return worded
-    own = s.with_expressions(worded, lambda each: e.with_comparisons(each, converted))
+    own = s.with_expressions(worded, lambda expression: e.with_comparisons(expression, converted))
     return mistakes[0] if mistakes else own
 
 
@@ -61,8 +61,8 @@ def _worded(sentence: Sentence, declarations: Declarations, place: Span) -> Sent
             return expression
         return worded
 
-    found = s.with_expressions(sentence, rewritten)
-    return mistakes[0] if mistakes else found
+    resolved_sentence = s.with_expressions(sentence, rewritten)
+    return mistakes[0] if mistakes else resolved_sentence
 
 
 def _without(
@@ -171,8 +171,8 @@ def _mistakes(part: e.Expression, declarations: Declarations) -> tuple[Diagnosti
     """Errors of the signals that the part reads; empty if it also reads an undeclared name."""
     names = [name.id for name in e.names(part)]
     own = [declarations.mistakes.get(("signal", name), ()) for name in names]
-    known = all(name in declarations.signals or own[i] for i, name in enumerate(names))
-    return tuple(dict.fromkeys(chain.from_iterable(own))) if known else ()
+    all_declared = all(name in declarations.signals or own[i] for i, name in enumerate(names))
+    return tuple(dict.fromkeys(chain.from_iterable(own))) if all_declared else ()
 
 
 def _bound(

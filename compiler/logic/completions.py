@@ -50,11 +50,11 @@ def shown(
         counted: a column of the ticks that count; other ticks never show the formula.
     """
     automaton = _Automaton(formula)
-    known = [columns[name] for name in automaton.names]
+    inputs = [columns[name] for name in automaton.names]
     possible, by_some = frozenset([automaton.initial]), None
     moves: dict[tuple[frozenset[State], _Row], tuple[frozenset[State], bool]] = {}
     steps = 0
-    for tick, row in enumerate(_rows(known, counted, ticks)):
+    for tick, row in enumerate(_rows(inputs, counted, ticks)):
         step = possible, row
         if step not in moves:
             steps += len(possible) << row.count("2")
@@ -64,8 +64,8 @@ def shown(
         steps += 1
         if steps > MOST_STEPS:
             return None
-        possible, some = moves[step]
-        if some and by_some is None:
+        possible, is_shown = moves[step]
+        if is_shown and by_some is None:
             by_some = tick
         if not possible:
             return Shown(by_some, tick)
@@ -113,26 +113,26 @@ class _Automaton:
 
     def moved(self, states: frozenset[State], row: _Row) -> tuple[frozenset[State], bool]:
         """The states after a tick in which nothing was shown yet; and whether something was."""
-        after, some = set[State](), False
+        after, is_shown = set[State](), False
         for state in states:
             move = state, row
             if move not in self._moves:
                 self._moves[move] = self._moved(state, row)
             following, shows = self._moves[move]
             after |= following
-            some |= shows
-        return frozenset(after), some
+            is_shown |= shows
+        return frozenset(after), is_shown
 
     def _moved(self, state: State, row: _Row) -> tuple[set[State], bool]:
         """The states after a tick from one state; and whether a completion showed the formula."""
-        after, some = set[State](), False
+        after, is_shown = set[State](), False
         for letter in product(*(_VALUES[code] for code in row[1:])):
             following, value = self._step(state, letter)
             if row[0] == "1" and value:
-                some = True
+                is_shown = True
             else:
                 after.add(following)
-        return after, some
+        return after, is_shown
 
     def _step(self, state: State, letter: Sequence[int]) -> tuple[State, int]:
         values, memory = [*letter], list[int]()

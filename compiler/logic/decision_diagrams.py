@@ -72,10 +72,10 @@ def _cube(variables: tuple[int, ...]) -> Function:
 
 def point(values: Mapping[int, bool]) -> Function:
     """The conjunction of the literals."""
-    found = true()
+    conjunction = true()
     for number in sorted(values, reverse=True):  # from the bottom up each step is one node
-        found = literal(number, values[number]) & found
-    return found
+        conjunction = literal(number, values[number]) & conjunction
+    return conjunction
 
 
 def choice(condition: Function, then: Function, otherwise: Function) -> Function:
@@ -110,19 +110,19 @@ def composed(function: Function, number: int, value: Function) -> Function:
     return _buddy().bdd_compose(function, value, number)
 
 
-def at(function: Function, known: Function) -> Function:
+def at(function: Function, literals: Function) -> Function:
     """The function restricted by the literals of a cube."""
-    return _buddy().bdd_restrict(function, known)
+    return _buddy().bdd_restrict(function, literals)
 
 
 def support(function: Function) -> tuple[int, ...]:
     """The variables on which the function depends, in their order."""
     buddy = _buddy()
-    found, rest = [], buddy.bdd_support(function)
+    variables, rest = [], buddy.bdd_support(function)
     while rest != buddy.bddtrue:
-        found.append(buddy.bdd_var(rest))
+        variables.append(buddy.bdd_var(rest))
         rest = buddy.bdd_high(rest)
-    return tuple(found)
+    return tuple(variables)
 
 
 def witness(function: Function, prefer: bool = False) -> dict[int, bool]:
@@ -156,17 +156,17 @@ def branches(function: Function) -> tuple[int, Function, Function]:
 
 def parts(functions: Iterable[Function]) -> tuple[Function, ...]:
     """The non-constant nodes of the diagrams, each after its successors."""
-    found: dict[Function, None] = {}
+    nodes: dict[Function, None] = {}
     waiting = [*functions]
     while waiting:
         function = waiting[-1]
         needed = []
-        if function not in found and function not in (true(), false()):
+        if function not in nodes and function not in (true(), false()):
             _, high, low = branches(function)
-            needed = [n for n in (high, low) if n not in found and n not in (true(), false())]
+            needed = [n for n in (high, low) if n not in nodes and n not in (true(), false())]
             if not needed:
-                found[function] = None
+                nodes[function] = None
         waiting.extend(needed)
         if not needed:
             waiting.pop()
-    return tuple(found)
+    return tuple(nodes)

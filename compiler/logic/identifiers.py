@@ -51,16 +51,18 @@ def legal_names(
         brings: all identifiers that a name introduces; none may be reserved or taken.
     """
     taken = set[str]()
-    found: dict[str, str] = {}
+    legal: dict[str, str] = {}
 
     def is_free(name: str) -> bool:
-        return not any(each in reserved or each in taken for each in brings(name))
+        return not any(identifier in reserved or identifier in taken for identifier in brings(name))
 
     everything = tuple(dict.fromkeys(propositions))
     wanted = {name: prefix + (names or {}).get(name, _plain(name)) for name in everything}
     # Where the reserved names are all that begin so, only another beginning helps.
     wanted = {
-        name: f"v_{text}" if all(each in reserved for each in islice(variants(text), 3)) else text
+        name: f"v_{text}"
+        if all(identifier in reserved for identifier in islice(variants(text), 3))
+        else text
         for name, text in wanted.items()
     }
 
@@ -68,9 +70,9 @@ def legal_names(
         return is_compound(name), wanted[name] != prefix + name or not is_free(wanted[name])
 
     for name in sorted(everything, key=late):
-        found[name] = next(filter(is_free, variants(wanted[name])))
-        taken.update(brings(found[name]))
-    return {name: found[name] for name in everything}
+        legal[name] = next(filter(is_free, variants(wanted[name])))
+        taken.update(brings(legal[name]))
+    return {name: legal[name] for name in everything}
 
 
 def _plain(name: str) -> str:

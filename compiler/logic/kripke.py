@@ -116,15 +116,15 @@ def check(kripke: Kripke, formula: Formula) -> Lasso | None:
     """
     if not _is_linear(formula):
         raise ValueError("only a formula about single endless runs can be checked")
-    found = automata.violation(
+    run = automata.violation(
         kripke.labels,
         [kripke.successors(state) for state in range(len(kripke.labels))],
         kripke.initial,
         formula,
     )
-    if found is None:
+    if run is None:
         return None
-    lasso = Lasso(*found)
+    lasso = Lasso(*run)
     assert _is_run(kripke, lasso), "the counterexample is no run of the model"
     return lasso
 

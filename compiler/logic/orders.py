@@ -61,12 +61,12 @@ def exclusions(
         scales: factors from the signals' units to base units; a name without one has no unit.
         words: the values of each enumerated signal.
     """
-    read = {name: relation_of(each, scales) for name, each in comparisons.items()}
-    found: list[Exclusion] = []
+    read = {name: relation_of(comparison, scales) for name, comparison in comparisons.items()}
+    excluded: list[Exclusion] = []
     for names in _groups(read):
         share = Fraction(len(names), len(read))
-        found += _of_group({name: read[name] for name in names}, words or {}, share)
-    return tuple(found)
+        excluded += _of_group({name: read[name] for name in names}, words or {}, share)
+    return tuple(excluded)
 
 
 Values = TypeVar("Values", bound="tuple[bool | None, ...]")
@@ -77,15 +77,15 @@ def only_possible(
 ) -> tuple[Values, ...]:
     """The valuations of atoms that are not excluded, in their order; all, if none were left."""
     places = {name: place for place, name in enumerate(atoms)}
-    known = [
-        [(places[name], value) for name, value in each]
-        for each in excluded
-        if all(name in places for name, _ in each)
+    relevant = [
+        [(places[name], value) for name, value in exclusion]
+        for exclusion in excluded
+        if all(name in places for name, _ in exclusion)
     ]
     left = tuple(
         values
         for values in valuations
-        if not any(all(values[i] is value for i, value in each) for each in known)
+        if not any(all(values[i] is value for i, value in exclusion) for exclusion in relevant)
     )
     return left or tuple(valuations)
 
@@ -122,25 +122,30 @@ def _of_group(
     if ranges.is_of_one_term(relations):
         return ranges.exclusions(relations, words, share)
     search = _Search(relations, words, int(MOST_STEPS * share))
-    found = search.run()
+    minimal = search.run()
     if not search.is_cut:
-        return found
-    known = {frozenset(each) for each in found}
+        return minimal
+    literal_sets = {frozenset(exclusion) for exclusion in minimal}
     more = (
-        each
-        for some in _by_term(relations)
-        for each in ranges.exclusions(some, words, share * Fraction(len(some), len(relations)))
+        exclusion
+        for of_term in _by_term(relations)
+        for exclusion in ranges.exclusions(
+            of_term, words, share * Fraction(len(of_term), len(relations))
+        )
     )
-    return [*found, *(each for each in more if frozenset(each) not in known)]
+    return [
+        *minimal,
+        *(exclusion for exclusion in more if frozenset(exclusion) not in literal_sets),
+    ]
 
 
 def _by_term(relations: Mapping[str, Relation]) -> Iterator[Mapping[str, Relation]]:
     """The comparisons of each term with constants or enumeration values, decided alone."""
-    found: dict[Point, dict[str, Relation]] = {}
+    groups: dict[Point, dict[str, Relation]] = {}
     for name, relation in relations.items():
         if isinstance(relation.right, Constant) or is_word(relation.right):
-            found.setdefault(relation.left, {})[name] = relation
-    return (some for some in found.values() if ranges.is_of_one_term(some))
+            groups.setdefault(relation.left, {})[name] = relation
+    return (group for group in groups.values() if ranges.is_of_one_term(group))
 
 
 # Order ----------------------------------------------------------------------------------------
@@ -194,7 +199,7 @@ class _Order:
                 if apart
                 for j in _places(apart & self.at_most[i])
             )
-            or any(not each & ~self.apart[i] for i, each in self.choices)
+            or any(not candidates & ~self.apart[i] for i, candidates in self.choices)
         )
 
 
@@ -242,7 +247,7 @@ class _Search:
             if self._left <= 0 or self._steps <= 0:
                 return
             literal = (name, value)
-            if any(not each & ~bits for each in self._by_last.get(literal, ())):
+            if any(not exclusion_bits & ~bits for exclusion_bits in self._by_last.get(literal, ())):
                 continue
             after = order.copy()
             self._add(after, literal)
@@ -308,7 +313,7 @@ class _Search:
     def _add_constants(self, order: _Order) -> None:
         """Add the order of the constants, from the last one down, with its consequences."""
         row = [point for point in self._places if isinstance(point, Constant)]
-        row.sort(key=lambda each: each.value, reverse=True)
+        row.sort(key=lambda constant: constant.value, reverse=True)
         above: list[tuple[Constant, Fraction, int]] = []
         for less in row:
             i, (_, end) = self._places[less], less.ends

@@ -30,7 +30,7 @@ from fretish.reading.recursion import with_recursion_limit
 def equivalent(left: Formula, right: Formula) -> bool:
     """Whether two future-time formulas hold on the same infinite traces (and `LAST` is free)."""
     names = _names(*atoms(left), *atoms(right))
-    return same_language(*(printing.future(_renamed(each, names)) for each in (left, right)))
+    return same_language(*(printing.future(_renamed(formula, names)) for formula in (left, right)))
 
 
 def same_language(left: str, right: str) -> bool:
@@ -61,7 +61,10 @@ def holds_on(
     names = _names(*atoms(formula), *(name for values in (*prefix, *loop) for name in values))
 
     def letters(ticks: Sequence[Mapping[str, bool]]) -> list[str]:
-        return [_letter({names[name]: value for name, value in each.items()}) for each in ticks]
+        return [
+            _letter({names[name]: value for name, value in valuation.items()})
+            for valuation in ticks
+        ]
 
     parts = [*letters(prefix), f"cycle{{{'; '.join(letters(loop))}}}"]
     word = spot.parse_word("; ".join(parts), spot.make_bdd_dict())
@@ -103,7 +106,7 @@ def simplified(formula: Formula) -> str | None:
         text = text.replace(name, f"({printing.text(bounded, printing.SPOT)})")
     if longest_bound(formula) <= _PROVABLE_BOUND:
         assert same_language(text, printing.future(renamed)), "simplification is not equivalent"
-    own = {name: printing.text(Atom(each), printing.SPOT) for each, name in names.items()}
+    own = {name: printing.text(Atom(atom_name), printing.SPOT) for atom_name, name in names.items()}
     text = _NAME.sub(lambda match: own[match[0]], text)
     exact = printing.text(formula, printing.SPOT)
     return text if size < _length(formula) and len(text) < len(exact) else None

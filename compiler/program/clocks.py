@@ -19,8 +19,10 @@ from compiler.program.values import Age, And, Comparison, Value, Variable
 def clocks(program: Program) -> Mapping[str, str]:
     """The counter of the open demand by requirement id, where there is one."""
     blocks = {block.name: block for block in program.blocks}
-    found = ((each.id, _clock(each, blocks)) for each in program.requirements)
-    return {id: counter for id, counter in found if counter is not None}
+    candidates = (
+        (requirement.id, _clock(requirement, blocks)) for requirement in program.requirements
+    )
+    return {id: counter for id, counter in candidates if counter is not None}
 
 
 def lengthened(program: Program, clocks: Mapping[str, str]) -> Program:
@@ -31,10 +33,10 @@ def lengthened(program: Program, clocks: Mapping[str, str]) -> Program:
         clocks: requirement id → counter.
     """
     most: dict[str, int] = {}
-    for each in program.requirements:
-        if each.id in clocks and each.horizon is not None:
-            counter = clocks[each.id]
-            most[counter] = max(most.get(counter, 0), each.horizon + 1)
+    for requirement in program.requirements:
+        if requirement.id in clocks and requirement.horizon is not None:
+            counter = clocks[requirement.id]
+            most[counter] = max(most.get(counter, 0), requirement.horizon + 1)
     cells = tuple(
         replace(cell, most=max(cell.most, most[cell.name]))
         if isinstance(cell, Counter) and cell.name in most
@@ -42,7 +44,8 @@ def lengthened(program: Program, clocks: Mapping[str, str]) -> Program:
         for cell in program.cells
     )
     blocks = tuple(
-        _longer(each, most[each.name]) if each.name in most else each for each in program.blocks
+        _longer(block, most[block.name]) if block.name in most else block
+        for block in program.blocks
     )
     return replace(program, cells=cells, blocks=blocks)
 
@@ -76,14 +79,14 @@ def _conjuncts(value: Value) -> frozenset[Value]:
 
 def _longer(block: Block, most: int) -> Block:
     """The block with its counter's maximum raised to `most`."""
-    made = list[Instruction]()
+    instructions = list[Instruction]()
     for instruction in block.instructions:
         assert isinstance(instruction, Choose)
         branches = tuple(
             (condition, _grown(then, most)) for condition, then in instruction.branches
         )
-        made.append(Choose(branches, _grown(instruction.otherwise, most)))
-    return replace(block, instructions=tuple(made))
+        instructions.append(Choose(branches, _grown(instruction.otherwise, most)))
+    return replace(block, instructions=tuple(instructions))
 
 
 def _grown(instruction: Count | Advance, most: int) -> Count | Advance:

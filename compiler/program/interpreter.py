@@ -80,7 +80,9 @@ def step(program: Program, state: State, row: Mapping[str, Truth], doubt: bool =
     for block in program.blocks:
         for instruction in block.instructions:
             tick.do(instruction)
-    signals = tuple(Signals(*map(tick.value, each.signals)) for each in program.requirements)
+    signals = tuple(
+        Signals(*map(tick.value, requirement.signals)) for requirement in program.requirements
+    )
     now = state.tick + 1
     marks = map(_marked, program.requirements, state.marks, signals, [now] * len(signals))
     return State(now, tick.values, tick.windows, signals, tuple(marks))

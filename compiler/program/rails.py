@@ -102,8 +102,8 @@ def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
         program: the program of any requirements.
         prefixes: requirement id → prefix of the names of its cells.
     """
-    known = clocks(program)
-    program = lengthened(program, known)
+    clock_of = clocks(program)
+    program = lengthened(program, clock_of)
     blocks = _needed(program)
     names = {name for block in blocks for name in _cells(block)}
     windows = {cell.name: cell for cell in program.cells if isinstance(cell, Window)}
@@ -114,13 +114,13 @@ def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
     for block in blocks:
         steps = list[Step]()
         for instruction in block.instructions:
-            made, moves = _static(instruction, windows)
-            cells.extend(made)
+            new_cells, moves = _static(instruction, windows)
+            cells.extend(new_cells)
             steps.extend(moves)
         stages.append(StatementGroup(block.comment, tuple(steps)))
     for requirement in program.requirements:
         marks, stage, reading = _remembered(
-            requirement, prefixes[requirement.id], known.get(requirement.id)
+            requirement, prefixes[requirement.id], clock_of.get(requirement.id)
         )
         cells.extend(marks)
         stages.extend([stage] if stage.steps else [])
@@ -146,16 +146,16 @@ def _needed(program: Program) -> tuple[Block, ...]:
     """The blocks that signals depend on."""
     blocks = {block.name: block for block in program.blocks if block.instructions}
     waiting = [*_told(program)]
-    found: set[str] = set()
+    needed: set[str] = set()
     while waiting:
         value = waiting.pop()
         match value:
-            case Variable(name) | Age(name) if name not in found:
-                found.add(name)
+            case Variable(name) | Age(name) if name not in needed:
+                needed.add(name)
                 waiting.extend(_values(blocks[name]))
             case _:
                 continue
-    return tuple(block for name, block in blocks.items() if name in found)
+    return tuple(block for name, block in blocks.items() if name in needed)
 
 
 def _values(block: Block) -> Iterator[Value]:

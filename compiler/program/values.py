@@ -112,5 +112,5 @@ def parts(value: Value) -> Iterator[Value]:
             inner = (negated,)
         case Constant() | Literal() | Variable() | Age():
             inner = ()
-    for each in inner:
-        yield from parts(each)
+    for operand in inner:
+        yield from parts(operand)

@@ -49,15 +49,15 @@ def acceptances(
     requirements: Iterable[RequirementEntry], settings: Settings | None
 ) -> tuple[tuple[Acceptance, ...], tuple[Diagnostic, ...]]:
     """The acceptances of headers, then those of settings; and F549 for each that is invalid."""
-    written = [(each, code) for each in requirements for code in each.accept]
-    found = [
-        _acceptance(code, each.accept[code], each.place("accept", code), each)
-        for each, code in written
+    written = [(requirement, code) for requirement in requirements for code in requirement.accept]
+    entries = [
+        _acceptance(code, requirement.accept[code], requirement.place("accept", code), requirement)
+        for requirement, code in written
     ]
     if settings is not None:
-        found.extend(_of_settings(settings))
-    good = tuple(each for each in found if isinstance(each, Acceptance))
-    return good, tuple(each for each in found if isinstance(each, Diagnostic))
+        entries.extend(_of_settings(settings))
+    good = tuple(entry for entry in entries if isinstance(entry, Acceptance))
+    return good, tuple(entry for entry in entries if isinstance(entry, Diagnostic))
 
 
 def _of_settings(settings: Settings) -> Iterator[Acceptance | Diagnostic]:
@@ -110,42 +110,44 @@ _ByCode = Mapping[tuple[Code, str], Sequence[Acceptance]]
 
 
 def answered(
-    diagnostics: Iterable[Diagnostic], known: Sequence[Acceptance]
+    diagnostics: Iterable[Diagnostic], accepted: Sequence[Acceptance]
 ) -> tuple[Diagnostic, ...]:
     """The diagnostics, each accepted warning with the reason of its first acceptance."""
-    by_code = _by_code(known)
+    by_code = _by_code(accepted)
     return tuple(_answered(diagnostic, by_code) for diagnostic in diagnostics)
 
 
-def _answered(diagnostic: Diagnostic, known: _ByCode) -> Diagnostic:
-    found = next(_answers(diagnostic, known), None)
-    return diagnostic if found is None else replace(diagnostic, accepted=found.reason)
+def _answered(diagnostic: Diagnostic, by_code: _ByCode) -> Diagnostic:
+    acceptance = next(_answers(diagnostic, by_code), None)
+    return diagnostic if acceptance is None else replace(diagnostic, accepted=acceptance.reason)
 
 
-def _by_code(known: Iterable[Acceptance]) -> _ByCode:
-    found: dict[tuple[Code, str], list[Acceptance]] = {}
-    for each in known:
-        file = each.span.source.name if each.requirement else ""
-        found.setdefault((each.code, file), []).append(each)
-    return found
+def _by_code(accepted: Iterable[Acceptance]) -> _ByCode:
+    by_code: dict[tuple[Code, str], list[Acceptance]] = {}
+    for acceptance in accepted:
+        file = acceptance.span.source.name if acceptance.requirement else ""
+        by_code.setdefault((acceptance.code, file), []).append(acceptance)
+    return by_code
 
 
-def _answers(diagnostic: Diagnostic, known: _ByCode) -> Iterator[Acceptance]:
+def _answers(diagnostic: Diagnostic, by_code: _ByCode) -> Iterator[Acceptance]:
     """The acceptances of a warning, the most specific first."""
     if diagnostic.severity is not Severity.WARNING:
         return
     place = diagnostic.span
     if place is not None and place.source.name:
-        headers = known.get((diagnostic.code, place.source.name), ())
-        before = bisect_right(headers, place.end, key=lambda each: each.span.start)
+        headers = by_code.get((diagnostic.code, place.source.name), ())
+        before = bisect_right(headers, place.end, key=lambda acceptance: acceptance.span.start)
         around = headers[max(0, before - 1) : before + 1]  # a header begins above its acceptance
         yield from (e for e in around if e.requirement and e.requirement.contains(place))
-    others = known.get((diagnostic.code, ""), ())
-    yield from (each for each in others if each.subject in ("", diagnostic.subject))
+    others = by_code.get((diagnostic.code, ""), ())
+    yield from (
+        acceptance for acceptance in others if acceptance.subject in ("", diagnostic.subject)
+    )
 
 
 def idle(
-    known: Sequence[Acceptance],
+    accepted: Sequence[Acceptance],
     warnings: Iterable[Diagnostic],
     declarations: Declarations | None,
     recorded: Collection[str] | None,
@@ -153,21 +155,23 @@ def idle(
     """F550 for each acceptance without a matching warning.
 
     Args:
-        known: the acceptances; those in headers of retired requirements are skipped.
+        accepted: the acceptances; those in headers of retired requirements are skipped.
         warnings: all warnings of the project, and of the audited logs.
         declarations: the bindings, if there are any.
         recorded: the topics of the audited logs; None if none was audited.
     """
-    by_code = _by_code(known)
-    used = {id(each) for warning in warnings for each in _answers(warning, by_code)}
-    for each in known:
-        retired = each.requirement is not None and each.requirement.status == "retired"
-        open_yet = each.about == TOPIC and _may_come(each.subject, declarations, recorded)
-        if not (retired or open_yet or id(each) in used):
+    by_code = _by_code(accepted)
+    used = {id(acceptance) for warning in warnings for acceptance in _answers(warning, by_code)}
+    for acceptance in accepted:
+        retired = acceptance.requirement is not None and acceptance.requirement.status == "retired"
+        open_yet = acceptance.about == TOPIC and _may_come(
+            acceptance.subject, declarations, recorded
+        )
+        if not (retired or open_yet or id(acceptance) in used):
             yield Diagnostic(
                 Code.IDLE_ACCEPTANCE,
-                f"{each.code.number} is accepted, but there is no such warning",
-                each.span,
+                f"{acceptance.code.number} is accepted, but there is no such warning",
+                acceptance.span,
                 help="remove the acceptance: it would hide a later warning",
                 severity=Severity.WARNING,
             )

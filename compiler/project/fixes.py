@@ -83,8 +83,8 @@ def _has_a_sentence(requirement: RequirementEntry) -> bool:
 
 def _safe_fixes_of_sentence(wording: Span) -> list[Fix]:
     """The safe fixes of one sentence; none if reading it costs too much."""
-    found = with_budget(wording.end - wording.start, wording, partial(mistakes, wording))
-    if isinstance(found, Diagnostic):
+    diagnostics = with_budget(wording.end - wording.start, wording, partial(mistakes, wording))
+    if isinstance(diagnostics, Diagnostic):
         return []
-    fixes = (mistake.fix for mistake in found)
+    fixes = (mistake.fix for mistake in diagnostics)
     return [fix for fix in fixes if fix is not None and fix.is_safe]

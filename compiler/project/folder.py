@@ -56,7 +56,7 @@ def load(
     declarations, of_bindings = _declarations(
         bindings or first_sibling_path(paths, BINDINGS), reads
     )
-    known, of_hazards = read_hazards(hazards) if hazards else ({}, ())
+    hazard_of, of_hazards = read_hazards(hazards) if hazards else ({}, ())
     written = _written(paths)
     chosen = _settings(paths)
     above, elsewhere = _above(chosen) if parents else ({}, ())
@@ -64,13 +64,13 @@ def load(
     requirements, failed, mistaken, remarks = _formalized(written, declarations, broken=broken)
     upward = [*of_hazards, *elsewhere]
     if (hazards or parents) and not has_errors(upward):
-        upward.extend(unknown_parents(written, known, above, hazards))
+        upward.extend(unknown_parents(written, hazard_of, above, hazards))
         upward.extend(cycles(written))
     declarations = _with_atoms(declarations, requirements)
     mistakes = declarations.mistakes.values() if declarations else ()
     single = frozenset(chain.from_iterable(mistakes))
-    of_all = [each for each in of_bindings if each not in single]
-    own = mistaken | {id(each.requirement): each.diagnostic for each in failed}
+    of_all = [diagnostic for diagnostic in of_bindings if diagnostic not in single]
+    own = mistaken | {id(failure.requirement): failure.diagnostic for failure in failed}
     accepted, unanswered = acceptances(written, chosen if isinstance(chosen, Settings) else None)
     if isinstance(chosen, Diagnostic) and not parents:
         unanswered = (*unanswered, chosen)
@@ -80,7 +80,7 @@ def load(
         requirements,
         failed,
         declarations,
-        known,
+        hazard_of,
         answered(everything, accepted),
         (*of_all, *upward),
         mistaken,
@@ -104,14 +104,14 @@ def _with_atoms(
 
 def _written(paths: Sequence[str]) -> list[RequirementEntry]:
     """Every requirement; an unreadable file counts as one."""
-    found: list[RequirementEntry] = []
+    entries: list[RequirementEntry] = []
     for path in paths:
         source = read(path)
         if isinstance(source, Diagnostic):
-            found.append(unread(path, source))
+            entries.append(unread(path, source))
         else:
-            found.extend(requirements(source)[0])
-    return found
+            entries.extend(requirements(source)[0])
+    return entries
 
 
 _MOST_BROKEN_HEADERS = 100

@@ -430,7 +430,7 @@ def _glossary(
 ) -> Iterator[Artifact]:
     if tables or kept:
         content: dict[str, Any] = {"variable": {name: dict(t) for name, t in tables.items()}}
-        content |= {"fret": {KEPT: [dict(each) for each in kept]}} if kept else {}
+        content |= {"fret": {KEPT: [dict(record) for record in kept]}} if kept else {}
         text = (
             "# The variables of the requirements, as FRET's glossary has them. To audit logs,\n"
             "# declare a [clock], and bind each variable by a [proposition.NAME] over signals.\n\n"

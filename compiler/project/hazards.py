@@ -47,18 +47,18 @@ def _mistakes(tables: Tables, id: str, fields: Any) -> list[Diagnostic]:
 
     if not isinstance(fields, dict):
         return [wrong(f"`{id}` is not a hazard table", f'write `[{id}]`, then `title = "..."`', id)]
-    found = []
+    diagnostics = []
     for key, value in fields.items():
         if key not in _FIELDS:
-            known = ", ".join(_FIELDS)
-            found.append(
-                wrong(f"`{key}` is not a field of a hazard", f"it may have {known}", id, key)
+            fields_text = ", ".join(_FIELDS)
+            diagnostics.append(
+                wrong(f"`{key}` is not a field of a hazard", f"it may have {fields_text}", id, key)
             )
         elif not isinstance(value, str):
-            found.append(wrong(f"`{key}` must be a text", "write it in quotes", id, key))
+            diagnostics.append(wrong(f"`{key}` must be a text", "write it in quotes", id, key))
     if "title" not in fields:
-        found.append(wrong(f"the hazard {id} has no title", 'add `title = "..."`', id))
-    return found
+        diagnostics.append(wrong(f"the hazard {id} has no title", 'add `title = "..."`', id))
+    return diagnostics
 
 
 # Parents ------------------------------------------------------------------------------------------

@@ -51,28 +51,40 @@ def fretish(text: str) -> e.Expression | None:
 
 
 def _lexemes(text: str) -> list[str] | None:
-    found, place = [], 0
-    while text[place:].strip():
-        match = _LEXEME.match(text, place)
+    lexemes, index = [], 0
+    while text[index:].strip():
+        match = _LEXEME.match(text, index)
         if match is None or match["word"] in _FOREIGN:
             return None
-        found.append(match[0].strip())
-        place = match.end()
-    return found
+        lexemes.append(match[0].strip())
+        index = match.end()
+    return lexemes
 
 
 def _delayed(lexemes: list[str]) -> list[str]:
     """The tokens with `preReal(0.0, x)` for `0.0 -> pre x` that stands alone or in parentheses."""
-    found = lexemes if lexemes.count("->") <= _MOST_DELAYS else []
-    for arrow in reversed([i for i, word in enumerate(found) if word == "->"]):
-        first, after = _literal(found[:arrow]), _after_pre(found, arrow)
+    rewritten = lexemes if lexemes.count("->") <= _MOST_DELAYS else []
+    for arrow in reversed([i for i, word in enumerate(rewritten) if word == "->"]):
+        first, after = _literal(rewritten[:arrow]), _after_pre(rewritten, arrow)
         begin = arrow - len(first)
-        alone = found[begin - 1 : begin] in ([], ["("]) and found[after : after + 1] in ([], [")"])
-        if not first or not after or not alone or _is_called(found, begin - 1):
+        alone = rewritten[begin - 1 : begin] in ([], ["("]) and rewritten[after : after + 1] in (
+            [],
+            [")"],
+        )
+        if not first or not after or not alone or _is_called(rewritten, begin - 1):
             return []
-        inner = found[arrow + 2 : after]
-        found = [*found[:begin], _function(first), "(", *first, ",", *inner, ")", *found[after:]]
-    return found
+        inner = rewritten[arrow + 2 : after]
+        rewritten = [
+            *rewritten[:begin],
+            _function(first),
+            "(",
+            *first,
+            ",",
+            *inner,
+            ")",
+            *rewritten[after:],
+        ]
+    return rewritten
 
 
 def _literal(before: list[str]) -> list[str]:
@@ -127,17 +139,17 @@ def _is_clear(lexemes: list[str]) -> bool:
 
 def _levels(lexemes: list[str]) -> list[set[str]]:
     """The tokens of each pair of parentheses, and of the top level, without nested ones."""
-    found: list[set[str]] = [set()]
+    levels: list[set[str]] = [set()]
     open_ = [0]
     for word in lexemes:
         if word == "(":
-            open_.append(len(found))
-            found.append(set())
+            open_.append(len(levels))
+            levels.append(set())
         elif word == ")" and len(open_) > 1:
             open_.pop()
         else:
-            found[open_[-1]].add(word)
-    return found
+            levels[open_[-1]].add(word)
+    return levels
 
 
 def _is_followed(lexemes: list[str], opening: int) -> bool:

@@ -74,8 +74,8 @@ def _demand_within(settings: Settings, path: Path) -> None:
     Raises:
         UnreadableError: the path, or a document in it, lies outside.
     """
-    for each in (path, *(sorted(path.glob("*.yml")) if path.is_dir() else ())):
-        if not settings.holds(each):
+    for file in (path, *(sorted(path.glob("*.yml")) if path.is_dir() else ())):
+        if not settings.holds(file):
             raise UnreadableError(_OUTSIDE)
 
 
@@ -195,7 +195,7 @@ def _strictdoc(documents: Sequence[Any], name: str) -> Iterator[Parent]:
 def _nodes(node: Any) -> list[dict[str, Any]]:
     """The child nodes, in reverse order."""
     below = node.get("NODES", []) if isinstance(node, dict) else None
-    if not isinstance(below, list) or not all(isinstance(each, dict) for each in below):
+    if not isinstance(below, list) or not all(isinstance(child, dict) for child in below):
         raise UnreadableError("its nodes are not as StrictDoc writes them")
     return below[::-1]
 
@@ -273,9 +273,9 @@ def _reqifz(path: Path, name: str) -> Iterator[Parent]:
         with regular(path) as file, zipfile.ZipFile(file) as archive:
             inside = sorted(n for n in archive.namelist() if n.lower().endswith(".reqif"))
             most = _LEAST_PACKED + _RATIO * path.stat().st_size
-            if sum(archive.getinfo(each).file_size for each in inside) > most:
+            if sum(archive.getinfo(member).file_size for member in inside) > most:
                 raise UnreadableError("it unpacks to far more data than a ReqIF archive should")
-            texts = [_inside(archive, each) for each in inside]
+            texts = [_inside(archive, member) for member in inside]
     except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, ValueError):
         texts = []  # RuntimeError: it is encrypted, or packed in a way that Python does not know
     if not texts:
@@ -303,7 +303,7 @@ def _reqif(text: str, name: str) -> Iterator[Parent]:
             for kind in types
             for definition in getattr(kind, "attribute_definitions", None) or ()
         }
-        members = [_spec_object(each, names, name) for each in objects]
+        members = [_spec_object(spec_object, names, name) for spec_object in objects]
     except Exception as error:  # the library has no exception of its own for what it cannot read
         raise UnreadableError(f"the library `reqif` cannot read it: {_first(error)}") from None
     yield from members

@@ -25,8 +25,8 @@ def requirement_files(folder: str) -> list[str] | Diagnostic:
         names = sorted(listed, key=natural)
     except OSError as error:
         return unreadable(folder, error)
-    found = [str(Path(folder) / name) for name in names]
-    return [path for path in found if not _is_folder(path)] or _absent(
+    paths = [str(Path(folder) / name) for name in names]
+    return [path for path in paths if not _is_folder(path)] or _absent(
         "no requirement (`*.fret`) is in", folder
     )
 
@@ -51,14 +51,14 @@ def listed(paths: Sequence[str]) -> list[str] | Diagnostic:
 
     The order is that of `paths`, or the natural one if `paths` has the order of a shell's `*.fret`.
     """
-    found: dict[str, str] = {}
+    by_identity: dict[str, str] = {}
     for path in sorted(paths, key=natural) if [*paths] == sorted(paths) else paths:
         files = requirement_files(path) if _is_folder(path) else [path]
         if isinstance(files, Diagnostic):
             return replace(files, help="name `.fret` files, or a folder with `.fret` files")
         for file in files:
-            found.setdefault(os.path.realpath(file) if file != "-" else file, file)
-    return list(found.values())
+            by_identity.setdefault(os.path.realpath(file) if file != "-" else file, file)
+    return list(by_identity.values())
 
 
 def sibling_path(folder: str, name: str) -> str | None:

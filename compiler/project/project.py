@@ -80,7 +80,7 @@ class Project:
     @property
     def sound(self) -> Project:
         """The project without its `refused` requirements, retired ones included."""
-        refused = {id(each.requirement) for each in self.refused}
+        refused = {id(refusal.requirement) for refusal in self.refused}
         requirements = tuple(
             requirement for requirement in self.formalized if id(requirement.entry) not in refused
         )
@@ -89,7 +89,7 @@ class Project:
     @property
     def without_rule(self) -> tuple[RequirementEntry, ...]:
         """The requirements that have an error, or are free text."""
-        return tuple(each.requirement for each in self.failed)
+        return tuple(failure.requirement for failure in self.failed)
 
     def answered(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
         """The diagnostics, with the reason added to each accepted warning."""

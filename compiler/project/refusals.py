@@ -30,8 +30,8 @@ def refused(
         unusable: errors in the parts of the bindings that every requirement reads.
     """
     rule_of = {id(requirement.entry): requirement for requirement in formalized}
-    of_all = [each for each in unusable if each.is_error]
-    found = []
+    of_all = [diagnostic for diagnostic in unusable if diagnostic.is_error]
+    refusals = []
     for entry in requirements:
         requirement, mistake = rule_of.get(id(entry)), own.get(id(entry))
         why = [mistake] if mistake is not None and mistake.is_error else []
@@ -40,8 +40,8 @@ def refused(
         if requirement is not None and declarations is not None:
             why.extend(broken_tables(requirement, declarations))
         if why:
-            found.append(Refused(entry, tuple(dict.fromkeys(why))))
-    return tuple(found)
+            refusals.append(Refused(entry, tuple(dict.fromkeys(why))))
+    return tuple(refusals)
 
 
 def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
@@ -50,7 +50,7 @@ def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
     They include the errors of refused requirements. A trace also reads the headers and hazards
     above a requirement, and the accepted warnings.
     """
-    found = {id(each.requirement): [*each.why] for each in project.refused}
+    errors = {id(each.requirement): [*each.why] for each in project.refused}
     of_headers = {mistake for each in project.requirements for mistake in each.mistakes}
     tables = project.declarations.mistakes.values() if project.declarations else ()
     of_formulas = {why for each in project.refused for why in each.why} - of_headers
@@ -63,8 +63,8 @@ def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
     for requirement in project.requirements if others else ():
         way = _Way.of(requirement, project)
         reasons = [mistake for mistake, owners in others.items() if way.reads(mistake, owners)]
-        found.setdefault(id(requirement), []).extend(reasons)
-    return {key: tuple(dict.fromkeys(why)) for key, why in found.items() if why}
+        errors.setdefault(id(requirement), []).extend(reasons)
+    return {key: tuple(dict.fromkeys(why)) for key, why in errors.items() if why}
 
 
 _OF_SETTINGS = (Code.BAD_SETTINGS, Code.BAD_ACCEPTANCE)
@@ -84,10 +84,10 @@ class _Way:
 
     @classmethod
     def of(cls, requirement: RequirementEntry, project: Project) -> _Way:
-        by_id = {each.id: each for each in project.requirements}
+        by_id = {entry.id: entry for entry in project.requirements}
         above, ends = [requirement], set[str]()
-        for each in above:  # it grows while it is walked
-            for parent in each.parents:
+        for entry in above:  # it grows while it is walked
+            for parent in entry.parents:
                 if parent not in by_id:
                     ends.add(parent)
                 elif by_id[parent] not in above:
@@ -104,8 +104,8 @@ class _Way:
         """
         if not owners:
             return self.leaves or mistake.code in _OF_SETTINGS
-        of_header = any(mistake in each.mistakes for each in owners)
-        return (self.is_lost and of_header) or any(each in self.above for each in owners)
+        of_header = any(mistake in owner.mistakes for owner in owners)
+        return (self.is_lost and of_header) or any(owner in self.above for owner in owners)
 
 
 def _is_in(mistake: Diagnostic, requirement: RequirementEntry) -> bool:

@@ -78,9 +78,9 @@ def _parameters(
     """F310; a number of `params` belongs to a proposition, or to a compared signal."""
     for name, text in requirement.entry.params.items():
         place = requirement.entry.place("params", name)
-        known = _propositions(requirement, declarations, name)
+        propositions = _propositions(requirement, declarations, name)
         mistaken = {("proposition", name), ("signal", name)} & declarations.mistakes.keys()
-        if not known and not mistaken:
+        if not propositions and not mistaken:
             yield Diagnostic(
                 Code.UNKNOWN_NAME,
                 f"`params` states a number for `{name}`, which has no binding",
@@ -95,24 +95,24 @@ def _parameters(
                 place,
                 help='write a number and a unit: `"5 cm"`',
             )
-        elif _has_drifted(text, known):
+        elif _has_drifted(text, propositions):
             yield Diagnostic(
                 Code.PARAMETER_DRIFT,
                 f"the requirement states {text} for `{name}`, but its binding has another number",
-                known[0].span,
+                propositions[0].span,
                 help="correct the binding or `params`",
                 severity=Severity.WARNING,
             )
 
 
-def _has_drifted(text: str, known: Sequence[Proposition]) -> bool:
+def _has_drifted(text: str, propositions: Sequence[Proposition]) -> bool:
     """Whether no proposition has the quantity of `params`."""
     stated = units.quantity(text)
-    return stated is not None and bool(known) and not _is_stated(stated, known)
+    return stated is not None and bool(propositions) and not _is_stated(stated, propositions)
 
 
-def _is_stated(number: Exact, known: Iterable[Proposition]) -> bool:
-    return any(number in constants(each.expression) for each in known)
+def _is_stated(number: Exact, propositions: Iterable[Proposition]) -> bool:
+    return any(number in constants(proposition.expression) for proposition in propositions)
 
 
 def _propositions(
@@ -121,8 +121,8 @@ def _propositions(
     """The proposition with the name; for a signal the propositions of the sentence that read it."""
     if name in declarations.propositions:
         return [declarations.propositions[name]]
-    own = (declarations.propositions.get(each) for each in requirement.watched)
-    return [each for each in own if each is not None and name in each.signals]
+    own = (declarations.propositions.get(watched) for watched in requirement.watched)
+    return [proposition for proposition in own if proposition and name in proposition.signals]
 
 
 # Title and text
@@ -138,10 +138,10 @@ def _drifted_words(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[tuple[str, str, Span | None]]:
     """Field, quantity, and the span of the number of its dimension that the requirement uses."""
-    known = _numbers(requirement, declarations)
+    numbers = _numbers(requirement, declarations)
     for field in ("title", "text"):
         for words, stated in _quantities(getattr(requirement.entry, field)):
-            rivals = [(number, span) for number, span in known if number[0] == stated[0]]
+            rivals = [(number, span) for number, span in numbers if number[0] == stated[0]]
             if not rivals or any(number == stated for number, _ in rivals):
                 continue
             yield field, words, rivals[0][1]
@@ -152,17 +152,17 @@ def _numbers(
 ) -> list[tuple[Exact, Span | None]]:
     """Every number of the sentence and its bindings, with its span."""
     bound = [declarations.propositions.get(name) for name in requirement.watched]
-    found = [
-        (number, each.span)
-        for each in bound
-        if each is not None
-        for number in constants(each.expression)
+    numbers = [
+        (number, proposition.span)
+        for proposition in bound
+        if proposition is not None
+        for number in constants(proposition.expression)
     ]
     duration = syntax.duration(requirement.sentence.timing)
     if duration is not None and duration.unit in _SECONDS:
         seconds = duration.amount * _SECONDS[duration.unit]
-        found.append(((units.SECOND.dimension, seconds), duration.span))
-    return found
+        numbers.append(((units.SECOND.dimension, seconds), duration.span))
+    return numbers
 
 
 def _quantities(text: str) -> Iterator[tuple[str, Exact]]:

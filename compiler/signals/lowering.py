@@ -179,15 +179,15 @@ def _power(base: _Term, exponent: _Term) -> _Term:
 
 def _end(name: Literal["min", "max"], args: Sequence[_Term]) -> _Term:
     """The least or the greatest argument, computed pairwise from left to right."""
-    found, *rest = args
+    extreme, *rest = args
     for term in rest:
-        if isinstance(found, Fraction):
+        if isinstance(extreme, Fraction):
             if isinstance(term, Fraction):
-                found = called(name, [found, term])
+                extreme = called(name, [extreme, term])
                 continue
-            found, term = term, found
-        x, y, scale = _together(found, term)
+            extreme, term = term, extreme
+        x, y, scale = _together(extreme, term)
         if x is None or y is None:
             return _UNKNOWN
-        found = _Measure(n.MinMax("lesser" if name == "min" else "greater", x, y), scale)
-    return found
+        extreme = _Measure(n.MinMax("lesser" if name == "min" else "greater", x, y), scale)
+    return extreme

@@ -80,8 +80,8 @@ class Instant:
 def instant(requirements: Sequence[FormalizedRequirement]) -> Instant | None:
     """The instant of all propositions of the requirements; None if there are no bindings."""
     bound = _bound(requirements)
-    pure = [each for each in bound if not ticks_back(each.expression)]
-    read = dict.fromkeys(name for each in pure for name in each.signals)
+    pure = [proposition for proposition in bound if not ticks_back(proposition.expression)]
+    read = dict.fromkeys(name for proposition in pure for name in proposition.signals)
     signals = {
         name: signal
         for requirement in requirements
@@ -92,19 +92,21 @@ def instant(requirements: Sequence[FormalizedRequirement]) -> Instant | None:
     if not pure:
         return None
     policies = tuple(policy(signals[name]) for name in read)
-    meanings = tuple(meaning(each, signals.values()) for each in pure)
-    left_out = tuple(each.name for each in bound if ticks_back(each.expression))
+    meanings = tuple(meaning(proposition, signals.values()) for proposition in pure)
+    left_out = tuple(
+        proposition.name for proposition in bound if ticks_back(proposition.expression)
+    )
     return Instant(policies, meanings, left_out)
 
 
 def _bound(requirements: Sequence[FormalizedRequirement]) -> list[Proposition]:
-    found: dict[str, Proposition] = {}
+    propositions: dict[str, Proposition] = {}
     for requirement in requirements:
-        known = (
+        declared = (
             requirement.declarations.propositions if requirement.declarations is not None else {}
         )
-        found |= {name: known[name] for name in requirement.watched if name in known}
-    return [*found.values()]
+        propositions |= {name: declared[name] for name in requirement.watched if name in declared}
+    return [*propositions.values()]
 
 
 def policy(signal: Signal) -> Policy:

@@ -35,8 +35,8 @@ def encode_constant(value: Fraction, sign: str = "") -> ConstantEncodings:
 
     An audit compares samples with them; without a sign they are the nearest numbers.
     """
-    found = exact(str(value))
-    double, wide, magnitude = found.double, found.double, 0
+    constant = exact(str(value))
+    double, wide, magnitude = constant.double, constant.double, 0
     if sign and _HALVES_END <= abs(value) < _WHOLE_END:
         if value.denominator != 1 and sign in ("=", "!="):
             wide = nan
@@ -45,8 +45,8 @@ def encode_constant(value: Fraction, sign: str = "") -> ConstantEncodings:
             wide = float(whole)
             magnitude = abs(whole) if DOUBLES_END <= abs(whole) < _WHOLE_END else 0
         double = wide if abs(value) < DOUBLES_END else double
-    is_single = isinstance(found.single, Single)
-    return ConstantEncodings(float(found.single), is_single, double, wide, magnitude)
+    is_single = isinstance(constant.single, Single)
+    return ConstantEncodings(float(constant.single), is_single, double, wide, magnitude)
 
 
 class Language(NamedTuple):

@@ -42,40 +42,42 @@ class Operand:
     """Whether the operand is the whole expression, or its negation."""
 
 
-def operands(requirement: FormalizedRequirement, known: TickPredicates) -> Iterator[Operand]:
+def operands(requirement: FormalizedRequirement, predicates: TickPredicates) -> Iterator[Operand]:
     """The operands of each part of a sentence; none of a large part."""
     sentence = requirement.sentence
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
     past, kind = Past(), scope.kind if scope else None
-    inside = partial(boolean, expand=past.inside(kind, known.whole.mode))
+    inside = partial(boolean, expand=past.inside(kind, predicates.whole.mode))
     if scope is not None:
         read = partial(boolean, expand=past.alone())
-        yield from _operands("mode", scope.mode, read, known.asks_for_mode)
+        yield from _operands("mode", scope.mode, read, predicates.asks_for_mode)
     if condition is not None:
-        asked = known.asks_for_condition
+        asked = predicates.asks_for_condition
         yield from _operands("condition", condition.expression, inside, asked)
-    yield from _operands("response", sentence.response, inside, known.asks_for_answer)
+    yield from _operands("response", sentence.response, inside, predicates.asks_for_answer)
     if stop is not None:
-        yield from _operands("stop condition", stop, inside, known.asks_for_stop)
+        yield from _operands("stop condition", stop, inside, predicates.asks_for_stop)
 
 
 def _operands(part: str, whole: e.Expression, read: Read, asked: f.Formula) -> Iterator[Operand]:
     if is_large(whole):
         return
-    found = [*dict.fromkeys(_joined(whole))]
-    for each in found:
-        value = read(each)
+    joined = [*dict.fromkeys(_joined(whole))]
+    for operand in joined:
+        value = read(operand)
         name = value.name if isinstance(value, f.Atom) else None
-        changes = f.xor(read(_with(whole, each, value=True)), read(_with(whole, each, value=False)))
+        changes = f.xor(
+            read(_with(whole, operand, value=True)), read(_with(whole, operand, value=False))
+        )
         decides = f.and_(asked, changes)
-        yield Operand(part, each, name, read(whole), decides, alone=len(found) == 1)
+        yield Operand(part, operand, name, read(whole), decides, alone=len(joined) == 1)
 
 
 def _joined(whole: e.Expression) -> Iterator[e.Expression]:
     match whole:
         case e.Not() | e.And() | e.Or() | e.Xor() | e.Implies() | e.Iff():
-            for each in e.children(whole):
-                yield from _joined(each)
+            for child in e.children(whole):
+                yield from _joined(child)
         case e.Truth():
             return
         case _:
@@ -86,7 +88,7 @@ def _with(whole: e.Expression, operand: e.Expression, *, value: bool) -> e.Expre
     """The expression with an operand replaced by a truth value everywhere."""
     match whole:
         case e.Not() | e.And() | e.Or() | e.Xor() | e.Implies() | e.Iff():
-            parts = [_with(each, operand, value=value) for each in e.children(whole)]
+            parts = [_with(child, operand, value=value) for child in e.children(whole)]
             return e.with_children(whole, parts)
         case _:
             return e.Truth(value) if whole == operand else whole

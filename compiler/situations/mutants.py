@@ -69,15 +69,15 @@ def mutants(requirement: FormalizedRequirement) -> tuple[Mutant, ...]:
     Sentences that cannot be formalized are left out.
     """
     seen = {canonical(requirement.written)}
-    found: dict[str, Mutant] = {}
+    by_key: dict[str, Mutant] = {}
     for draft in _drafts(requirement):
         text = canonical(draft.sentence)
         formalized = None if text in seen else _formalized(requirement, draft.sentence)
         seen.add(text)
         if formalized is not None:
-            key = _unique(draft.key, found)
-            found[key] = Mutant(key, draft.words, formalized)
-    return tuple(found.values())
+            key = _unique(draft.key, by_key)
+            by_key[key] = Mutant(key, draft.words, formalized)
+    return tuple(by_key.values())
 
 
 def _unique(key: str, taken: Mapping[str, Mutant]) -> str:
@@ -103,9 +103,9 @@ def _drafts(requirement: FormalizedRequirement) -> Iterator[_Draft]:
     yield from _conditions(sentence)
     yield from _timings(sentence)
     yield from _bounds(requirement)
-    found = [draft for part in _parts(sentence) for draft in _of_part(sentence, *part)]
+    drafts = [draft for part in _parts(sentence) for draft in _of_part(sentence, *part)]
     order = [*OPERATORS]
-    yield from sorted(found, key=lambda draft: order.index(draft.key.partition(":")[0]))
+    yield from sorted(drafts, key=lambda draft: order.index(draft.key.partition(":")[0]))
 
 
 # The template -----------------------------------------------------------------------------------
@@ -205,5 +205,5 @@ def _of_part(sentence: s.Sentence, name: str, part: e.Expression) -> Iterator[_D
 
 def _with(sentence: s.Sentence, name: str, part: e.Expression) -> s.Sentence:
     """The sentence with one part replaced by another expression."""
-    place = {id(each): part if key == name else each for key, each in _parts(sentence)}
-    return s.with_expressions(sentence, lambda each: place[id(each)])
+    place = {id(own_part): part if key == name else own_part for key, own_part in _parts(sentence)}
+    return s.with_expressions(sentence, lambda own_part: place[id(own_part)])

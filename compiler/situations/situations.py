@@ -101,40 +101,44 @@ def situations(requirement: FormalizedRequirement, *, exact: bool = False) -> tu
         exact: whether formulas are exact after a missed deadline, too, for recorded runs
             (`compiler.situations.tick_predicates`); formulas for a search are not.
     """
-    if any(name in LOOK_AHEAD for each in conditions(requirement.sentence) for name in calls(each)):
+    if any(
+        name in LOOK_AHEAD
+        for expression in conditions(requirement.sentence)
+        for name in calls(expression)
+    ):
         return ()
-    known, read = facts(requirement, exact=exact), {*requirement.propositions}
+    predicates, read = facts(requirement, exact=exact), {*requirement.propositions}
     return tuple(
-        each
-        for each in (*_of_time(requirement, known), *_of_operands(requirement, known))
-        if each.formula != f.FALSE and read.issuperset(f.atoms(each.formula))
+        goal
+        for goal in (*_of_time(requirement, predicates), *_of_operands(requirement, predicates))
+        if goal.formula != f.FALSE and read.issuperset(f.atoms(goal.formula))
     )
 
 
-def _of_time(requirement: FormalizedRequirement, known: TickPredicates) -> Iterator[Situation]:
+def _of_time(requirement: FormalizedRequirement, predicates: TickPredicates) -> Iterator[Situation]:
     """The goals about the time of events."""
-    passing = dict([*_of_scope(known), *_of_triggers(known), *of_demand(known)])
-    passing["scope-ends-open"] = _ends_open(known)
-    ending = dict(_of_the_end(known))
-    found, words = {**passing, **ending}, _words(requirement, known)
+    passing = dict([*_of_scope(predicates), *_of_triggers(predicates), *of_demand(predicates)])
+    passing["scope-ends-open"] = _ends_open(predicates)
+    ending = dict(_of_the_end(predicates))
+    rows, words = {**passing, **ending}, _words(requirement, predicates)
     for key, meaning in MEANINGS.items():
-        if key in found:
+        if key in rows:
             shown = meaning.format_map(words)
-            yield Situation(key, shown, found[key], at_end=key in ending)
+            yield Situation(key, shown, rows[key], at_end=key in ending)
 
 
 _Rows = Iterator[tuple[str, f.Formula]]
 
 
-def _of_scope(known: TickPredicates) -> _Rows:
+def _of_scope(predicates: TickPredicates) -> _Rows:
     """The goals about the begin and the recurrence of intervals."""
-    inside, triggered = known.inside, known.triggered
-    scope, mode = known.whole.scope, known.whole.mode
+    inside, triggered = predicates.inside, predicates.triggered
+    scope, mode = predicates.whole.scope, predicates.whole.mode
     match scope:
         case None:
             return
         case s.ScopeKind.IN | s.ScopeKind.NOT_IN | s.ScopeKind.ONLY_IN:
-            ended_before = f.once(known.ended)
+            ended_before = f.once(predicates.ended)
             yield "first-interval", f.and_(triggered, f.not_(ended_before))
             yield "second-interval", f.and_(triggered, ended_before)
         case s.ScopeKind.BEFORE:
@@ -147,11 +151,11 @@ def _of_scope(known: TickPredicates) -> _Rows:
             yield "mode-again", f.and_(f.not_(inside), mode)
         case _:
             assert_never(scope)
-    if known.whole.condition is not None:
-        p = known.whole.trigger
+    if predicates.whole.condition is not None:
+        p = predicates.whole.trigger
         yield "condition-outside", f.and_(p, f.not_(inside))
         if not _begins_with_run(scope):
-            yield "condition-across-entry", f.and_(known.stage.left, p, f.previous(p))
+            yield "condition-across-entry", f.and_(predicates.stage.left, p, f.previous(p))
 
 
 def _begins_with_run(scope: s.ScopeKind) -> bool:
@@ -167,21 +171,23 @@ def _begins_with_run(scope: s.ScopeKind) -> bool:
             assert_never(scope)
 
 
-def _of_triggers(known: TickPredicates) -> _Rows:
+def _of_triggers(predicates: TickPredicates) -> _Rows:
     """The goals about first and repeated triggers."""
-    triggered = known.triggered
-    scope, each = known.whole.scope, known.whole.condition is None
-    if not (each and (scope is None or _begins_with_run(scope))):  # else each first one does
+    triggered = predicates.triggered
+    scope, is_unconditional = predicates.whole.scope, predicates.whole.condition is None
+    if not (
+        is_unconditional and (scope is None or _begins_with_run(scope))
+    ):  # else each first one does
         yield "triggered-at-start", f.and_(f.FIRST, triggered)
-    if each:
+    if is_unconditional:
         return
-    p = known.whole.trigger
-    yield "triggered-later", f.and_(triggered, f.not_(known.stage.left))
-    yield "triggered-while-open", f.and_(triggered, known.was_open)
+    p = predicates.whole.trigger
+    yield "triggered-later", f.and_(triggered, f.not_(predicates.stage.left))
+    yield "triggered-while-open", f.and_(triggered, predicates.was_open)
     yield "condition-stays", f.and_(p, f.previous(triggered))
-    if not _lasts(known.demand.kind):
+    if not _lasts(predicates.demand.kind):
         before = f.previous(f.once(triggered))
-        yield "triggered-again", f.and_(triggered, before, f.not_(known.was_open))
+        yield "triggered-again", f.and_(triggered, before, f.not_(predicates.was_open))
 
 
 def _lasts(kind: Kind) -> bool:
@@ -197,38 +203,40 @@ def _lasts(kind: Kind) -> bool:
             assert_never(kind)
 
 
-def _ends_open(known: TickPredicates) -> f.Formula:
+def _ends_open(predicates: TickPredicates) -> f.Formula:
     """Formula: the interval is over, and its end decided or cancelled an open demand."""
-    if Trait.LAST in TRAITS[known.demand.kind]:
+    if Trait.LAST in TRAITS[predicates.demand.kind]:
         return f.FALSE  # it says already which last ticks there are
-    return f.and_(known.ended, f.previous(known.open))
+    return f.and_(predicates.ended, f.previous(predicates.open))
 
 
-def _of_the_end(known: TickPredicates) -> _Rows:
+def _of_the_end(predicates: TickPredicates) -> _Rows:
     """The goals about the last tick of the run."""
-    if known.stage.left != f.FIRST:  # else the first tick lies in it
-        yield "never-enforced", f.not_(f.once(known.inside))
-    if known.whole.condition is not None:
-        yield "never-triggered", f.not_(f.once(known.triggered))
-    if Trait.LAST in TRAITS[known.demand.kind]:
-        yield "run-ends-answered", f.and_(known.waiting, known.answer)
-        yield "run-ends-missed", f.and_(known.waiting, f.not_(known.answer))
-    elif not _lasts(known.demand.kind):
-        yield "run-ends-open", known.open
+    if predicates.stage.left != f.FIRST:  # else the first tick lies in it
+        yield "never-enforced", f.not_(f.once(predicates.inside))
+    if predicates.whole.condition is not None:
+        yield "never-triggered", f.not_(f.once(predicates.triggered))
+    if Trait.LAST in TRAITS[predicates.demand.kind]:
+        yield "run-ends-answered", f.and_(predicates.waiting, predicates.answer)
+        yield "run-ends-missed", f.and_(predicates.waiting, f.not_(predicates.answer))
+    elif not _lasts(predicates.demand.kind):
+        yield "run-ends-open", predicates.open
 
 
 # What decides -----------------------------------------------------------------------------------
 
 
-def _of_operands(requirement: FormalizedRequirement, known: TickPredicates) -> Iterator[Situation]:
+def _of_operands(
+    requirement: FormalizedRequirement, predicates: TickPredicates
+) -> Iterator[Situation]:
     """The goals about single operands, in the order of `MEANINGS`."""
-    found = [
-        each
-        for operand in operands(requirement, known)
-        for each in _of_operand(requirement, operand)
+    goals = [
+        goal
+        for operand in operands(requirement, predicates)
+        for goal in _of_operand(requirement, operand)
     ]
     order = [*MEANINGS]
-    yield from sorted(found, key=lambda each: order.index(each.key.partition(":")[0]))
+    yield from sorted(goals, key=lambda goal: order.index(goal.key.partition(":")[0]))
 
 
 def _of_operand(requirement: FormalizedRequirement, operand: Operand) -> Iterator[Situation]:
@@ -252,9 +260,9 @@ def _of_operand(requirement: FormalizedRequirement, operand: Operand) -> Iterato
         yield situation("alone-true", f.and_(operand.decides, operand.whole))
         yield situation("alone-false", f.and_(operand.decides, f.not_(operand.whole)))
     for comparison, key, place in _places(stated):
-        found = situation(key, operand.decides, place)
+        goal = situation(key, operand.decides, place)
         several = "" if comparison == shown else f":{_short(comparison)}"
-        yield replace(found, key=f"{found.key}{several}")
+        yield replace(goal, key=f"{goal.key}{several}")
     if operand.atom is not None:
         yield situation("unknown", operand.decides, unknown=operand.atom)
 
@@ -277,7 +285,7 @@ def _short(part: e.Expression) -> str:
 # Words ------------------------------------------------------------------------------------------
 
 
-def _words(requirement: FormalizedRequirement, known: TickPredicates) -> Mapping[str, str]:
+def _words(requirement: FormalizedRequirement, predicates: TickPredicates) -> Mapping[str, str]:
     """The words for the placeholders in `MEANINGS`."""
     sentence = requirement.written
     stop, response = s.stop(sentence.timing), expression(sentence.response)
@@ -287,9 +295,14 @@ def _words(requirement: FormalizedRequirement, known: TickPredicates) -> Mapping
         "stop": "" if stop is None else expression(stop),
     }
     given = (f"`{response}`", f"no `{response}`")
-    answer, none = reversed(given) if _is_negative(sentence, known.demand.kind) else given
+    answer, none = reversed(given) if _is_negative(sentence, predicates.demand.kind) else given
     quoted = {name: f"`{text}`" for name, text in texts.items()}
-    return {**quoted, "answer": answer, "none": none, "last": _last(sentence, known.demand.kind)}
+    return {
+        **quoted,
+        "answer": answer,
+        "none": none,
+        "last": _last(sentence, predicates.demand.kind),
+    }
 
 
 def _is_negative(sentence: s.Sentence, kind: Kind) -> bool:

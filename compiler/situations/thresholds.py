@@ -30,10 +30,10 @@ class Written:
         digits = f"{abs(value):f}"
         match unsigned:
             case e.Number():
-                found: e.Expression = e.Number(digits)
+                moved_number: e.Expression = e.Number(digits)
             case e.Quantity(_, unit):
-                found = e.Quantity(digits, unit)
-        return e.Negation(found) if value < 0 else found
+                moved_number = e.Quantity(digits, unit)
+        return e.Negation(moved_number) if value < 0 else moved_number
 
 
 def written(side: e.Expression) -> Written | None:

@@ -162,7 +162,7 @@ def _ordered(
     entries = [*(requirement.entry for requirement in requirements), *options.free_texts]
     files = list(dict.fromkeys(entry.wording.source.name for entry in entries))
     return sorted(
-        entries, key=lambda each: (files.index(each.wording.source.name), each.wording.start)
+        entries, key=lambda entry: (files.index(entry.wording.source.name), entry.wording.start)
     )
 
 
@@ -295,7 +295,7 @@ def variables(
         project, component = variable.fret.get("project", ""), variable.component
         key = (project, component, name)
         own.add(key)
-        if not any(_is_of(key, each) for each in named):
+        if not any(_is_of(key, identity) for identity in named):
             records[key] = _variable(variable, project, component, name)
     return _with_kept(records, own, declarations.fret if declarations else ())
 
@@ -316,7 +316,7 @@ def _glossary(
         yield from requirements[0].glossary.items() if requirements else ()
         return
     for name, variable in declarations.variables.items():
-        yield from ((name, each) for each in (variable, *variable.of.values()))
+        yield from ((name, declared) for declared in (variable, *variable.of.values()))
 
 
 def _with_kept(
@@ -325,17 +325,17 @@ def _with_kept(
     kept: Sequence[Mapping[str, Any]],
 ) -> list[dict[str, Any]]:
     """All records; FRET's kept record of a variable has priority."""
-    found = dict(records)
+    merged = dict(records)
     more: list[dict[str, Any]] = []
-    for each in kept:
+    for record in kept:
         fields = ("project", "component_name", "variable_name")
-        project, component, name = (str(each.get(field, "")) for field in fields)
+        project, component, name = (str(record.get(field, "")) for field in fields)
         key = (project, component, unquoted(name))
-        if key in records and key not in own and found[key] is records[key]:
-            found[key] = {**each, "reqs": records[key]["reqs"]}
+        if key in records and key not in own and merged[key] is records[key]:
+            merged[key] = {**record, "reqs": records[key]["reqs"]}
         else:
-            more.append(dict(each))
-    return [*found.values(), *more]
+            more.append(dict(record))
+    return [*merged.values(), *more]
 
 
 def _variable(glossary: Variable | None, project: str, component: str, name: str) -> dict[str, Any]:

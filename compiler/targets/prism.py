@@ -117,7 +117,9 @@ def _files(requirement: FormalizedRequirement) -> Iterator[Artifact]:
     values = {
         "id": requirement.id,
         "identifier": next(
-            each for each in numbered(identifier(requirement)) if each not in names.values()
+            candidate
+            for candidate in numbered(identifier(requirement))
+            if candidate not in names.values()
         ),  # PRISM reads a name in quotes as a property before it takes it for a label
         "sentence": wording(requirement.entry),
         "inputs": inputs,

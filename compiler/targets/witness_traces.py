@@ -46,15 +46,15 @@ def words(requirement: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
     atoms = atoms_of(requirement.sentence)
     if temporal_predicate(requirement.sentence) is not None or len(atoms) > MOST_ATOMS:
         return ()
-    known = meanings(requirement.sentence, atoms)
-    letters = {letter: values for values, letter in reversed([*known.items()])}
+    letter_of = meanings(requirement.sentence, atoms)
+    letters = {letter: values for values, letter in reversed([*letter_of.items()])}
     try:
         counted = explore(
             template(requirement.sentence, requirement.ticks or 0), letters, _MOST_STATES
         )
     except TooManyStatesError:
         return ()
-    valuations = [letters[each] for each in counted.letters]
+    valuations = [letters[letter] for letter in counted.letters]
     return tuple(
         WitnessTrace(
             name, tuple(_ticks(counted, [(valuations[place], place) for place in run], atoms))
@@ -65,25 +65,25 @@ def words(requirement: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
 
 def _runs(counted: Automaton) -> Iterator[tuple[str, tuple[int, ...]]]:
     """For each verdict the indices of the letters of a shortest run, by breadth first search."""
-    runs: dict[int, tuple[int, ...]] = {0: ()}
+    run_to: dict[int, tuple[int, ...]] = {0: ()}
     broken: tuple[int, ...] | None = None
     for state in range(len(counted.states)):  # in the order in which they were found
         for place, after in enumerate(counted.moves[state]):
-            run = (*runs[state], place)
+            run = (*run_to[state], place)
             if after != BROKEN:
-                runs.setdefault(after, run)
+                run_to.setdefault(after, run)
             elif broken is None or len(run) < len(broken):
                 broken = run
     yield from ([("soonest_breach", broken)] if broken else [])
-    told: dict[tuple[str, bool], tuple[int, ...]] = {}
-    for state, run in runs.items():
+    runs: dict[tuple[str, bool], tuple[int, ...]] = {}
+    for state, run in run_to.items():
         if run:
             finite = accepts(counted.template, counted.states[state])
-            told.setdefault((counted.verdicts[state], finite), run)
-    for (verdict, finite), run in told.items():
+            runs.setdefault((counted.verdicts[state], finite), run)
+    for (verdict, finite), run in runs.items():
         yield f"soonest_{verdict}{'' if finite else '_unmet'}", run
-    latest = max(runs.values(), key=len)
-    if latest not in told.values():
+    latest = max(run_to.values(), key=len)
+    if latest not in runs.values():
         yield "latest_state", latest
 
 
@@ -91,14 +91,14 @@ def _ticks(
     counted: Automaton, run: Sequence[tuple[tuple[bool, ...], int]], atoms: Sequence[str]
 ) -> Iterator[RepeatedTick]:
     """The run with the verdicts after each of its ticks."""
-    state, told = 0, list[tuple[tuple[bool, ...], str, bool]]()
+    state, ticks = 0, list[tuple[tuple[bool, ...], str, bool]]()
     for values, place in run:
         state = counted.moves[state][place]
         if state == BROKEN:
-            told.append((values, "violated", False))
+            ticks.append((values, "violated", False))
         else:
             finite = accepts(counted.template, counted.states[state])
-            told.append((values, counted.verdicts[state], finite))
-    for (values, verdict, finite), some in groupby(told):
+            ticks.append((values, counted.verdicts[state], finite))
+    for (values, verdict, finite), repeated in groupby(ticks):
         named = dict(zip(atoms, values, strict=True))
-        yield RepeatedTick(len([*some]), named, verdict, finite)
+        yield RepeatedTick(len([*repeated]), named, verdict, finite)

@@ -85,25 +85,25 @@ class Reals:
 
     def answer(self, valuation: Mapping[str, bool | None]) -> Answer:
         """Whether numbers exist for the valuation; atoms that are not comparisons are free."""
-        for each in self._excluded:
-            if all(valuation.get(name) is value for name, value in each):
-                return Impossible(each)
+        for impossible in self._excluded:
+            if all(valuation.get(name) is value for name, value in impossible):
+                return Impossible(impossible)
         literals = tuple(
             (name, value) for name in self._flags if (value := valuation.get(name)) is not None
         )
-        found = self._ask(literals)
-        if found == z3.unsat:
+        result = self._ask(literals)
+        if result == z3.unsat:
             return self._impossible(literals)
-        if found == z3.unknown or any(valuation.get(name) is not None for name in self._unread):
+        if result == z3.unknown or any(valuation.get(name) is not None for name in self._unread):
             return Undecided()
         return Possible(dict(self._numbers()))
 
     def _impossible(self, literals: Exclusion) -> Impossible:
         """The impossible literals, reduced to a minimal set."""
-        core = {str(each) for each in self._solver.unsat_core()}
-        needed = tuple(each for each in literals if str(self._literal(each)) in core)
+        core = {str(assumption) for assumption in self._solver.unsat_core()}
+        needed = tuple(literal for literal in literals if str(self._literal(literal)) in core)
         for literal in needed:
-            less = tuple(each for each in needed if each != literal)
+            less = tuple(other for other in needed if other != literal)
             if self._ask(less) == z3.unsat:
                 needed = less
         self._excluded.append(needed)
@@ -112,9 +112,9 @@ class Reals:
     def _ask(self, literals: Exclusion) -> Term:
         if self._left <= 0:
             return z3.unknown
-        found = self._solver.check([self._literal(each) for each in literals])
-        self._left -= _UNANSWERED if found == z3.unknown else 1
-        return found
+        status = self._solver.check([self._literal(literal) for literal in literals])
+        self._left -= _UNANSWERED if status == z3.unknown else 1
+        return status
 
     def _literal(self, literal: tuple[str, bool]) -> Term:
         name, value = literal
@@ -130,9 +130,9 @@ class Reals:
 
 def _meets_others(name: str, compared: Mapping[str, e.Comparison]) -> bool:
     """Whether another comparison reads the same variables; if not, the comparison is free."""
-    own = {each.id for each in e.names(compared[name])}
+    own = {name_node.id for name_node in e.names(compared[name])}
     return any(
-        not own.isdisjoint(each.id for each in e.names(part))
+        not own.isdisjoint(name_node.id for name_node in e.names(part))
         for other, part in compared.items()
         if other != name
     )
@@ -159,8 +159,8 @@ NOT_DECIDED = (
 
 def only_rounded(exclusion: Exclusion) -> str:
     """The note for a trace that no exact numbers make."""
-    made = exclusion_in_words(exclusion)
-    return f"in exact arithmetic no numbers make {made}; rounded floats may"
+    literals = exclusion_in_words(exclusion)
+    return f"in exact arithmetic no numbers make {literals}; rounded floats may"
 
 
 def by_numbers(
@@ -189,7 +189,7 @@ def by_numbers(
     for _ in range(MOST_ROUNDS):
         word: Sequence[Sequence[bool | None]] = shown.word
         answers = [reals.answer(dict(zip(atoms, row, strict=False))) for row in word]
-        new = [each.exclusion for each in answers if isinstance(each, Impossible)]
+        new = [answer.exclusion for answer in answers if isinstance(answer, Impossible)]
         if not new:
             return shown, NOT_DECIDED if Undecided() in answers else ""
         excluded += dict.fromkeys(new)

@@ -59,9 +59,9 @@ class Terms:
             ).items()
         }
         self._types = {
-            name: each.type
+            name: declared.type
             for requirement in requirements
-            for name, each in requirement.glossary.items()
+            for name, declared in requirement.glossary.items()
         }
         self._words: dict[str, int] = {}
         self.variables: dict[str, Term] = {}
@@ -70,18 +70,18 @@ class Terms:
         """The variables that stand for values at the tick before."""
 
     @with_recursion_limit
-    def holds(self, part: e.Expression, value: bool, known: Callable[[Term], Term]) -> Term:
+    def holds(self, part: e.Expression, value: bool, all_known: Callable[[Term], Term]) -> Term:
         """The formula for a part being certainly true, or certainly false, in Kleene's logic.
 
         Args:
             part: a Boolean expression.
             value: the truth value.
-            known: the formula for all variables of a comparison being known.
+            all_known: the formula for all variables of a comparison being known.
 
         Raises:
             NoTermError: the part is not linear, or not a comparison of numbers.
         """
-        return self._holds(part, value, known, is_base=self._meets_units(part))
+        return self._holds(part, value, all_known, is_base=self._meets_units(part))
 
     def domain(self, name: str) -> Term:
         """The formula for the domain of a variable."""
@@ -132,10 +132,10 @@ class Terms:
     # Truth values
 
     def _holds(
-        self, part: e.Expression, value: bool, known: Callable[[Term], Term], *, is_base: bool
+        self, part: e.Expression, value: bool, all_known: Callable[[Term], Term], *, is_base: bool
     ) -> Term:
-        def read(each: e.Expression, is_so: bool) -> Term:
-            return self._holds(each, is_so, known, is_base=is_base)
+        def read(operand: e.Expression, is_so: bool) -> Term:
+            return self._holds(operand, is_so, all_known, is_base=is_base)
 
         match part:
             case e.Truth(is_true):
@@ -143,13 +143,13 @@ class Terms:
             case e.Not(arg):
                 return read(arg, not value)
             case e.And(args):
-                return (z3.And if value else z3.Or)([read(each, value) for each in args])
+                return (z3.And if value else z3.Or)([read(operand, value) for operand in args])
             case e.Or(args):
-                return (z3.Or if value else z3.And)([read(each, value) for each in args])
+                return (z3.Or if value else z3.And)([read(operand, value) for operand in args])
             case e.Comparison(op, left, right):
                 a, b = (self._number(side, is_base=is_base) for side in (left, right))
                 compared = e.COMPARE[op](a, b)
-                return z3.And(compared if value else z3.Not(compared), known(compared))
+                return z3.And(compared if value else z3.Not(compared), all_known(compared))
             case _:
                 raise NoTermError("is not a comparison of numbers")
 
@@ -159,8 +159,8 @@ class Terms:
         if not any(e.names(part)) and not isinstance(part, e.Word | e.Call):
             return _constant(part)
 
-        def read(each: e.Expression) -> Term:
-            return self._number(each, is_base=is_base)
+        def read(operand: e.Expression) -> Term:
+            return self._number(operand, is_base=is_base)
 
         match part:
             case e.Word(text):
@@ -174,7 +174,7 @@ class Terms:
             case e.Call("preInt" | "preReal", (first, e.Name(id))) if not is_base:
                 return self._before(printed(part), read(first), id)
             case e.Call(name, args):
-                return _called(name, [read(each) for each in args])
+                return _called(name, [read(operand) for operand in args])
             case _:
                 raise NoTermError("is not a comparison of numbers")
 
@@ -184,18 +184,18 @@ class Terms:
         if now.is_int() and first.is_real():
             raise NoTermError("begins with a number that is not whole")
         first = z3.ToReal(first) if now.is_real() and first.is_int() else first
-        made = z3.Int(name) if now.is_int() else z3.Real(name)
+        constant = z3.Int(name) if now.is_int() else z3.Real(name)
         self.before[name] = Before(of, first)
-        return self.variables.setdefault(name, made)
+        return self.variables.setdefault(name, constant)
 
     def _variable(self, name: str, *, is_base: bool) -> Term:
-        signal, known = self._signals.get(name), self._kind(name)
+        signal, kind = self._signals.get(name), self._kind(name)
         is_word = signal is not None and bool(signal.values)
-        if known is Kind.TRUTH:
+        if kind is Kind.TRUTH:
             raise NoTermError("compares a truth value with a number")
-        whole = is_word or known in (Kind.WHOLE, Kind.NATURAL) or self._range(name) is not None
-        made = z3.Int(name) if whole else z3.Real(name)
-        variable = self.variables.setdefault(name, made)
+        whole = is_word or kind in (Kind.WHOLE, Kind.NATURAL) or self._range(name) is not None
+        constant = z3.Int(name) if whole else z3.Real(name)
+        variable = self.variables.setdefault(name, constant)
         if not is_base or is_word:
             return variable
         scale = self._scale(name)
@@ -236,9 +236,9 @@ def _exact(value: Fraction) -> Term:
 
 def _constant(part: e.Expression) -> Term:
     try:
-        for each in e.parts(part):
-            if isinstance(each, e.Number | e.Quantity):
-                units.number(each.digits)  # it has no more digits than can be computed with
+        for node in e.parts(part):
+            if isinstance(node, e.Number | e.Quantity):
+                units.number(node.digits)  # it has no more digits than can be computed with
         value = constants.number(part)
     except ValueError:
         value = None

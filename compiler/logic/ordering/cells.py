@@ -25,8 +25,8 @@ def exclusions(cells: Iterable[str], steps: int) -> tuple[Exclusion, ...]:
         and reduces each impossible valuation to its last needed literals.
     """
     leaves = sorted({*cells})
-    found = sorted(_Levels(leaves, steps).found()) if leaves else []
-    return tuple(exclusion for _, exclusion in found)
+    ordered = sorted(_Levels(leaves, steps).found()) if leaves else []
+    return tuple(exclusion for _, exclusion in ordered)
 
 
 _Place = tuple[int, int, int]
@@ -45,8 +45,8 @@ class _Levels:
         self._true = [int("".join(row)[::-1], 2) for row in zip(*leaves, strict=True)]
         self._first_differences = [0] * len(self._true)
         numbers = [int(leaf, 2) for leaf in leaves]
-        for i, (one, next_) in enumerate(pairwise(numbers), start=1):
-            self._first_differences[len(self._true) - (one ^ next_).bit_length()] |= 1 << i
+        for i, (number, next_) in enumerate(pairwise(numbers), start=1):
+            self._first_differences[len(self._true) - (number ^ next_).bit_length()] |= 1 << i
         self._left = steps
 
     def found(self) -> Iterator[tuple[_Place, Exclusion]]:
@@ -84,14 +84,14 @@ class _Levels:
 
 def _around(marks: int, starts: int) -> int:
     """All cells of the classes that contain a marked cell."""
-    found = 0
+    surrounding = 0
     while marks:
         mark = marks & -marks
         first = (starts & (mark - 1)).bit_length() - 1
         after = _next(starts, mark)
-        found |= (1 << after) - (1 << first)
-        marks &= ~found
-    return found
+        surrounding |= (1 << after) - (1 << first)
+        marks &= ~surrounding
+    return surrounding
 
 
 def _next(starts: int, mark: int) -> int:

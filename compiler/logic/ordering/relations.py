@@ -63,7 +63,9 @@ class Relation:
         for point in (self.left, self.right):
             if isinstance(point, Term) and not is_word(point):
                 yield point
-                yield from (each for each in (of_magnitude(point),) if each is not None)
+                yield from (
+                    magnitude for magnitude in (of_magnitude(point),) if magnitude is not None
+                )
 
 
 def relation_of(comparison: e.Comparison, scales: Mapping[str, Fraction]) -> Relation:

@@ -36,8 +36,8 @@ def agent(requirement: FormalizedRequirement) -> str:
 def definitions(requirement: FormalizedRequirement) -> Mapping[str, str]:
     """The meaning of each name that differs from the user's."""
     component, own = requirement.sentence.component, agent(requirement)
-    found = meanings(requirement, spelt(requirement))
-    return found if own == component else {**found, own: f"the agent `{component}`"}
+    by_name = meanings(requirement, spelt(requirement))
+    return by_name if own == component else {**by_name, own: f"the agent `{component}`"}
 
 
 def everything(requirement: FormalizedRequirement) -> Mapping[str, str]:

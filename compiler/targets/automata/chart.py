@@ -79,8 +79,8 @@ class Chart:
         chosen = set(letters)
         places = tuple(self.inputs)
 
-        def vectors(some: Iterable[Letter]) -> list[tuple[bool, ...]]:
-            return sorted(tuple(letter[place] for place in places) for letter in some)
+        def vectors(chosen_letters: Iterable[Letter]) -> list[tuple[bool, ...]]:
+            return sorted(tuple(letter[place] for place in places) for letter in chosen_letters)
 
         terms = cover(vectors(chosen), vectors(set(self.letters) - chosen))
         return [{places[i]: value for i, value in term.items()} for term in terms]

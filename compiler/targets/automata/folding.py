@@ -149,17 +149,19 @@ class _Folding:
     def _condition(self, chosen: Sequence[int], members: Sequence[int]) -> str:
         if len(chosen) == len(members):
             return ""
-        some = sorted(k for index in chosen if (k := self._count(index)) is not None)
+        counts = sorted(k for index in chosen if (k := self._count(index)) is not None)
         every = sorted(k for index in members if (k := self._count(index)) is not None)
         if self.registers:
-            due = {k >> self.ticks & 1 for k in some}
+            due = {k >> self.ticks & 1 for k in counts}
             assert len(due) == 1, "the trigger of n + 1 ticks ago decides"
             word = "an" if due == {1} else "no"
             return f"{word} unanswered trigger {_ago(self.ticks + 1)}"
-        assert some in (every[: len(some)], every[-len(some) :]), "one end of the count decides"
-        if len(some) == 1:
-            return f"k = {some[0]}"
-        return f"k <= {some[-1]}" if some[0] == every[0] else f"k >= {some[0]}"
+        assert counts in (every[: len(counts)], every[-len(counts) :]), (
+            "one end of the count decides"
+        )
+        if len(counts) == 1:
+            return f"k = {counts[0]}"
+        return f"k <= {counts[-1]}" if counts[0] == every[0] else f"k >= {counts[0]}"
 
     def _change(self, moves: Iterable[tuple[int, int]]) -> str:
         if self.registers:

@@ -74,7 +74,7 @@ def _text(requirement: FormalizedRequirement) -> str:
         id=requirement.id,
         sentence=wording(requirement.entry),
         variables=[(names[name], meanings.get(name, name)) for name in names],
-        impossible=[_together(each, names) for each in excluded(requirement)],
+        impossible=[_together(exclusion, names) for exclusion in excluded(requirement)],
         instance=instance,
         module_name=monitor_name,
         module=module,

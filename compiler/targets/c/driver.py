@@ -54,7 +54,7 @@ def driver(name: str, base: str, requirements: Sequence[FormalizedRequirement]) 
         requirements: the requirements, in the order of outcomes.
     """
     printer = printed(name, requirements)
-    made, ranges = printer.rail, [*_ranges(printer)]
+    program, ranges = printer.rail, [*_ranges(printer)]
     ends = {-1, 0, 1, *(end for cell in ranges for end in (cell.least, cell.most))}
     text = render(
         "c/driver.c.j2",
@@ -63,9 +63,9 @@ def driver(name: str, base: str, requirements: Sequence[FormalizedRequirement]) 
         inputs=[*printer.names.values()],
         ranges=ranges,
         ends=sorted(ends),
-        readings=[_told(each) for each in made.readings],
+        readings=[_told(reading) for reading in program.readings],
     )
-    words = (-(-cell.length // 32) for cell in made.cells if isinstance(cell, Ring))
+    words = (-(-cell.length // 32) for cell in program.cells if isinstance(cell, Ring))
     return Driver(text, max(words, default=0))
 
 

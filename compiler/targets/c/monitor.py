@@ -114,7 +114,7 @@ def _files(
     """The header and the source of one monitor for all of the requirements."""
     printer = printed(name, requirements)
     meanings = {
-        each: text for requirement in requirements for each, text in in_words(requirement).items()
+        atom: text for requirement in requirements for atom, text in in_words(requirement).items()
     }
     values = _values(printer) | {"base": base, "header": f"{name}.h"}
     values["title"] = ", ".join(requirement.id for requirement in requirements)
@@ -127,7 +127,7 @@ def _files(
         formalized=[described(requirement) for requirement in requirements],
         tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         version=__version__,
-        inputs=[{"name": own, "text": meanings.get(each, each)} for each, own in inputs],
+        inputs=[{"name": own, "text": meanings.get(name, name)} for name, own in inputs],
         bytes=2 * printer.bytes,
         operations=_operations(source, len(requirements)),
     )
@@ -154,9 +154,11 @@ class Joined:
 def joined(requirements: Sequence[FormalizedRequirement]) -> Joined:
     """The interface of `emit` with `one_file`, for requirements with bindings."""
     printer = printed("monitors", requirements)
-    found = functions(requirements, printer.names, signals.LANGUAGE, C)
-    assert found is not None, "there are bindings"
-    return Joined(printer.names, tuple(each.prefix for each in printer.rail.readings), found)
+    sample_functions = functions(requirements, printer.names, signals.LANGUAGE, C)
+    assert sample_functions is not None, "there are bindings"
+    return Joined(
+        printer.names, tuple(reading.prefix for reading in printer.rail.readings), sample_functions
+    )
 
 
 def printed(name: str, requirements: Sequence[FormalizedRequirement]) -> Printer:
@@ -168,38 +170,40 @@ def printed(name: str, requirements: Sequence[FormalizedRequirement]) -> Printer
     """
     prefixes = prefixes_of([requirement.id for requirement in requirements])
     members = legal_names(prefixes, C | {signals.guard(name)}, names=prefixes)
-    made = rail(
+    cells = rail(
         program({requirement.id: requirement.watch for requirement in requirements}), members
     )
-    return Printer.of(made, _names(name, requirements))
+    return Printer.of(cells, _names(name, requirements))
 
 
 def _names(name: str, requirements: Sequence[FormalizedRequirement]) -> Mapping[str, str]:
     """Proposition → the member of the inputs."""
-    propositions = (each for requirement in requirements for each in requirement.watched)
+    propositions = (
+        proposition for requirement in requirements for proposition in requirement.watched
+    )
     spoken = {
-        each: word
+        proposition: word
         for requirement in requirements
-        for each, word in comparison_names(requirement).items()
+        for proposition, word in comparison_names(requirement).items()
     }
     return legal_names(propositions, C | {signals.guard(name)}, names=spoken)
 
 
 def _values(printer: Printer) -> dict[str, Any]:
     """The variables of both templates."""
-    made = printer.rail
+    program = printer.rail
     return {
         "members": printer.members(),
         "literals": [*printer.literals()],
         "rings": [
             {"name": cell.name, "words": -(-cell.length // 32)}
-            for cell in made.cells
+            for cell in program.cells
             if isinstance(cell, Ring)
         ],
         "stages": [
-            {"comment": each.comment, "lines": [*printer.lines(each)]} for each in made.stages
+            {"comment": stage.comment, "lines": [*printer.lines(stage)]} for stage in program.stages
         ],
-        "readings": [_reading(each, printer) for each in made.readings],
+        "readings": [_reading(reading, printer) for reading in program.readings],
     }
 
 

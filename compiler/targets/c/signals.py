@@ -35,11 +35,11 @@ def files(
         names: the monitor's input of each proposition.
         reserved: reserved names.
     """
-    found = functions(requirements, names, LANGUAGE, reserved)
-    if found is None:
+    sample_functions = functions(requirements, names, LANGUAGE, reserved)
+    if sample_functions is None:
         return ()
     file = file_name(name)
-    common = {"functions": found, "base": base, "header": f"{file}.h"}
+    common = {"functions": sample_functions, "base": base, "header": f"{file}.h"}
     source = render("c/signals.c.j2", **common, double=_double, letters=letters)
     header = render(
         "c/signals.h.j2",
@@ -72,15 +72,15 @@ def _fixed(value: Fraction) -> str:
 
 
 def _chosen(function: str, number: str, value: Fraction) -> str:
-    found = encode_constant(value)
-    single = f"{_double(found.single)}, {str(found.is_single).lower()}"
-    return f"fretc_{function}_with({number}, {single}, {_double(found.double)})"
+    encodings = encode_constant(value)
+    single = f"{_double(encodings.single)}, {str(encodings.is_single).lower()}"
+    return f"fretc_{function}_with({number}, {single}, {_double(encodings.double)})"
 
 
 def _compared(number: str, sign: str, value: Fraction) -> str:
-    found = encode_constant(value, sign)
-    beside = ", ".join(map(_double, (found.single, found.double, found.exact)))
-    whole = f"UINT64_C({found.magnitude})"
+    encodings = encode_constant(value, sign)
+    beside = ", ".join(map(_double, (encodings.single, encodings.double, encodings.exact)))
+    whole = f"UINT64_C({encodings.magnitude})"
     return f"fretc_compared_with({number}, FRETC_{_SIGNS[sign]}, {beside}, {whole})"
 
 

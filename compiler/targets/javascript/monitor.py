@@ -58,15 +58,15 @@ def text(*requirements: FormalizedRequirement) -> str:
     Args:
         requirements: at least one, each with an id of its own, and all on one clock.
     """
-    found = body(*requirements)
+    code = body(*requirements)
     return render(
         "js/monitor.mjs.j2",
         title=", ".join(requirement.id for requirement in requirements),
         version=__version__,
         formalized=[described(requirement) for requirement in requirements],
         tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
-        body=found.text,
-        exports=found.exports,
+        body=code.text,
+        exports=code.exports,
     )
 
 
@@ -90,32 +90,41 @@ def body(*requirements: FormalizedRequirement) -> Body:
     compared = front(requirements, propositions)
     inputs = compared.inputs if compared else {}
     names = legal_names((*propositions, *inputs), ())
-    made = program({requirement.id: requirement.watch for requirement in requirements})
-    printer = Printer.of(made, names)
+    monitor_program = program({requirement.id: requirement.watch for requirement in requirements})
+    printer = Printer.of(monitor_program, names)
     lines = _Front.of(compared, propositions, names) if compared else None
     written = render(
         "js/body.js.j2",
         formalized=[described(requirement) for requirement in requirements],
         propositions=propositions,
         variables=[
-            {"name": name, "variable": f"v_{names[name]}", "kind": each.kind, "words": each.words}
-            | {"infinite": each.infinite}
-            for name, each in inputs.items()
+            {
+                "name": name,
+                "variable": f"v_{names[name]}",
+                "kind": variable.kind,
+                "words": variable.words,
+            }
+            | {"infinite": variable.infinite}
+            for name, variable in inputs.items()
         ]
         or [{"name": name, "kind": TRUTH, "words": ()} for name in propositions],
         cells=[
             {"name": c.name, "comment": c.comment, "initial": printer.initial(c)}
-            for c in made.cells
+            for c in monitor_program.cells
         ],
         literals=[(n, propositions.index(p), positive) for n, p, positive in printer.literals()],
         blocks=[
             {"comment": block.comment, "lines": [*printer.lines(block)]}
-            for block in made.blocks
+            for block in monitor_program.blocks
             if block.instructions
         ],
         requirements=[
-            {"id": each.id, "signals": printer.signals(each), "renewed": each.renewed}
-            for each in made.requirements
+            {
+                "id": requirement.id,
+                "signals": printer.signals(requirement),
+                "renewed": requirement.renewed,
+            }
+            for requirement in monitor_program.requirements
         ],
         front=lines,
         kernel=render("js/kernel.js.j2"),
@@ -143,7 +152,9 @@ class _Front:
         constants = Constants()
         variables = {name: f"v_{names[name]}" for name in compared.inputs}
         writer = Writer(variables, Spelling(constants.name, scale, truth))
-        texts = {name: writer.comparison(each) for name, each in compared.comparisons.items()}
+        texts = {
+            name: writer.comparison(comparison) for name, comparison in compared.comparisons.items()
+        }
         row = tuple((name, texts.get(name) or variables[name]) for name in propositions)
         earlier = tuple((name, *both) for both, name in writer.earlier.items())
         return cls(constants.lines(), row, earlier)

@@ -70,13 +70,14 @@ class Printer:
     def signals(self, requirement: Requirement) -> dict[str, str]:
         """The signals of a requirement."""
         return {
-            name: self._value(each).text for name, each in requirement.signals._asdict().items()
+            name: self._value(signal_value).text
+            for name, signal_value in requirement.signals._asdict().items()
         }
 
     def lines(self, block: Block) -> Iterator[str]:
         """The statements of a block at one tick."""
-        for each in block.instructions:
-            yield from self._statement(each)
+        for instruction in block.instructions:
+            yield from self._statement(instruction)
 
     def _statement(self, instruction: Instruction) -> Iterator[str]:
         match instruction:
@@ -128,9 +129,9 @@ class Printer:
             case Not(negated):
                 return _Text(f"!{self._value(negated).at_least(_ATOMIC)}")
             case And(values):
-                texts = (self._value(each).at_least(_AND) for each in values)
+                texts = (self._value(operand).at_least(_AND) for operand in values)
                 return _Text(" && ".join(texts), _AND)
             case Or(values):
-                return _Text(" || ".join(self._value(each).text for each in values), _OR)
+                return _Text(" || ".join(self._value(operand).text for operand in values), _OR)
             case _:
                 assert_never(value)

@@ -19,12 +19,12 @@ def files(monitor: str, requirements: Sequence[FormalizedRequirement]) -> tuple[
     """The module beside the module `monitor`; empty without bindings."""
     constants = Constants()
     names = legal_names((name for requirement in requirements for name in requirement.watched), ())
-    found = functions(requirements, names, _language(constants))
-    if found is None:
+    sample_functions = functions(requirements, names, _language(constants))
+    if sample_functions is None:
         return ()
     text = render(
         "js/signals.mjs.j2",
-        functions=found,
+        functions=sample_functions,
         constants=constants.lines(),
         readings=render("js/readings.js.j2"),
         samples=render("js/samples.js.j2"),

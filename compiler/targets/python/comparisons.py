@@ -58,7 +58,7 @@ class Compared:
     @property
     def is_of_words(self) -> bool:
         """Whether the variables are enumeration values."""
-        return any(each.kind == WORD for each in self.inputs.values())
+        return any(variable.kind == WORD for variable in self.inputs.values())
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,40 +83,40 @@ def front(
         requirements: the requirements of one monitor.
         propositions: the propositions that the monitor reads.
     """
-    found: dict[str, Compared] = {}
+    comparisons: dict[str, Compared] = {}
     opaque: set[str] = set()
     for requirement in requirements:
         for name, compared in _comparisons(requirement).items():
-            if found.setdefault(name, compared) != compared:
+            if comparisons.setdefault(name, compared) != compared:
                 opaque.add(name)
-    clashing = set(_clashing(requirements, found.values()))
-    known = {
+    clashing = set(_clashing(requirements, comparisons.values()))
+    usable = {
         name: compared
-        for name, compared in found.items()
+        for name, compared in comparisons.items()
         if name in propositions and name not in opaque and clashing.isdisjoint(compared.inputs)
     }
-    if not known:
+    if not usable:
         return None
     inputs: dict[str, Input] = {}
     for name in propositions:
-        inputs |= known[name].inputs if name in known else {name: Input(TRUTH)}
-    return InputAdapter(inputs, known) if inputs else None
+        inputs |= usable[name].inputs if name in usable else {name: Input(TRUTH)}
+    return InputAdapter(inputs, usable) if inputs else None
 
 
 def _comparisons(requirement: FormalizedRequirement) -> dict[str, Compared]:
     """The comparisons of a sentence that can be compiled, by their propositions' names."""
-    found: dict[str, Compared] = {}
+    by_name: dict[str, Compared] = {}
     for tree in conditions(requirement.sentence):
         for part in e.parts(tree):
             if isinstance(part, e.Comparison):
                 compared = _compared(part, requirement)
                 if compared is not None:
-                    found[atom(part)] = compared
-    return found
+                    by_name[atom(part)] = compared
+    return by_name
 
 
 def _clashing(
-    requirements: Sequence[FormalizedRequirement], found: Iterable[Compared]
+    requirements: Sequence[FormalizedRequirement], comparisons: Iterable[Compared]
 ) -> Iterator[str]:
     """The variables with two kinds, or two units."""
     kinds: dict[str, Input] = {
@@ -126,7 +126,7 @@ def _clashing(
         if not is_compound(name)
     }
     units: dict[str, object] = {}
-    for compared in found:
+    for compared in comparisons:
         for name, kind in compared.inputs.items():
             unit = compared.units.get(name)
             if kinds.setdefault(name, kind) != kind or units.setdefault(name, unit) != unit:
@@ -290,9 +290,9 @@ class Writer:
             case e.Number(digits) if _WRITTEN.fullmatch(digits):
                 return _constant(Fraction(digits))
             case e.Quantity(digits, name) if _WRITTEN.fullmatch(digits):
-                known = unit(name)
-                assert known is not None, "the parser refuses unknown units"
-                return _constant(Fraction(digits), known.factor)
+                own_unit = unit(name)
+                assert own_unit is not None, "the parser refuses unknown units"
+                return _constant(Fraction(digits), own_unit.factor)
             case e.Name(id) if variable(id) in self.parameters:
                 name = variable(id)
                 scale = self.units[name][1] if name in self.units else None
@@ -315,7 +315,7 @@ class Writer:
         if op == "^":
             return self._power(left, right)
         if op in ("*", "/"):
-            left, right = (_plain(each) for each in (left, right))
+            left, right = (_plain(side) for side in (left, right))
             scale = _combined(op, left.scale, right.scale)
         else:
             left, right, scale = self._in_one_unit(left, right)
@@ -329,17 +329,17 @@ class Writer:
                 raise NotCompiledError
             (term,) = args
             return self._applied("absolute", term, None if term.exact is None else abs(term.exact))
-        found, *rest = args
+        combined, *rest = args
         for term in rest:
-            if _UNKNOWN in (found, term):
+            if _UNKNOWN in (combined, term):
                 return _UNKNOWN
-            first, second, scale = self._in_one_unit(found, term)
+            first, second, scale = self._in_one_unit(combined, term)
             if first.exact is not None and second.exact is not None:
-                found = _constant(called(name, [first.exact, second.exact]), scale)
+                combined = _constant(called(name, [first.exact, second.exact]), scale)
             else:
                 text = f"{_ENDS[name]}({self._text(first)}, {self._text(second)})"
-                found = _Term(text, scale)
-        return found
+                combined = _Term(text, scale)
+        return combined
 
     def _before(self, initial: _Term, term: _Term) -> _Term:
         """The value of the tick before; at the first tick, the initial value."""
@@ -405,9 +405,9 @@ def threshold(compared: Compared) -> tuple[str, Fraction] | None:
 def numbers(compared: Compared) -> Iterator[Fraction]:
     """The numbers in a comparison."""
     for part in e.parts(compared.tree.left), e.parts(compared.tree.right):
-        for each in part:
-            if isinstance(each, e.Number | e.Quantity) and _WRITTEN.fullmatch(each.digits):
-                yield Fraction(each.digits)
+        for node in part:
+            if isinstance(node, e.Number | e.Quantity) and _WRITTEN.fullmatch(node.digits):
+                yield Fraction(node.digits)
 
 
 _WRITTEN = re.compile(r"\d{1,60}(?:\.\d{1,60})?(?:[eE][+-]?\d{1,3})?", re.ASCII)
@@ -450,7 +450,7 @@ def _combined(op: str, left: Fraction | None, right: Fraction | None) -> Fractio
     """The factor of a product or a quotient."""
     if left is None and right is None:
         return None
-    a, b = (Fraction(1) if each is None else each for each in (left, right))
+    a, b = (Fraction(1) if factor is None else factor for factor in (left, right))
     return a * b if op == "*" else a / b
 
 

@@ -244,7 +244,7 @@ class _Lines:
     @property
     def row(self) -> str:
         """The code for the variables of a tick."""
-        return _tuple([each.name for each in self.variables])
+        return _tuple([variable.name for variable in self.variables])
 
     @property
     def now(self) -> str:
@@ -256,19 +256,19 @@ class _Lines:
         """The code for given names of variables and propositions."""
         writer = Writer({name: parameters[name] for name in compared.inputs})
         comparisons = tuple(
-            (name, parameters[name], writer.comparison(each))
-            for name, each in compared.comparisons.items()
+            (name, parameters[name], writer.comparison(comparison))
+            for name, comparison in compared.comparisons.items()
         )
         variables = tuple(
             _Variable(
                 name,
                 parameters[name],
-                each.kind,
-                each.words,
-                each.infinite,
-                ANNOTATIONS[each.kind],
+                variable.kind,
+                variable.words,
+                variable.infinite,
+                ANNOTATIONS[variable.kind],
             )
-            for name, each in compared.inputs.items()
+            for name, variable in compared.inputs.items()
         )
         earlier = tuple((name, *texts) for texts, name in writer.earlier.items())
         return cls(variables, comparisons, earlier)

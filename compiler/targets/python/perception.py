@@ -49,14 +49,14 @@ def _reasons(requirement: FormalizedRequirement) -> Iterator[tuple[str, str]]:
     yield from _of_clock(declared)
     if unbound:
         return
-    found = instant([requirement])
-    if found is None or found.left_out:
+    at_instant = instant([requirement])
+    if at_instant is None or at_instant.left_out:
         yield (
             "it looks back by ticks within a proposition",
             "state it in the sentence, or with `for 200 ms`",
         )
         return
-    for policy in found.policies:
+    for policy in at_instant.policies:
         if policy.signal.reduce is Reduce.MEAN:
             yield (
                 f"`{policy.signal.name}` is a mean, whose last digits differ from those of an "
@@ -102,14 +102,14 @@ def text(requirements: Sequence[FormalizedRequirement]) -> str:
 
 def setting(requirements: Sequence[FormalizedRequirement]) -> Setting:
     """The table of requirements that were not refused."""
-    found = instant(requirements)
+    at_instant = instant(requirements)
     declared = requirements[0].declarations
-    assert found is not None, "it is refused"
+    assert at_instant is not None, "it is refused"
     assert declared is not None, "it is refused"
     assert declared.clock.period is not None, "it is refused"
     return Setting(
-        tuple(map(_policy, found.policies)),
-        tuple(map(_meaning, found.meanings)),
+        tuple(map(_policy, at_instant.policies)),
+        tuple(map(_meaning, at_instant.meanings)),
         declared.clock.period,
         declared.clock.phase,
         declared.clock.patience or 0,
@@ -133,9 +133,9 @@ class Setting:
 
 def topics_of(requirement: FormalizedRequirement) -> tuple[str, ...]:
     """The topics that the requirement's propositions read."""
-    found = instant([requirement])
-    assert found is not None, "it is refused"
-    return tuple(dict.fromkeys(policy.signal.path.topic for policy in found.policies))
+    at_instant = instant([requirement])
+    assert at_instant is not None, "it is refused"
+    return tuple(dict.fromkeys(policy.signal.path.topic for policy in at_instant.policies))
 
 
 def _policy(policy: Policy) -> str:
@@ -162,8 +162,8 @@ def _policy(policy: Policy) -> str:
     if measured is not None:
         names = "".join(f", {name}" for name in _besides(policy).values())
         # The literals are infinities, and cost less than names: this runs for each beam.
-        each = f"x if -1e999 < x < 1e999 and {measured} else meant(x)"
-        texts["quick"] = f"lambda xs, meant{names}: [{each} for x in xs]"
+        element = f"x if -1e999 < x < 1e999 and {measured} else meant(x)"
+        texts["quick"] = f"lambda xs, meant{names}: [{element} for x in xs]"
     head = [repr(signal.name), repr(signal.path.topic), repr(signal.path.fields)]
     return f"Policy({', '.join([*head, *_named(texts)])})"
 
@@ -192,8 +192,8 @@ def _measured(policy: Policy) -> str | None:
             case n.All(args) | n.Some(args) if args:
                 parts = [text(arg) for arg in args]
                 word = " and " if isinstance(tree, n.All) else " or "
-                known = [part for part in parts if part is not None]
-                return f"({word.join(known)})" if len(known) == len(parts) else None
+                conjuncts = [part for part in parts if part is not None]
+                return f"({word.join(conjuncts)})" if len(conjuncts) == len(parts) else None
             case _:
                 return None
 

@@ -96,20 +96,27 @@ def program(
         prefixes: a Python identifier for each requirement's id.
     """
     marks = {name for prefix in prefixes.values() for name in marks_of(prefix)}
-    made = lowered(watches, marks | locals_of(parameters.values()))
+    monitor_program = lowered(watches, marks | locals_of(parameters.values()))
     printer = _Printer(parameters)
     return Program(
-        tuple(Literal(printer.name(x), x.proposition, x.positive) for x in made.literals),
-        tuple(Cell(cell.name, _initial(cell), cell.comment) for cell in made.cells),
-        tuple(Block(b.comment, printer.step(b)) for b in made.blocks if b.instructions),
-        tuple(Block(b.comment, lines) for b in made.blocks if (lines := printer.column(b))),
-        tuple(printer.signals(each, prefixes[each.id]) for each in made.requirements),
+        tuple(
+            Literal(printer.name(x), x.proposition, x.positive) for x in monitor_program.literals
+        ),
+        tuple(Cell(cell.name, _initial(cell), cell.comment) for cell in monitor_program.cells),
+        tuple(Block(b.comment, printer.step(b)) for b in monitor_program.blocks if b.instructions),
+        tuple(
+            Block(b.comment, lines) for b in monitor_program.blocks if (lines := printer.column(b))
+        ),
+        tuple(
+            printer.signals(requirement, prefixes[requirement.id])
+            for requirement in monitor_program.requirements
+        ),
     )
 
 
 def locals_of(parameters: Iterable[str]) -> frozenset[str]:
     """The parameters of a step and the names of their negations."""
-    return frozenset(name for each in parameters for name in (each, negation(each)))
+    return frozenset(name for parameter in parameters for name in (parameter, negation(parameter)))
 
 
 def negation(parameter: str) -> str:
@@ -185,7 +192,7 @@ class _Printer:
             case v.Not(negated):
                 return _Text(f"not {self.text(negated).grouped(_ATOMIC).step}", "", _AND)
             case v.And(values):
-                texts = [self.text(each).grouped(_AND) for each in values]
+                texts = [self.text(operand).grouped(_AND) for operand in values]
                 return _Text(*_joined(texts, " and ", " & "), _AND)
             case v.Or(values):
                 return _Text(*_joined([*map(self.text, values)], " or ", " | "), _OR)
@@ -197,7 +204,9 @@ class _Printer:
 
     def step(self, block: p.Block) -> tuple[str, ...]:
         """The statements of a block at one tick."""
-        return tuple(line for each in block.instructions for line in self._statement(each))
+        return tuple(
+            line for instruction in block.instructions for line in self._statement(instruction)
+        )
 
     def _statement(self, instruction: i.Instruction) -> tuple[str, ...]:
         match instruction:

@@ -123,7 +123,11 @@ def _unsubscribable(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
     for signal in _signals([requirement]):
         topic, kind = signal.path.topic, _kind(signal)
         place = signal.span or requirement.entry.wording
-        others = [_kind(each) for each in declared if each.path.topic == topic]
+        others = [
+            _kind(declared_signal)
+            for declared_signal in declared
+            if declared_signal.path.topic == topic
+        ]
         if _TYPE.fullmatch(kind) is None:
             what = f"has the type `{kind}`, which is not a ROS type" if kind else "has no type"
             fix = f'add `type = "sensor_msgs/LaserScan"`, say, to `[signal.{signal.name}]`'
@@ -229,8 +233,8 @@ _PLAIN = {"requirements", "..", ".", "/"}
 
 
 def _signals(requirements: Sequence[FormalizedRequirement]) -> list[Signal]:
-    found = instant(requirements)
-    return [policy.signal for policy in found.policies] if found else []
+    at_instant = instant(requirements)
+    return [policy.signal for policy in at_instant.policies] if at_instant else []
 
 
 def _topics(signals: Sequence[Signal]) -> Iterator[Topic]:
@@ -280,7 +284,7 @@ def _deciding(requirements: Sequence[FormalizedRequirement], options: Options) -
     asking = [
         requirement.id
         for requirement in requirements
-        if assumed and assumed.stands in {each.id for each in names(requirement.sentence.response)}
+        if assumed and assumed.stands in {name.id for name in names(requirement.sentence.response)}
     ]
     return tuple(asking or [requirement.id for requirement in requirements])
 
@@ -298,8 +302,8 @@ def modules(package: Package) -> Mapping[str, str]:
 
 def tests(package: Package) -> str:
     """Unit tests of both files: shortest runs to each verdict, and a node without messages."""
-    found = {requirement.id: words(requirement) for requirement in package.requirements}
-    return render("ros/test_monitor.py.j2", package=package, words=found, version=__version__)
+    witnesses = {requirement.id: words(requirement) for requirement in package.requirements}
+    return render("ros/test_monitor.py.j2", package=package, words=witnesses, version=__version__)
 
 
 def documents(package: Package, ros: int) -> Mapping[str, str]:

@@ -92,8 +92,8 @@ def _values(package: Package) -> dict[str, Any]:
             for topic in package.topics
         ],
         "parameters": [
-            (each, _literal(each.value), wrap(each.text, 80, drop_whitespace=False))
-            for each in package.parameters
+            (parameter, _literal(parameter.value), wrap(parameter.text, 80, drop_whitespace=False))
+            for parameter in package.parameters
         ],
     }
 

@@ -77,16 +77,16 @@ def emit(
 
 
 def _values(package: Package) -> dict[str, Any]:
-    found = instant(package.requirements)
-    assert found is not None, "it is refused"
+    at_instant = instant(package.requirements)
+    assert at_instant is not None, "it is refused"
     names = joined(package.requirements)
-    places = {policy.signal.name: place for place, policy in enumerate(found.policies)}
+    places = {policy.signal.name: place for place, policy in enumerate(at_instant.policies)}
     topics = [topic.name for topic in package.topics]
     signals = [
-        _signal(policy, each)
-        for policy, each in zip(found.policies, names.signals.signals, strict=True)
+        _signal(policy, function)
+        for policy, function in zip(at_instant.policies, names.signals.signals, strict=True)
     ]
-    order = {meaning.name: place for place, meaning in enumerate(found.meanings)}
+    order = {meaning.name: place for place, meaning in enumerate(at_instant.meanings)}
     return {
         "package": package,
         "apart": True,
@@ -94,7 +94,7 @@ def _values(package: Package) -> dict[str, Any]:
         "stamped": package.time is TimeSource.HEADER_STAMP,
         "messages": sorted({"rcl_interfaces", *package.dependencies}),
         "headers": sorted(
-            {f"{each.package}/msg/{snake(each.message)}.hpp" for each in package.topics}
+            {f"{function.package}/msg/{snake(function.message)}.hpp" for function in package.topics}
             - {"std_msgs/msg/bool.hpp", "std_msgs/msg/string.hpp"}
         ),
         "topics": [
@@ -103,21 +103,21 @@ def _values(package: Package) -> dict[str, Any]:
                 "package": topic.package,
                 "message": topic.message,
                 "is_sensor": qos(topic) != "10",
-                "signals": [each for each in signals if each["topic"] == topic.name],
+                "signals": [function for function in signals if function["topic"] == topic.name],
             }
             for topic in package.topics
         ],
-        "outlines": [each for each in signals if each["outline"]],
-        "samples": [each["name"] for each in signals],
+        "outlines": [function for function in signals if function["outline"]],
+        "samples": [function["name"] for function in signals],
         "policies": [
             {
                 "topic": topics.index(policy.signal.path.topic),
                 "max_age": _optional(policy.signal.max_age),
             }
-            for policy in found.policies
+            for policy in at_instant.policies
         ],
-        "any_held": any(meaning.held for meaning in found.meanings),
-        "meanings": _meanings(found.meanings, names, places),
+        "any_held": any(meaning.held for meaning in at_instant.meanings),
+        "meanings": _meanings(at_instant.meanings, names, places),
         "inputs": [(member, order[name]) for name, member in names.inputs.items()],
         "requirements": [
             {
@@ -129,13 +129,13 @@ def _values(package: Package) -> dict[str, Any]:
             for requirement, member in zip(package.requirements, names.outcomes, strict=True)
         ],
         "words": [
-            (place, word.name, [_ticks(each, order) for each in word.ticks])
+            (place, word.name, [_ticks(function, order) for function in word.ticks])
             for place, requirement in enumerate(package.requirements)
             for word in words(requirement)
         ],
         "parameters": [
-            (each, _literal(each.value), wrap(each.text, 80, drop_whitespace=False))
-            for each in package.parameters
+            (function, _literal(function.value), wrap(function.text, 80, drop_whitespace=False))
+            for function in package.parameters
         ],
     }
 
@@ -155,7 +155,7 @@ def _signal(policy: Policy, function: SignalFunction) -> dict[str, Any]:
         "name": function.name,
         "form": function.form,
         "fields": function.fields,
-        "parameters": "".join(f", double f_{each}" for each in function.fields),
+        "parameters": "".join(f", double f_{field}" for field in function.fields),
         "valid": function.valid,
         "invalid": ", ".join(map(_MEANINGS.__getitem__, function.invalid)),
         "numbers": function.numbers,
