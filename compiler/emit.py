@@ -56,7 +56,7 @@ class _Targets(Mapping[str, "Target"]):
 TARGETS: Mapping[str, Target] = _Targets()
 
 
-def renamed(requirement: FormalizedRequirement) -> dict[str, dict[str, str]]:
+def renamed_propositions(requirement: FormalizedRequirement) -> dict[str, dict[str, str]]:
     """For each kind of file: the names that are spelt differently there, with the spelling."""
     renamed_names: dict[str, dict[str, str]] = {}
     for kind, target in TARGETS.items():

@@ -12,11 +12,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from compiler.agents import gwendolen, psl
-from compiler.agents.gwendolen import Action, Agent, Change
+from compiler.agents.gwendolen import Action, Agent, BeliefChange
 from compiler.agents.model import Model, State, narration
 from compiler.agents.psl import Property
 from compiler.agents.psl_printing import property_text
-from compiler.agents.vacuity import bare, demanded
+from compiler.agents.vacuity import positive_atoms, without_consequences
 from compiler.files import records
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
@@ -48,7 +48,7 @@ _PERCEPT = re.compile(r"[a-z][A-Za-z0-9_]*(?:\([A-Za-z0-9_,. -]+\))?", re.ASCII)
 
 
 @with_recursion_limit
-def checked(
+def check_agent(
     agent: Source, properties: Source, percepts: Sequence[str], limit: int = STATES
 ) -> tuple[Proof, ...] | Diagnostic:
     """Evidence for each property of the file, in its order.
@@ -219,7 +219,7 @@ class _Explored:
         deeds = [deed for plan in self.model.agent.plans for deed in plan.deeds]
         if Action(literal) in deeds and atom.startswith("B("):
             return f"`{literal}` is an action, and an action is never a belief"
-        if literal in self.model.percepts or Change("+", literal) in deeds:
+        if literal in self.model.percepts or BeliefChange("+", literal) in deeds:
             return f"nothing makes `{literal}` true"
         return f"no environment shows `{literal}`, and no plan adds it"
 
@@ -271,7 +271,7 @@ class _Lines:
         return vacuous(why) if why else proved(f"all runs through {size} keep it")
 
     def _vacuous(self, prop: Property) -> str | None:
-        for conditions, rest in bare(prop.formula):
+        for conditions, rest in without_consequences(prop.formula):
             if self.explored.violation(rest) is None:
                 reasons = "; ".join(self.explored.never(f.And(conditions)))
                 because = f": {reasons}" if reasons else ""
@@ -292,7 +292,7 @@ class _Lines:
         return proved(f"a run of {len(lasso.states)} stages violates {prop.key}, as it should")
 
     def _of_mutant(self, prop: Property) -> Iterator[Proof]:
-        mutant = self.mutant or _without(self.explored.model.agent, demanded(prop.formula))
+        mutant = self.mutant or _without(self.explored.model.agent, positive_atoms(prop.formula))
         claim = f"the check can fail: an agent without the response violates {prop.key}"
         if mutant is None:
             return

@@ -33,7 +33,7 @@ Sign = Literal["+", "-"]
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class BeliefChange:
     """`+b` or `-b`: as a deed, what the agent does to its beliefs; as an event, what happened."""
 
     sign: Sign
@@ -55,7 +55,7 @@ class Action:
         return self.name
 
 
-Deed = Change | Action
+Deed = BeliefChange | Action
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class Guard:
 class Plan:
     """`event : {guards} <- deeds;`; it may be chosen where all of the guards hold."""
 
-    event: Change
+    event: BeliefChange
     guards: tuple[Guard, ...]
     """The guard, or None for `True`."""
     deeds: tuple[Deed, ...]
@@ -228,11 +228,11 @@ class _Reader:
             span,
         )
 
-    def change(self, part: Tree[Token]) -> Change:
+    def change(self, part: Tree[Token]) -> BeliefChange:
         """An event or a deed about a belief."""
         if _trees(part, "goal"):
             raise beyond("a goal", self.span(part))
-        return Change(cast(Sign, str(part.children[0])), self.unnegated(part))
+        return BeliefChange(cast(Sign, str(part.children[0])), self.unnegated(part))
 
     def guard(self, guard: Tree[Token]) -> Guard | None:
         """The guard, or None for `True`."""

@@ -27,7 +27,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import chain, combinations, pairwise, permutations, product
 
-from compiler.agents.gwendolen import Action, Agent, Change, Deed
+from compiler.agents.gwendolen import Action, Agent, BeliefChange, Deed
 from compiler.logic.kripke import Explored, explore
 
 SILENT = ("print", "remove_shared", "assert_shared")
@@ -50,7 +50,7 @@ class ReasoningStep(StrEnum):
 class Notice:
     """A perceived change of belief that the agent makes in a later turn."""
 
-    change: Change
+    change: BeliefChange
 
     def __str__(self) -> str:
         """The text of the notice as a deed."""
@@ -61,7 +61,7 @@ class Notice:
 class Intention:
     """The deeds of the agent for an event, or for a percept."""
 
-    event: Change | Notice
+    event: BeliefChange | Notice
     deeds: tuple[Deed | Notice, ...] = ()
     """The deeds left; empty for an event until a plan is chosen."""
 
@@ -200,9 +200,9 @@ class Model:
                 words = "believes" if change.sign == "+" else "no longer believes"
                 for state in _believed(after, change):
                     yield f"{words} {change.belief}", state
-            case Change("+", belief):
+            case BeliefChange("+", belief):
                 yield f"adds {belief}", _added(after, belief)
-            case Change(_, belief):
+            case BeliefChange(_, belief):
                 for state in _removed(after, belief):
                     yield f"removes {belief}", state
 
@@ -219,8 +219,8 @@ def _with_percepts(state: State, percepts: Beliefs) -> State:
 
 def _perceived(state: State) -> Iterator[Step]:
     """The next changes of beliefs: first those without a percept go, then new percepts come."""
-    gone = [Change("-", belief) for belief in sorted(state.perceived - state.percepts)]
-    come = [Change("+", belief) for belief in sorted(state.percepts - state.perceived)]
+    gone = [BeliefChange("-", belief) for belief in sorted(state.perceived - state.percepts)]
+    come = [BeliefChange("+", belief) for belief in sorted(state.percepts - state.perceived)]
     done = replace(state, up_to_date=True, stage=ReasoningStep.SELECT)
     if state.up_to_date or not (gone or come):
         yield "perceives nothing new", done
@@ -234,14 +234,14 @@ def _perceived(state: State) -> Iterator[Step]:
                 yield f"perceives {change}", after
 
 
-def _noticed(state: State, changes: tuple[Change, ...]) -> State:
+def _noticed(state: State, changes: tuple[BeliefChange, ...]) -> State:
     """One intention for each change, unless the same intention waits already."""
     intentions = (Intention(Notice(change), (Notice(change),)) for change in changes)
     new = [intention for intention in intentions if intention not in state.waiting]
     return replace(state, waiting=(*state.waiting, *new))
 
 
-def _believed(state: State, change: Change) -> tuple[State, ...]:
+def _believed(state: State, change: BeliefChange) -> tuple[State, ...]:
     """One percept comes or goes; several outcomes where the agent has added the belief itself."""
     belief = {change.belief}
     if change.sign == "+":
@@ -267,12 +267,12 @@ def _selected(state: State) -> Step:
 
 def _added(state: State, belief: str) -> State:
     after = replace(state, own=state.own | {belief})
-    return after if belief in state.beliefs else _raised(after, Change("+", belief), 1)
+    return after if belief in state.beliefs else _raised(after, BeliefChange("+", belief), 1)
 
 
 def _removed(state: State, belief: str) -> tuple[State, ...]:
     """The agent removes a belief; several outcomes where the belief is also perceived."""
-    gone = Change("-", belief)
+    gone = BeliefChange("-", belief)
     less = replace(state, own=state.own - {belief})
     neither = replace(less, perceived=state.perceived - {belief})
     if belief not in state.beliefs:
@@ -282,7 +282,7 @@ def _removed(state: State, belief: str) -> tuple[State, ...]:
     return (_raised(neither, gone, 1),)
 
 
-def _raised(state: State, event: Change, times: int) -> State:
+def _raised(state: State, event: BeliefChange, times: int) -> State:
     return replace(state, waiting=(*state.waiting, *[Intention(event)] * times))
 
 

@@ -12,7 +12,7 @@ Bare = tuple[tuple[f.Formula, ...], f.Formula]
 """The conditions within a formula, and the formula without what they imply."""
 
 
-def bare(formula: f.Formula) -> tuple[Bare, ...]:
+def without_consequences(formula: f.Formula) -> tuple[Bare, ...]:
     """The formula without the consequences of its innermost conditions.
 
     If the result holds as well, the conditions are never true where they matter. There is one
@@ -65,17 +65,17 @@ def _is_plain(formula: f.Formula) -> bool:
     return isinstance(formula, logic) and all(map(_is_plain, f.children(formula)))
 
 
-def demanded(formula: f.Formula, positive: bool = True) -> frozenset[str]:
+def positive_atoms(formula: f.Formula, positive: bool = True) -> frozenset[str]:
     """The atoms that occur positively: under an even number of negations."""
     match formula:
         case f.Atom(name):
             return frozenset({name} if positive else ())
         case f.Not(arg):
-            return demanded(arg, not positive)
+            return positive_atoms(arg, not positive)
         case f.Implies(left, right):
-            return demanded(left, not positive) | demanded(right, positive)
+            return positive_atoms(left, not positive) | positive_atoms(right, positive)
         case f.Iff(left, right) | f.Xor(left, right):
             return frozenset(f.atoms(formula))
         case _:
-            parts = (demanded(part, positive) for part in f.children(formula))
+            parts = (positive_atoms(part, positive) for part in f.children(formula))
             return frozenset().union(*parts)

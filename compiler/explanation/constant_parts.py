@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import MOST_ATOMS, excluded, temporal_predicate
+from compiler.formalization.letters import MOST_ATOMS, impossible_combinations, temporal_predicate
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
@@ -31,7 +31,7 @@ def constant_parts(requirement: FormalizedRequirement) -> tuple[tuple[e.Expressi
     The condition of a scope is checked together with its mode.
     """
     impossible: dict[str, list[Exclusion]] = {}
-    for exclusion in excluded(requirement):
+    for exclusion in impossible_combinations(requirement):
         impossible.setdefault(exclusion[0][0], []).append(exclusion)
     if not impossible or temporal_predicate(requirement.sentence):
         return ()

@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from compiler.explanation.shortest_words import Move, Run, Waypoint, Words
-from compiler.explanation.windows import has_deadline, kept
+from compiler.explanation.shortest_words import Move, Run, ShortestWords, Waypoint
+from compiler.explanation.windows import has_deadline, is_satisfied
 from compiler.formalization import reference as counters
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import (
@@ -19,8 +19,8 @@ from compiler.formalization.letters import (
     Valuation,
     atoms_of,
     comparisons,
-    excluded,
-    meanings,
+    impossible_combinations,
+    letters_by_valuation,
     temporal_predicate,
 )
 from compiler.formalization.reference import (
@@ -81,8 +81,8 @@ def examples(requirement: FormalizedRequirement, wanted: int = WANTED) -> Exampl
     atoms = atoms_of(requirement.sentence)
     if len(atoms) > MOST_ATOMS:
         return Examples(atoms, (), (), f"{len(atoms)} propositions are more than {MOST_ATOMS}")
-    every = meanings(requirement.sentence, atoms)
-    possible = only_possible(tuple(every), atoms, excluded(requirement))
+    every = letters_by_valuation(requirement.sentence, atoms)
+    possible = only_possible(tuple(every), atoms, impossible_combinations(requirement))
     chosen = _chosen(requirement, atoms, {valuation: every[valuation] for valuation in possible})
     letters = chosen.letters
     counted = counters.template(requirement.sentence, requirement.ticks or 0)
@@ -187,7 +187,7 @@ class _Search:
     """Candidates for examples, as words of an automaton."""
 
     def __init__(self, automaton: Automaton, letters: Mapping[Letter, Valuation]) -> None:
-        self.words = Words(automaton)
+        self.words = ShortestWords(automaton)
         self.letters = letters
         self.template = automaton.template
         self.satisfiable = automaton.verdicts[0] != "violated"
@@ -313,5 +313,8 @@ def _check(search: _Search, run: Run, example: Example) -> None:
     word = [move.letter for move in run.moves]
     for _ in range(3 if example.loop else 1):
         m, p, q, stop = zip(*word, strict=True)
-        assert kept(search.template, m, p, q, stop) is example.satisfied, (search.template, word)
+        assert is_satisfied(search.template, m, p, q, stop) is example.satisfied, (
+            search.template,
+            word,
+        )
         word += [move.letter for move in run.loop]

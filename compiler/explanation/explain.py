@@ -13,7 +13,7 @@ from compiler.explanation.examples import Example, Examples, examples
 from compiler.explanation.reasons import why
 from compiler.formalization import record
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import Valuation, meanings
+from compiler.formalization.letters import Valuation, letters_by_valuation
 from compiler.logic.definition import holds
 from compiler.logic.formula import longest_bound
 from compiler.targets import ltl
@@ -38,7 +38,7 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class ExplainedTrace:
     """A trace with its verdict and reason, in rows."""
 
     satisfied: bool
@@ -56,7 +56,7 @@ class Explanation:
     picture: Diagram
     propositions: tuple[str, ...]
     """The propositions, in the order of the values of a row."""
-    traces: tuple[Shown, ...]
+    traces: tuple[ExplainedTrace, ...]
     notes: tuple[str, ...]
 
 
@@ -65,7 +65,7 @@ def explanation(requirement: FormalizedRequirement) -> Explanation:
     """Explain a formalized requirement; every trace in it has been checked."""
     traces = examples(requirement)
     every = (*traces.satisfied, *traces.violated)
-    letters = meanings(requirement.sentence, traces.atoms) if every else {}
+    letters = letters_by_valuation(requirement.sentence, traces.atoms) if every else {}
     for example in every:
         _check(requirement, traces.atoms, example)
     shown = tuple(_shown(requirement, letters, example) for example in every)
@@ -79,10 +79,10 @@ def _notes(requirement: FormalizedRequirement, traces: Examples) -> Iterator[str
         return
     satisfied, violated = len(traces.satisfied), len(traces.violated)
     if traces.rounded or traces.is_undecided:
-        from compiler.formalization.numbers.reals import NOT_DECIDED, only_rounded
+        from compiler.formalization.numbers.reals import NOT_DECIDED, rounding_note
 
         if traces.rounded:
-            yield only_rounded(traces.rounded)
+            yield rounding_note(traces.rounded)
         if traces.is_undecided:
             yield NOT_DECIDED
     exactly = ", computed exactly" if traces.rounded else ""
@@ -132,11 +132,11 @@ def _check(requirement: FormalizedRequirement, atoms: Sequence[str], example: Ex
 
 def _shown(
     requirement: FormalizedRequirement, letters: Mapping[Valuation, Any], example: Example
-) -> Shown:
+) -> ExplainedTrace:
     prefix = [letters[values] for values in example.prefix]
     loop = [letters[values] for values in example.loop]
     ends = not loop and example.decided is None
-    return Shown(
+    return ExplainedTrace(
         example.satisfied,
         tuple(_rows(example)),
         example.decided,
@@ -188,7 +188,7 @@ def visible_lines(block: str) -> str:
     return "".join(f"{visible(line)}\n" for line in block.splitlines())
 
 
-def _table(explained: Explanation, shown: Shown) -> str:
+def _table(explained: Explanation, shown: ExplainedTrace) -> str:
     wordings = explained.requirement.wordings
     names = [
         drawing.shortened(visible(wordings.get(name, name)), _NAME)
@@ -243,7 +243,7 @@ def _lane(lane: Lane) -> dict[str, Any]:
     return {"kind": lane.kind.value, "name": lane.name, "note": lane.remark, "ticks": stretches}
 
 
-def _trace(propositions: Sequence[str], shown: Shown) -> dict[str, Any]:
+def _trace(propositions: Sequence[str], shown: ExplainedTrace) -> dict[str, Any]:
     rows = [
         {
             "first": row.first,

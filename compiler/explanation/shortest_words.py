@@ -57,7 +57,7 @@ class Run:
         return self.moves[-1].waits and not goes_on
 
 
-class Words:
+class ShortestWords:
     """The words of an automaton; earlier letters are preferred."""
 
     def __init__(self, automaton: Automaton) -> None:
@@ -106,7 +106,7 @@ class Words:
         automaton = self.automaton
         state = automaton.states[number]
         for letter, target in zip(automaton.letters, automaton.moves[number], strict=True):
-            happens = counters.happening(self.template, state, letter[0], letter[1])
+            happens = counters.tick_role(self.template, state, letter[0], letter[1])
             after = None if target == BROKEN else automaton.states[target]
             yield Move(state, letter, after, target, happens.enforced, happens.triggered)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from compiler.formalization.anticipation import SHORT
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import occurring, temporal_predicate
+from compiler.formalization.letters import possible_letters, temporal_predicate
 from compiler.formalization.reference import BROKEN, TooManyStatesError, explore, template
 from compiler.logic.formula import FALSE
 from fretish.clock import End
@@ -52,7 +52,7 @@ def _is_lost_somewhere(requirement: FormalizedRequirement) -> bool:
         return True
     short = template(sentence, min(requirement.ticks or 0, SHORT))
     try:
-        automaton = explore(short, occurring(sentence), _MOST_STATES)
+        automaton = explore(short, possible_letters(sentence), _MOST_STATES)
     except TooManyStatesError:
         return True
     return "violated" in automaton.verdicts or any(BROKEN in row for row in automaton.moves)

@@ -90,7 +90,7 @@ def windows(template: Template, m: Column, p: Column, s: Column) -> tuple[Obliga
     )
 
 
-def kept(template: Template, m: Column, p: Column, q: Column, s: Column) -> bool:
+def is_satisfied(template: Template, m: Column, p: Column, q: Column, s: Column) -> bool:
     """FRET's verdict on a finite trace: whether every trigger's demand is met."""
     return all(window.kept(q) for window in windows(template, m, p, s))
 

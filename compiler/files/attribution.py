@@ -47,7 +47,7 @@ FIELDS = tuple(each.name for each in fields(Attribution))
 
 
 @dataclass(frozen=True, slots=True)
-class Unfit:
+class InvalidField:
     """A field with a value that no manifest accepts, and the fix."""
 
     field: str
@@ -55,18 +55,18 @@ class Unfit:
     fix: str
 
 
-def attribution(table: Mapping[str, Any]) -> Attribution | Unfit:
+def attribution(table: Mapping[str, Any]) -> Attribution | InvalidField:
     """The attribution in a table without other fields."""
     for name, value in table.items():
         if not isinstance(value, str) or not value.strip():
-            return Unfit(name, "must be a text", f'write `{name} = "..."`, or leave it out')
+            return InvalidField(name, "must be a text", f'write `{name} = "..."`, or leave it out')
         if not value.isprintable() or len(value) > LONGEST:
             fix = f"manifests take up to {LONGEST} printable characters"
-            return Unfit(name, "must be one line of text", fix)
+            return InvalidField(name, "must be one line of text", fix)
         if f'"{value.strip()}"' in EXAMPLE:
-            return Unfit(name, "is still the example", "replace it with your own")
+            return InvalidField(name, "is still the example", "replace it with your own")
     email = table.get("email")
     if email is not None and _EMAIL.fullmatch(email.strip()) is None:
         fix = "write one such as `ada@robots.org`: manifests take no other form"
-        return Unfit("email", "must be one e-mail address", fix)
+        return InvalidField("email", "must be one e-mail address", fix)
     return Attribution(**{name: value.strip() for name, value in table.items()})

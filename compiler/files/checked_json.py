@@ -24,7 +24,7 @@ class SchemaError(ValueError):
     """A value is missing or of the wrong kind; the message says which and where."""
 
 
-def parsed(text: str) -> Shape:
+def parsed(text: str) -> JsonValue:
     """The value of a strict JSON text: each key appears once, and numbers are finite.
 
     Raises:
@@ -39,7 +39,7 @@ def parsed(text: str) -> Shape:
         parse_float=_finite,
         parse_constant=_no_number,
     )
-    return Shape(value)
+    return JsonValue(value)
 
 
 def plain(text: str) -> object:
@@ -83,7 +83,7 @@ def _no_number(word: str) -> NoReturn:
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
+class JsonValue:
     """A JSON value with its path, such as `results[3].verdict`."""
 
     value: object
@@ -94,27 +94,27 @@ class Shape:
         """The path, for messages."""
         return f"`{self.path}`" if self.path else "the whole file"
 
-    def field(self, key: str) -> Shape:
+    def field(self, key: str) -> JsonValue:
         """The value of a key of an object."""
         fields = self._object()
         if key not in fields:
             raise SchemaError(f"{self.name} has no `{key}`")
-        return Shape(fields[key], f"{self.path}.{key}".removeprefix("."))
+        return JsonValue(fields[key], f"{self.path}.{key}".removeprefix("."))
 
     def has(self, key: str) -> bool:
         """Whether an object has a key."""
         return key in self._object()
 
-    def fields(self) -> dict[str, Shape]:
+    def fields(self) -> dict[str, JsonValue]:
         """All values of an object, in the order of their keys."""
         fields = self._object()
-        return {key: Shape(fields[key], f'{self.path}["{key}"]') for key in sorted(fields)}
+        return {key: JsonValue(fields[key], f'{self.path}["{key}"]') for key in sorted(fields)}
 
-    def items(self) -> tuple[Shape, ...]:
+    def items(self) -> tuple[JsonValue, ...]:
         """The values of an array."""
         if not isinstance(self.value, list):
             raise self.wrong("an array")
-        return tuple(Shape(value, f"{self.path}[{i}]") for i, value in enumerate(self.value))
+        return tuple(JsonValue(value, f"{self.path}[{i}]") for i, value in enumerate(self.value))
 
     def text(self) -> str:
         """The value as a text."""

@@ -22,7 +22,7 @@ def today() -> str:
     return now().date().isoformat()
 
 
-def is_to_come(day: str) -> bool:
+def is_in_future(day: str) -> bool:
     """Whether a day such as `2026-11-22` has not begun anywhere on Earth; UTC+14 is first."""
     return date.fromisoformat(day) > (now() + timedelta(hours=14)).date()
 

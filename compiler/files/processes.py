@@ -13,7 +13,7 @@ from typing import Any
 _STOPS = (signal.SIGINT, signal.SIGTERM)
 
 
-def shield() -> None:
+def isolate_imports() -> None:
     """Keep Python child processes from importing modules of the current folder.
 
     Python puts the current folder first for `-c` and `-m`, by which children are started: a

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from compiler.files.attribution import FIELDS, NOBODY, Attribution, Unfit, attribution
+from compiler.files.attribution import FIELDS, NOBODY, Attribution, InvalidField, attribution
 from compiler.files.text_files import read as read_text
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
@@ -160,7 +160,7 @@ def _project_table(empty: Settings, table: Any) -> Attribution | Diagnostic:
             where = f"[{'.'.join((*empty.table, 'project'))}]"
             return unknown_key(Code.BAD_SETTINGS, key, FIELDS, span, where)
     project = attribution(table)
-    if isinstance(project, Unfit):
+    if isinstance(project, InvalidField):
         message = f"`{project.field}` {project.what}"
         return _bad_settings(empty, message, project.fix, "project", project.field)
     return project

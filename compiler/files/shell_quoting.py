@@ -29,7 +29,7 @@ def words(names: Iterable[str]) -> str:
     return " ".join(map(word, names))
 
 
-def unsayable(name: str) -> str:
+def unquotable_comment(name: str) -> str:
     """A comment on one line that replaces a command which cannot be quoted."""
     return f"# no command: a name has characters that cannot be pasted: {name!a}"
 

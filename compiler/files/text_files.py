@@ -48,14 +48,14 @@ def content(path: str | Path) -> bytes:
     Raises:
         OSError: the file cannot be read, is a pipe or a device, or is larger than `MOST`.
     """
-    with regular(path) as file:
+    with open_regular(path) as file:
         data = file.read(MOST + 1)
     if len(data) > MOST:
         raise OSError(None, f"it is larger than {MOST // 2**20} MiB")
     return data
 
 
-def regular(path: str | Path) -> BinaryIO:
+def open_regular(path: str | Path) -> BinaryIO:
     """An open regular file: never a pipe, which may block, or a device, which may be endless.
 
     A path in /dev counts as the user's choice if the user names it so, as `<(...)` of a shell does;

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import assert_never
 
-from compiler.formalization.letters import MOST_ATOMS, letters, temporal_predicate
+from compiler.formalization.letters import MOST_ATOMS, all_letters, temporal_predicate
 from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait
 from compiler.formalization.past import MonitorSpec, ScopeFormulas, scope_formulas
 from compiler.formalization.reference import (
@@ -69,7 +69,7 @@ def _automaton(sentence: s.Sentence, obligation: Obligation) -> Automaton | None
         return None
     ticks = min(obligation.demand.ticks, SHORT)
     try:
-        return explore(template(sentence, ticks), letters(sentence, names), _MOST_STATES)
+        return explore(template(sentence, ticks), all_letters(sentence, names), _MOST_STATES)
     except TooManyStatesError:
         return None
 

@@ -176,7 +176,9 @@ def _drifted(
 # What has no binding ------------------------------------------
 
 
-def unbound(requirement: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
+def unbound_propositions(
+    requirement: FormalizedRequirement, declarations: Declarations
+) -> Iterator[Diagnostic]:
     """F304 for every proposition of the sentence without a binding.
 
     If a binding exists but has errors, those errors are reported instead. No similar name is
@@ -190,8 +192,8 @@ def unbound(requirement: FormalizedRequirement, declarations: Declarations) -> I
         yield Diagnostic(
             Code.UNBOUND,
             f"`{name}` of {requirement.id} has no binding in {declarations.source.name}",
-            place(requirement, name),
-            help=way_out(requirement, name, declarations),
+            first_use(requirement, name),
+            help=binding_fix(requirement, name, declarations),
         )
 
 
@@ -231,7 +233,7 @@ def missing_signals(
     return tuple(dict.fromkeys(part.id for part in e.names(read) if part.id not in signals))
 
 
-def way_out(requirement: FormalizedRequirement, name: str, declarations: Declarations) -> str:
+def binding_fix(requirement: FormalizedRequirement, name: str, declarations: Declarations) -> str:
     """The fix for an unbound `name`: what to write in the bindings.
 
     That is signals for a comparison, a comparison for a value of a signal, else a proposition.
@@ -251,7 +253,7 @@ def way_out(requirement: FormalizedRequirement, name: str, declarations: Declara
     )
 
 
-def place(requirement: FormalizedRequirement, name: str) -> Span:
+def first_use(requirement: FormalizedRequirement, name: str) -> Span:
     """The span of the first use in the sentence: the name, or its comparison or call."""
     compared: Span | None = getattr(requirement.stated.get(name), "span", None)
     if compared is not None and compared.source is requirement.entry.wording.source:

@@ -10,12 +10,12 @@ from itertools import chain
 
 from compiler.formalization import predicates
 from compiler.formalization.anticipation import anticipated
-from compiler.formalization.binding_agreement import check_binding_consistency, place
+from compiler.formalization.binding_agreement import check_binding_consistency, first_use
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.future import future, probabilistic
 from compiler.formalization.obligation import obligation
-from compiler.formalization.past import past, watch
-from compiler.formalization.resolution import in_own_units, resolved
+from compiler.formalization.past import monitor_spec, past
+from compiler.formalization.resolution import in_own_units, with_signal_atoms
 from compiler.logic.formula import endless
 from compiler.logic.printing import identifier
 from fretish.ambiguities import ambiguity_warnings
@@ -81,7 +81,7 @@ def _formalized(
     )
     if wrong:
         return None, wrong
-    bound = resolved(requirement, declarations) if declarations else requirement
+    bound = with_signal_atoms(requirement, declarations) if declarations else requirement
     if isinstance(bound, Diagnostic):
         return None, (bound,)
     return bound, tuple(_remarks(sentence, declarations))
@@ -145,7 +145,7 @@ def name_collisions(requirements: Sequence[FormalizedRequirement]) -> Iterator[D
                     Code.NAME_CLASH,
                     f"`{first}` and `{name}` would have the same name in formulas: "
                     f"`{identifier(name)}`",
-                    place(requirement, name),
+                    first_use(requirement, name),
                     help="rename one of them",
                 )
 
@@ -172,7 +172,7 @@ def _rule(
         ft_infinite=endless(finite),
         ft_finite=finite,
         pt=past(back),
-        watch=anticipated(sentence, back, watch(back)),
+        watch=anticipated(sentence, back, monitor_spec(back)),
         pctl=probabilistic(ahead, odds.op, odds.digits) if odds else None,
         glossary=_glossary(declarations),
         declarations=declarations,

@@ -174,7 +174,7 @@ def _place(name: Name) -> int:
     return name.span.start if name.span else 0
 
 
-def plain(requirement: FormalizedRequirement) -> FormalizedRequirement:
+def without_probability(requirement: FormalizedRequirement) -> FormalizedRequirement:
     """The requirement without its probability, under the same id."""
     if requirement.sentence.probability is None:
         return requirement

@@ -43,7 +43,7 @@ def temporal_predicate(sentence: s.Sentence) -> str | None:
 
 
 @with_recursion_limit
-def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, Letter]:
+def letters_by_valuation(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, Letter]:
     """The letter (mode, condition, response, stop condition) of each valuation of the atoms.
 
     Each expression is evaluated once, as a column of bits: bit k is its value in the k-th
@@ -57,7 +57,7 @@ def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, L
 
 
 @with_recursion_limit
-def letters(sentence: s.Sentence, atoms: Sequence[str]) -> tuple[Letter, ...]:
+def all_letters(sentence: s.Sentence, atoms: Sequence[str]) -> tuple[Letter, ...]:
     """The letters of all valuations of the atoms, sorted."""
     every = (1 << 2 ** len(atoms)) - 1
     groups: list[tuple[tuple[bool, ...], int]] = [((), every)]
@@ -87,14 +87,14 @@ def atoms_of(sentence: s.Sentence) -> tuple[str, ...]:
 
 
 @with_recursion_limit
-def occurring(sentence: s.Sentence) -> tuple[Letter, ...]:
+def possible_letters(sentence: s.Sentence) -> tuple[Letter, ...]:
     """The possible letters; with more than `MOST_ATOMS` atoms, a superset of them.
 
     An extra letter does not change the language, since no valuation of the atoms has it.
     """
     atoms = atoms_of(sentence)
     if len(atoms) <= MOST_ATOMS:
-        return letters(sentence, atoms)
+        return all_letters(sentence, atoms)
     m, p, q, stop = (_values(part) for part in parts(sentence))
     return tuple(product(m, p, q, stop))
 
@@ -130,7 +130,7 @@ def _formula(expression: e.Expression) -> f.Formula:
 # Valuations that cannot occur ------------------------------------------------------------------
 
 
-def excluded(requirement: FormalizedRequirement) -> tuple[Exclusion, ...]:
+def impossible_combinations(requirement: FormalizedRequirement) -> tuple[Exclusion, ...]:
     """The comparisons of a requirement that exclude each other, whatever is measured."""
     signals = requirement.declarations.signals if requirement.declarations else {}
     scales = {name: signal.scale for name, signal in signals.items()}

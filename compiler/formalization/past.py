@@ -1,7 +1,7 @@
 """The past-time formula of a sentence, and its monitor specification.
 
 `past` is true at the last tick of a finite trace exactly if the trace satisfies the sentence, and
-at every earlier tick for the trace up to there. `watch` expresses the same as signals that a
+at every earlier tick for the trace up to there. `monitor_spec` expresses the same as signals that a
 monitor computes at each tick: where a demand is triggered, broken and still open.
 
 Source: SEMANTICS of FRETish, section 3; the shapes follow Giannakopoulou et al., IST 137 (2021),
@@ -120,7 +120,7 @@ def past(obligation: Obligation) -> Formula:
     return and_(historically(_unless(broken)), _unless(_fails(demand, stage)))
 
 
-def watch(obligation: Obligation) -> MonitorSpec:
+def monitor_spec(obligation: Obligation) -> MonitorSpec:
     """The signals of a monitor; counting operators look back from now, never from a deadline."""
     stage, demand = scope_formulas(obligation), obligation.demand
     breach = or_(_broken(demand, stage), _broken_at_end(demand, stage))

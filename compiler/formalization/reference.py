@@ -292,7 +292,7 @@ def _triggers(condition: ConditionKind | None, p: bool, *, first: bool, held: bo
             assert_never(condition)
 
 
-class Happening(NamedTuple):
+class TickRole(NamedTuple):
     """Whether a tick is enforced, and whether it is a trigger."""
 
     enforced: bool
@@ -301,12 +301,12 @@ class Happening(NamedTuple):
     """A demand begins at it."""
 
 
-def happening(template: Template, state: State, m: bool, p: bool) -> Happening:
+def tick_role(template: Template, state: State, m: bool, p: bool) -> TickRole:
     """The properties of a tick with mode `m` and condition `p`, after `state`."""
     if _entered(template.scope, state.phase, m) not in _ENFORCED:
-        return Happening(enforced=False, triggered=False)
+        return TickRole(enforced=False, triggered=False)
     first = state.phase not in _ENFORCED
-    return Happening(True, _triggers(template.condition, p, first=first, held=state.held))
+    return TickRole(True, _triggers(template.condition, p, first=first, held=state.held))
 
 
 def accepts(template: Template, state: State) -> bool:

@@ -76,7 +76,7 @@ def _without(
     }
 
 
-def resolved(
+def with_signal_atoms(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> FormalizedRequirement | Diagnostic:
     """The requirement with declarations extended by its atoms over signals."""
@@ -104,7 +104,9 @@ def resolved(
             propositions[name] = Proposition(
                 name, bound, printed(own), aggregate=aggregate, span=span
             )
-    return replace(requirement, declarations=extended(declarations, propositions, mistakes))
+    return replace(
+        requirement, declarations=with_propositions(declarations, propositions, mistakes)
+    )
 
 
 def _aggregate(
@@ -124,7 +126,7 @@ def _aggregate(
     return kinds.pop()
 
 
-def extended(
+def with_propositions(
     declarations: Declarations,
     propositions: Mapping[str, Proposition],
     mistakes: Mapping[Part, tuple[Diagnostic, ...]],

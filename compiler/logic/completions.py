@@ -28,7 +28,7 @@ tick before, and appends to the memory for the next tick."""
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class FirstTicks:
     """The ticks at which completions of a run show a formula; None if not all do, or none does."""
 
     by_some: int | None
@@ -38,9 +38,9 @@ class Shown:
     ticks."""
 
 
-def shown(
+def first_ticks(
     formula: f.Formula, columns: Mapping[str, Column], ticks: int, counted: int
-) -> Shown | None:
+) -> FirstTicks | None:
     """The ticks at which completions show the formula; None if that needs more than `MOST_STEPS`.
 
     Args:
@@ -68,8 +68,8 @@ def shown(
         if is_shown and by_some is None:
             by_some = tick
         if not possible:
-            return Shown(by_some, tick)
-    return Shown(by_some, None)
+            return FirstTicks(by_some, tick)
+    return FirstTicks(by_some, None)
 
 
 _VALUES: Mapping[str, tuple[int, ...]] = {"0": (0,), "1": (1,), "2": (0, 1)}

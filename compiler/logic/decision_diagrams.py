@@ -78,34 +78,34 @@ def point(values: Mapping[int, bool]) -> Function:
     return conjunction
 
 
-def choice(condition: Function, then: Function, otherwise: Function) -> Function:
+def ite(condition: Function, then: Function, otherwise: Function) -> Function:
     """`condition ? then : otherwise`."""
     return _buddy().bdd_ite(condition, then, otherwise)
 
 
-def some(function: Function, variables: Function) -> Function:
+def exists(function: Function, variables: Function) -> Function:
     """Existential quantification over the variables of a cube."""
     return _buddy().bdd_exist(function, variables)
 
 
-def every(function: Function, variables: Function) -> Function:
+def forall(function: Function, variables: Function) -> Function:
     """Universal quantification over the variables of a cube."""
     return _buddy().bdd_forall(function, variables)
 
 
-def some_of_both(left: Function, right: Function, variables: Function) -> Function:
-    """`some(left & right, variables)`, without the conjunction ever being built."""
+def and_exists(left: Function, right: Function, variables: Function) -> Function:
+    """`exists(left & right, variables)`, without the conjunction ever being built."""
     buddy = _buddy()
     return buddy.bdd_appex(left, right, buddy.bddop_and, variables)
 
 
-def every_implied(left: Function, right: Function, variables: Function) -> Function:
-    """`every(left >> right, variables)`, without the implication ever being built."""
+def forall_implies(left: Function, right: Function, variables: Function) -> Function:
+    """`forall(left >> right, variables)`, without the implication ever being built."""
     buddy = _buddy()
     return buddy.bdd_appall(left, right, buddy.bddop_imp, variables)
 
 
-def composed(function: Function, number: int, value: Function) -> Function:
+def compose(function: Function, number: int, value: Function) -> Function:
     """The function with a variable replaced by another function."""
     return _buddy().bdd_compose(function, value, number)
 
@@ -154,7 +154,7 @@ def branches(function: Function) -> tuple[int, Function, Function]:
     return buddy.bdd_var(function), buddy.bdd_high(function), buddy.bdd_low(function)
 
 
-def parts(functions: Iterable[Function]) -> tuple[Function, ...]:
+def nodes(functions: Iterable[Function]) -> tuple[Function, ...]:
     """The non-constant nodes of the diagrams, each after its successors."""
     nodes: dict[Function, None] = {}
     waiting = [*functions]

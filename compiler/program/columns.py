@@ -13,7 +13,7 @@ class AtFirst:
 
 
 @dataclass(frozen=True, slots=True)
-class Before:
+class PreviousColumn:
     """The value of the tick before; at tick 0, `weak`."""
 
     value: Value
@@ -34,4 +34,4 @@ class Since:
     """The name of the column without bounds, if that is computed before."""
 
 
-Column = Value | AtFirst | Before | Since
+Column = Value | AtFirst | PreviousColumn | Since

@@ -13,7 +13,7 @@ from compiler.formalization.past import MonitorSpec
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.program import columns
-from compiler.program.columns import AtFirst, Before, Column
+from compiler.program.columns import AtFirst, Column, PreviousColumn
 from compiler.program.instructions import Advance, Assign, Choose, Count, Instruction, Shift, Slide
 from compiler.program.program import Block, Cell, Counter, Flag, Program, Requirement, Window
 from compiler.program.values import (
@@ -226,7 +226,9 @@ class _Writer:
         """The value of the tick before; at tick 0 it is `weak`."""
         name, comment = self._name("before"), self._comment(formula, positive)
         kept = Flag(f"kept_{name}", weak, comment)
-        return self._add(name, comment, Shift(name, kept.name, value), Before(value, weak), kept)
+        return self._add(
+            name, comment, Shift(name, kept.name, value), PreviousColumn(value, weak), kept
+        )
 
     def _since(
         self,

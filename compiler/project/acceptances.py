@@ -109,7 +109,7 @@ _ByCode = Mapping[tuple[Code, str], Sequence[Acceptance]]
 """Acceptances of headers by code and file, in their order; the others by code and `""`."""
 
 
-def answered(
+def with_acceptance_reasons(
     diagnostics: Iterable[Diagnostic], accepted: Sequence[Acceptance]
 ) -> tuple[Diagnostic, ...]:
     """The diagnostics, each accepted warning with the reason of its first acceptance."""
@@ -146,7 +146,7 @@ def _answers(diagnostic: Diagnostic, by_code: _ByCode) -> Iterator[Acceptance]:
     )
 
 
-def idle(
+def unused_acceptances(
     accepted: Sequence[Acceptance],
     warnings: Iterable[Diagnostic],
     declarations: Declarations | None,

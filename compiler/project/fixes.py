@@ -35,7 +35,7 @@ class FixedFile:
     which has the fixes of earlier passes."""
 
 
-def fixed(paths: Sequence[str]) -> tuple[FixedFile, ...]:
+def fixed_files(paths: Sequence[str]) -> tuple[FixedFile, ...]:
     """The files that have a safe fix, with all of their safe fixes applied.
 
     Files without a safe fix are left out, and so are unreadable ones, which their next reader

@@ -12,8 +12,8 @@ from compiler.files.settings import Settings, settings
 from compiler.files.text_files import read
 from compiler.formalization.formalize import duplicate_ids, formalize, unreadable_sentence
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.resolution import extended
-from compiler.project.acceptances import acceptances, answered
+from compiler.formalization.resolution import with_propositions
+from compiler.project.acceptances import acceptances, with_acceptance_reasons
 from compiler.project.hazards import cycles, unknown_parents
 from compiler.project.hazards import hazards as read_hazards
 from compiler.project.paths import (
@@ -81,7 +81,7 @@ def load(
         failed,
         declarations,
         hazard_of,
-        answered(everything, accepted),
+        with_acceptance_reasons(everything, accepted),
         (*of_all, *upward),
         mistaken,
         above,
@@ -98,7 +98,7 @@ def _with_atoms(
     for requirement in requirements:
         if declarations is not None and requirement.declarations is not None:
             own = requirement.declarations
-            declarations = extended(declarations, own.propositions, own.mistakes)
+            declarations = with_propositions(declarations, own.propositions, own.mistakes)
     return declarations
 
 

@@ -35,7 +35,7 @@ class Formatted:
         return PurePosixPath(self.path)
 
 
-def formatted(paths: Sequence[str]) -> tuple[tuple[Formatted, ...], tuple[Diagnostic, ...]]:
+def formatted_files(paths: Sequence[str]) -> tuple[tuple[Formatted, ...], tuple[Diagnostic, ...]]:
     """Every file with canonical sentences; headers and all other text stay unchanged."""
     files: list[Formatted] = []
     diagnostics: list[Diagnostic] = []

@@ -46,7 +46,7 @@ KEPT = "variable"
 
 
 @dataclass(frozen=True, slots=True)
-class Imported:
+class ImportedRequirement:
     """One requirement of the export."""
 
     id: str
@@ -56,7 +56,7 @@ class Imported:
 
 
 @dataclass(frozen=True, slots=True)
-class Import:
+class ImportResult:
     """The result of an import: files and diagnostics."""
 
     artifacts: tuple[Artifact, ...] = ()
@@ -66,7 +66,7 @@ class Import:
     mapping: Mapping[str, str] = field(default_factory=dict)
 
 
-def read_export(source: Source, columns: Mapping[str, str]) -> Import:
+def read_export(source: Source, columns: Mapping[str, str]) -> ImportResult:
     """Read FRET's JSON, or a CSV of any tool.
 
     Args:
@@ -74,10 +74,10 @@ def read_export(source: Source, columns: Mapping[str, str]) -> Import:
         columns: for CSV, the names of the columns `id`, `text` and `project`.
     """
     result = with_budget(len(source.text), source.span(0, 0), lambda: _read(source, columns))
-    return Import((), (result,), 0, 0) if isinstance(result, Diagnostic) else result
+    return ImportResult((), (result,), 0, 0) if isinstance(result, Diagnostic) else result
 
 
-def _read(source: Source, columns: Mapping[str, str]) -> Import:
+def _read(source: Source, columns: Mapping[str, str]) -> ImportResult:
     if source.name.lower().endswith(".csv"):
         return _from_csv(source, columns)
     return _from_json(source)
@@ -86,7 +86,7 @@ def _read(source: Source, columns: Mapping[str, str]) -> Import:
 # JSON ------------------------------------------------------------------------------------------
 
 
-def _from_json(source: Source) -> Import:
+def _from_json(source: Source) -> ImportResult:
     try:
         data: Any = parsed(source.text).value
     except json.JSONDecodeError as error:
@@ -104,7 +104,7 @@ def _from_json(source: Source) -> Import:
     kept: list[Mapping[str, Any]] = []
     declared = _variables(variables, source, diagnostics, kept)
     files = [*_documents(entries), *_glossary(declared, kept)]
-    return Import(tuple(files), tuple(diagnostics), len(entries), len(declared))
+    return ImportResult(tuple(files), tuple(diagnostics), len(entries), len(declared))
 
 
 def _parts(data: Any) -> tuple[list[Mapping[str, Any]], list[Mapping[str, Any]]] | str:
@@ -134,7 +134,7 @@ def _records(value: Any) -> list[Mapping[str, Any]]:
 
 def _requirements(
     records: Iterable[Mapping[str, Any]], source: Source, diagnostics: list[Diagnostic]
-) -> Iterator[Imported]:
+) -> Iterator[ImportedRequirement]:
     taken: set[str] = set()
     ids: dict[tuple[str, str], str] = {}
     entries: list[tuple[str, str, Mapping[str, Any]]] = []
@@ -163,7 +163,7 @@ def _requirements(
         entries.append((id, fulltext, record))
     for id, fulltext, record in entries:
         project = _text(record.get("project"))
-        yield Imported(id, _unfenced(fulltext), _header(id, record, ids), project)
+        yield ImportedRequirement(id, _unfenced(fulltext), _header(id, record, ids), project)
         diagnostics.extend(_unread(id, fulltext))
 
 
@@ -230,9 +230,9 @@ def _text(value: Any) -> str:
     return text.encode("utf-8", "replace").decode()  # half of a character is none
 
 
-def _documents(requirements: Sequence[Imported]) -> Iterator[Artifact]:
+def _documents(requirements: Sequence[ImportedRequirement]) -> Iterator[Artifact]:
     """One `.fret` file for each project."""
-    by_project: dict[str, list[Imported]] = {}
+    by_project: dict[str, list[ImportedRequirement]] = {}
     for requirement in requirements:
         by_project.setdefault(requirement.project, []).append(requirement)
     taken: set[str] = set()
@@ -242,7 +242,7 @@ def _documents(requirements: Sequence[Imported]) -> Iterator[Artifact]:
         yield Artifact(PurePosixPath(f"{name}.fret"), text)
 
 
-def _pair(requirement: Imported) -> str:
+def _pair(requirement: ImportedRequirement) -> str:
     return f"+++\n{tomli_w.dumps(requirement.header)}+++\n{requirement.fulltext}\n"
 
 
@@ -450,7 +450,7 @@ _GUESSES = {
 }
 
 
-def _from_csv(source: Source, columns: Mapping[str, str]) -> Import:
+def _from_csv(source: Source, columns: Mapping[str, str]) -> ImportResult:
     delimiter = _delimiter(source.text)
     try:
         reader = csv.DictReader(
@@ -466,10 +466,10 @@ def _from_csv(source: Source, columns: Mapping[str, str]) -> Import:
         )
     chosen = _columns(names, columns, source)
     if isinstance(chosen, Diagnostic):
-        return Import((), (chosen,))
+        return ImportResult((), (chosen,))
     diagnostics: list[Diagnostic] = []
     entries = list(_requirements((_row(row, chosen) for row in rows), source, diagnostics))
-    return Import(tuple(_documents(entries)), tuple(diagnostics), len(entries), 0, chosen)
+    return ImportResult(tuple(_documents(entries)), tuple(diagnostics), len(entries), 0, chosen)
 
 
 _DELIMITERS = ",;\t"
@@ -540,8 +540,8 @@ def _row(row: Mapping[str | None, Any], chosen: Mapping[str, str]) -> dict[str, 
 # Mistakes --------------------------------------------------------------------------------------
 
 
-def _failed(why: str, source: Source, at: int = 0) -> Import:
-    return Import((), (_bad(why, source, "use an export of FRET (JSON), or a CSV file", at),))
+def _failed(why: str, source: Source, at: int = 0) -> ImportResult:
+    return ImportResult((), (_bad(why, source, "use an export of FRET (JSON), or a CSV file", at),))
 
 
 def _bad(why: str, source: Source, fix: str, at: int = 0) -> Diagnostic:

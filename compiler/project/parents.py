@@ -23,7 +23,7 @@ from xml.etree import ElementTree
 
 from compiler.files.checked_json import SchemaError, plain
 from compiler.files.settings import Settings
-from compiler.files.text_files import regular
+from compiler.files.text_files import open_regular
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import missing_extra
 from fretish.diagnostics.source import Source, Span
@@ -146,7 +146,7 @@ _MOST = 64 * 2**20
 
 
 def _text(path: Path) -> str:
-    with regular(path) as file:
+    with open_regular(path) as file:
         return _decoded(file.read(_MOST + 1))
 
 
@@ -270,7 +270,7 @@ _NAMES = ("ReqIF.ForeignID", "ReqIF.Name", "ReqIF.ChapterName", "ReqIF.Text", "U
 
 def _reqifz(path: Path, name: str) -> Iterator[Parent]:
     try:
-        with regular(path) as file, zipfile.ZipFile(file) as archive:
+        with open_regular(path) as file, zipfile.ZipFile(file) as archive:
             inside = sorted(n for n in archive.namelist() if n.lower().endswith(".reqif"))
             most = _LEAST_PACKED + _RATIO * path.stat().st_size
             if sum(archive.getinfo(member).file_size for member in inside) > most:

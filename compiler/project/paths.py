@@ -46,7 +46,7 @@ def _is_folder(path: str) -> bool:
     return bool(path) and path != "-" and os.path.isdir(path)
 
 
-def listed(paths: Sequence[str]) -> list[str] | Diagnostic:
+def expanded_paths(paths: Sequence[str]) -> list[str] | Diagnostic:
     """The files, with folders replaced by their files; each once, however it is spelt.
 
     The order is that of `paths`, or the natural one if `paths` has the order of a shell's `*.fret`.

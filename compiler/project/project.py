@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from compiler.files.attribution import NOBODY, Attribution
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.project.acceptances import Acceptance, answered
+from compiler.project.acceptances import Acceptance, with_acceptance_reasons
 from compiler.project.hazards import Hazard
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -93,4 +93,4 @@ class Project:
 
     def answered(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
         """The diagnostics, with the reason added to each accepted warning."""
-        return answered(diagnostics, self.acceptances)
+        return with_acceptance_reasons(diagnostics, self.acceptances)

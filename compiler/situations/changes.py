@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import islice
 
-from compiler.situations.thresholds import written
+from compiler.situations.thresholds import literal_number
 from fretish import expressions as e
 from fretish.printer import expression
 
@@ -15,7 +15,7 @@ MOST_PARTS = 100
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class ExpressionChange:
     """An expression with one thing changed."""
 
     operator: str
@@ -26,7 +26,7 @@ class Change:
     whole: e.Expression
 
 
-def changes(whole: e.Expression) -> Iterator[Change]:
+def changes(whole: e.Expression) -> Iterator[ExpressionChange]:
     """Each change of one part of an expression, outer parts first; none if it is large."""
     if not is_large(whole):
         yield from _changes(whole)
@@ -37,7 +37,7 @@ def is_large(whole: e.Expression) -> bool:
     return sum(1 for _ in islice(e.parts(whole), MOST_PARTS + 1)) > MOST_PARTS
 
 
-def _changes(whole: e.Expression) -> Iterator[Change]:
+def _changes(whole: e.Expression) -> Iterator[ExpressionChange]:
     yield from _dropped(whole)
     yield from _other_operator(whole)
     match whole:
@@ -49,7 +49,7 @@ def _changes(whole: e.Expression) -> Iterator[Change]:
             pass  # what a call is about is its own
 
 
-def _within(whole: e.Expression) -> Iterator[Change]:
+def _within(whole: e.Expression) -> Iterator[ExpressionChange]:
     """Changes of one operand."""
     operands = e.children(whole)
     for place, operand in enumerate(operands):
@@ -66,7 +66,7 @@ def opposite(part: e.Expression) -> e.Expression:
     return part.arg if isinstance(part, e.Not) else e.Not(part)
 
 
-def _dropped(whole: e.Expression) -> Iterator[Change]:
+def _dropped(whole: e.Expression) -> Iterator[ExpressionChange]:
     """The changes that drop one operand of a conjunction or disjunction."""
     if not isinstance(whole, e.And | e.Or):
         return
@@ -74,10 +74,10 @@ def _dropped(whole: e.Expression) -> Iterator[Change]:
         rest = (*whole.args[:place], *whole.args[place + 1 :])
         text = expression(operand)
         less = rest[0] if len(rest) == 1 else replace(whole, args=rest)
-        yield Change("dropped", text, f"without `{text}`", less)
+        yield ExpressionChange("dropped", text, f"without `{text}`", less)
 
 
-def _other_operator(whole: e.Expression) -> Iterator[Change]:
+def _other_operator(whole: e.Expression) -> Iterator[ExpressionChange]:
     """The changes of an operator, such as `|` for `&`."""
     match whole:
         case e.And(args):
@@ -105,7 +105,7 @@ _NEAR: Mapping[e.ComparisonOperator, tuple[e.ComparisonOperator, ...]] = {
 """Similar comparison operators; `=` has none, since `negated` covers it."""
 
 
-def _comparison(whole: e.Comparison) -> Iterator[Change]:
+def _comparison(whole: e.Comparison) -> Iterator[ExpressionChange]:
     for op in _NEAR[whole.op]:
         yield _replaced("compared", whole, replace(whole, op=op))
     for other in _moved(whole.left):
@@ -116,12 +116,12 @@ def _comparison(whole: e.Comparison) -> Iterator[Change]:
 
 def _moved(side: e.Expression) -> Iterator[e.Expression]:
     """The number plus and minus one step."""
-    number = written(side)
+    number = literal_number(side)
     if number is not None:
         yield from (number.moved(number.step), number.moved(-number.step))
 
 
-def _replaced(operator: str, old: e.Expression, new: e.Expression) -> Change:
+def _replaced(operator: str, old: e.Expression, new: e.Expression) -> ExpressionChange:
     was, now = expression(old), expression(new)
     about = was if operator == "negated" else now
-    return Change(operator, about, f"`{now}` in place of `{was}`", new)
+    return ExpressionChange(operator, about, f"`{now}` in place of `{was}`", new)

@@ -16,8 +16,8 @@ from compiler.formalization.obligation import TRAITS, Kind, Trait
 from compiler.logic import formula as f
 from compiler.situations.decisions import Operand, operands
 from compiler.situations.demands import of_demand
-from compiler.situations.thresholds import Place, places
-from compiler.situations.tick_predicates import TickPredicates, facts
+from compiler.situations.thresholds import ThresholdPosition, threshold_positions
+from compiler.situations.tick_predicates import TickPredicates, tick_predicates
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, calls, conditions
@@ -84,7 +84,7 @@ class Situation:
     """An atom that must be unknown at that tick. The formula says that the value of the atom
     decides; if parts of the sentence share the atom, the formula must hold for both of its
     values."""
-    place: Place | None = None
+    place: ThresholdPosition | None = None
     """The required position of a number relative to a threshold at that tick: over signals as in
     the bindings, or over the variables of the sentence without bindings."""
 
@@ -107,7 +107,7 @@ def situations(requirement: FormalizedRequirement, *, exact: bool = False) -> tu
         for name in calls(expression)
     ):
         return ()
-    predicates, read = facts(requirement, exact=exact), {*requirement.propositions}
+    predicates, read = tick_predicates(requirement, exact=exact), {*requirement.propositions}
     return tuple(
         goal
         for goal in (*_of_time(requirement, predicates), *_of_operands(requirement, predicates))
@@ -248,7 +248,10 @@ def _of_operand(requirement: FormalizedRequirement, operand: Operand) -> Iterato
     texts = {"operand": expression(shown), "part": operand.part}
 
     def situation(
-        key: str, formula: f.Formula, place: Place | None = None, unknown: str | None = None
+        key: str,
+        formula: f.Formula,
+        place: ThresholdPosition | None = None,
+        unknown: str | None = None,
     ) -> Situation:
         numbers = {} if place is None else _numbers(place)
         words = MEANINGS[key].format(**texts, **numbers)
@@ -267,15 +270,17 @@ def _of_operand(requirement: FormalizedRequirement, operand: Operand) -> Iterato
         yield situation("unknown", operand.decides, unknown=operand.atom)
 
 
-def _numbers(place: Place) -> Mapping[str, str]:
+def _numbers(place: ThresholdPosition) -> Mapping[str, str]:
     return {"measured": expression(place.measured), "number": expression(place.number)}
 
 
-def _places(stated: e.Expression) -> Iterator[tuple[e.Comparison, str, Place]]:
+def _places(stated: e.Expression) -> Iterator[tuple[e.Comparison, str, ThresholdPosition]]:
     """The thresholds of each comparison in an operand, or in its proposition."""
     for part in dict.fromkeys(e.parts(stated)):
         if isinstance(part, e.Comparison):
-            yield from ((part, f"threshold-{key}", place) for key, place in places(part))
+            yield from (
+                (part, f"threshold-{key}", place) for key, place in threshold_positions(part)
+            )
 
 
 def _short(part: e.Expression) -> str:

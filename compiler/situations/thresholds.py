@@ -17,7 +17,7 @@ _MOST_DIGITS = 25
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class LiteralNumber:
     """A literal number, possibly with a unit and a sign."""
 
     unsigned: e.Number | e.Quantity
@@ -36,7 +36,7 @@ class Written:
         return e.Negation(moved_number) if value < 0 else moved_number
 
 
-def written(side: e.Expression) -> Written | None:
+def literal_number(side: e.Expression) -> LiteralNumber | None:
     """The literal number of an expression; None for any other, or one with too many digits."""
     unsigned = side.arg if isinstance(side, e.Negation) else side
     if not isinstance(unsigned, e.Number | e.Quantity):
@@ -47,11 +47,11 @@ def written(side: e.Expression) -> Written | None:
     if size >= _MOST_DIGITS:
         return None
     step = Decimal(1).scaleb(int(exponent))
-    return Written(unsigned, -exact if isinstance(side, e.Negation) else exact, step)
+    return LiteralNumber(unsigned, -exact if isinstance(side, e.Negation) else exact, step)
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class ThresholdPosition:
     """A number at a threshold, or one step beside it."""
 
     measured: e.Expression
@@ -78,13 +78,20 @@ class Place:
 STEPS: Mapping[str, int] = {"below": -1, "at": 0, "above": 1}
 
 
-def places(comparison: e.Comparison) -> Iterator[tuple[str, Place]]:
+def threshold_positions(comparison: e.Comparison) -> Iterator[tuple[str, ThresholdPosition]]:
     """The positions one step below, at, and one step above the threshold of a comparison."""
     left, right = comparison.left, comparison.right
-    number, measured = (written(left), right) if written(left) else (written(right), left)
+    number, measured = (
+        (literal_number(left), right) if literal_number(left) else (literal_number(right), left)
+    )
     if number is None or not any(e.names(measured)):
         return
     half = number.step / 2
     for name, steps in STEPS.items():
         here = steps * number.step
-        yield name, Place(measured, *(number.moved(here + by) for by in (Decimal(0), -half, half)))
+        yield (
+            name,
+            ThresholdPosition(
+                measured, *(number.moved(here + by) for by in (Decimal(0), -half, half))
+            ),
+        )

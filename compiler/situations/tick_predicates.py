@@ -263,6 +263,6 @@ class TickPredicates:
         return self.waiting if Trait.STOPS in TRAITS[self.demand.kind] else f.FALSE
 
 
-def facts(requirement: FormalizedRequirement, *, exact: bool = False) -> TickPredicates:
+def tick_predicates(requirement: FormalizedRequirement, *, exact: bool = False) -> TickPredicates:
     """The predicates of a requirement, with temporal predicates as past-time formulas."""
     return TickPredicates(obligation(requirement.sentence, requirement.ticks or 0, Past()), exact)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import atoms_of, excluded
+from compiler.formalization.letters import atoms_of, impossible_combinations
 from compiler.formalization.resolution import candidates
 from compiler.logic import formula as f
 from compiler.logic.identifiers import legal_names
@@ -68,11 +68,11 @@ def definitions(requirement: FormalizedRequirement, names: Mapping[str, str]) ->
     }
 
 
-def impossible(requirement: FormalizedRequirement, names: Mapping[str, str]) -> list[str]:
+def impossible_texts(requirement: FormalizedRequirement, names: Mapping[str, str]) -> list[str]:
     """The combinations of comparisons that never occur, in a language's names."""
     return [
         ", ".join(f"{names[atom]} {str(value).lower()}" for atom, value in exclusion)
-        for exclusion in excluded(requirement)
+        for exclusion in impossible_combinations(requirement)
     ]
 
 
@@ -81,12 +81,12 @@ def notes(requirement: FormalizedRequirement) -> list[str]:
     names = comparison_names(requirement)
     return [
         *(f"{name}: {meaning}" for name, meaning in definitions(requirement, names).items()),
-        *(f"never at one tick: {together}" for together in impossible(requirement, names)),
+        *(f"never at one tick: {together}" for together in impossible_texts(requirement, names)),
     ]
 
 
-def renamed(formula: f.Formula, names: Mapping[str, str]) -> f.Formula:
+def with_renamed_atoms(formula: f.Formula, names: Mapping[str, str]) -> f.Formula:
     """The formula with atoms renamed."""
     if isinstance(formula, f.Atom):
         return f.Atom(names.get(formula.name, formula.name))
-    return f.rebuild(formula, lambda part: renamed(part, names))
+    return f.rebuild(formula, lambda part: with_renamed_atoms(part, names))

@@ -36,7 +36,7 @@ from compiler.logic import formula as f
 from compiler.logic.identifiers import legal_names, underlined
 from compiler.logic.spelling.reserved_words import DAFNY
 from compiler.targets.comparison_names import comparison_names, in_words
-from compiler.targets.dafny_claims import CHANNELS, Delay, delay, loopless
+from compiler.targets.dafny_claims import CHANNELS, Delay, delay, no_loop_reason
 from compiler.targets.interceptor_options import options as core
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from fretish import expressions as e
@@ -286,7 +286,7 @@ def _interceptor(declarations: Declarations | None) -> str:
 
 
 def _loop(requirement: FormalizedRequirement, declarations: Declarations | None) -> str:
-    reason = loopless(requirement, declarations)
+    reason = no_loop_reason(requirement, declarations)
     if reason is not None:
         return render("dafny/loopless.dfy.j2", reason=reason)
     declared = delay(requirement, declarations)

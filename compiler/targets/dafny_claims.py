@@ -42,7 +42,9 @@ class Delay:
         return self.reach + self.braking
 
 
-def loopless(requirement: FormalizedRequirement, declarations: Declarations | None) -> str | None:
+def no_loop_reason(
+    requirement: FormalizedRequirement, declarations: Declarations | None
+) -> str | None:
     """The reason why the file has no claim about the closed loop; None if it has one."""
     if declarations is None or declarations.interceptor is None:
         return "the bindings have no [interceptor], and the plain form waits for a command to stop"
@@ -147,7 +149,7 @@ def _assumed(declarations: Declarations | None) -> tuple[str, ...]:
 def _loop_claims(
     requirement: FormalizedRequirement, declarations: Declarations | None
 ) -> Iterator[Claim]:
-    if loopless(requirement, declarations) is not None:
+    if no_loop_reason(requirement, declarations) is not None:
         return
     assumptions = _assumed(declarations)
     declared, bound = delay(requirement, declarations), requirement.ticks

@@ -38,7 +38,7 @@ ASSUMED = "[interceptor] and [assume]"
 """The name of the assumptions among the artefacts of a proof about the closed loop."""
 
 
-def assumed(declarations: Declarations) -> str:
+def assumptions_digest(declarations: Declarations) -> str:
     """SHA-256 of `[interceptor]` and `[assume]`; "" without `[assume]`.
 
     Equal meanings have equal digests. The clock is included, since times are counted in ticks.

@@ -25,7 +25,7 @@ from compiler.logic import printing
 from compiler.logic.identifiers import legal_names, numbered
 from compiler.logic.printing import identifier as identifier_of
 from compiler.logic.spelling.reserved_words import PRISM
-from compiler.targets.comparison_names import comparison_names, impossible, in_words
+from compiler.targets.comparison_names import comparison_names, impossible_texts, in_words
 from compiler.targets.target import (
     DEFAULT,
     Options,
@@ -124,7 +124,7 @@ def _files(requirement: FormalizedRequirement) -> Iterator[Artifact]:
         "sentence": wording(requirement.entry),
         "inputs": inputs,
     }
-    values["impossible"] = impossible(requirement, names)
+    values["impossible"] = impossible_texts(requirement, names)
     for ending, more in (
         ("props", {"property": property_(requirement.pctl, names)}),
         ("prism", {}),

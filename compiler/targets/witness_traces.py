@@ -7,7 +7,12 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import MOST_ATOMS, atoms_of, meanings, temporal_predicate
+from compiler.formalization.letters import (
+    MOST_ATOMS,
+    atoms_of,
+    letters_by_valuation,
+    temporal_predicate,
+)
 from compiler.formalization.reference import (
     BROKEN,
     Automaton,
@@ -38,7 +43,7 @@ class WitnessTrace:
     ticks: tuple[RepeatedTick, ...]
 
 
-def words(requirement: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
+def witness_traces(requirement: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
     """The shortest run to each possible verdict, and to the state that takes longest to reach.
 
     Empty if the reference cannot express the sentence, or is too large.
@@ -46,7 +51,7 @@ def words(requirement: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
     atoms = atoms_of(requirement.sentence)
     if temporal_predicate(requirement.sentence) is not None or len(atoms) > MOST_ATOMS:
         return ()
-    letter_of = meanings(requirement.sentence, atoms)
+    letter_of = letters_by_valuation(requirement.sentence, atoms)
     letters = {letter: values for values, letter in reversed([*letter_of.items()])}
     try:
         counted = explore(

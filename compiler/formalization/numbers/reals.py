@@ -157,13 +157,13 @@ NOT_DECIDED = (
 )
 
 
-def only_rounded(exclusion: Exclusion) -> str:
+def rounding_note(exclusion: Exclusion) -> str:
     """The note for a trace that no exact numbers make."""
     literals = exclusion_in_words(exclusion)
     return f"in exact arithmetic no numbers make {literals}; rounded floats may"
 
 
-def by_numbers(
+def with_numeric_counterexample(
     requirement: FormalizedRequirement,
     atoms: Sequence[str],
     kind: type[Found],
@@ -197,4 +197,4 @@ def by_numbers(
         if not isinstance(other, kind):
             break
         shown = other
-    return first, f"no other trace was found that shows it, and {only_rounded(excluded[0])}"
+    return first, f"no other trace was found that shows it, and {rounding_note(excluded[0])}"

@@ -29,7 +29,7 @@ class NoTermError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Before:
+class PreviousValue:
     """The value of a variable at the tick before."""
 
     of: str
@@ -66,7 +66,7 @@ class Terms:
         self._words: dict[str, int] = {}
         self.variables: dict[str, Term] = {}
         """z3 constants of all variables."""
-        self.before: dict[str, Before] = {}
+        self.before: dict[str, PreviousValue] = {}
         """The variables that stand for values at the tick before."""
 
     @with_recursion_limit
@@ -185,7 +185,7 @@ class Terms:
             raise NoTermError("begins with a number that is not whole")
         first = z3.ToReal(first) if now.is_real() and first.is_int() else first
         constant = z3.Int(name) if now.is_int() else z3.Real(name)
-        self.before[name] = Before(of, first)
+        self.before[name] = PreviousValue(of, first)
         return self.variables.setdefault(name, constant)
 
     def _variable(self, name: str, *, is_base: bool) -> Term:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Words(Container[str]):
+class ReservedWords(Container[str]):
     """Words, and a pattern for families of words."""
 
     words: frozenset[str]
@@ -24,13 +24,13 @@ class Words(Container[str]):
             return True
         return name in self.words
 
-    def __or__(self, more: Collection[str]) -> Words:
+    def __or__(self, more: Collection[str]) -> ReservedWords:
         """The words with some more words."""
-        return Words(self.words.union(more), self.family)
+        return ReservedWords(self.words.union(more), self.family)
 
 
-def _words(text: str, family: str | None = None) -> Words:
-    return Words(frozenset(text.split()), None if family is None else re.compile(family))
+def _words(text: str, family: str | None = None) -> ReservedWords:
+    return ReservedWords(frozenset(text.split()), None if family is None else re.compile(family))
 
 
 FRET = _words(

@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from compiler.agents.gwendolen import Action, Change, Deed, Guard
+from compiler.agents.gwendolen import Action, BeliefChange, Deed, Guard
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.spelling.reserved_words import AJPF_ACTIONS
 from compiler.targets.ajpf import names
@@ -34,7 +34,7 @@ _TARGET = "an agent"
 class Reaction:
     """A plan of the agent."""
 
-    event: Change
+    event: BeliefChange
     guards: tuple[Guard, ...]
     deeds: tuple[Deed, ...]
 
@@ -212,7 +212,7 @@ def _answer(requirement: FormalizedRequirement, name: str) -> tuple[Deed, ...]:
     """An action and the belief that it was done; only the action if that is the response."""
     if not _is_belief(requirement, name):
         return (Action(_spelt(requirement)[name]),)
-    return Action(_action(requirement, name)), Change("+", _spelt(requirement)[name])
+    return Action(_action(requirement, name)), BeliefChange("+", _spelt(requirement)[name])
 
 
 def _action(requirement: FormalizedRequirement, name: str) -> str:
@@ -227,7 +227,7 @@ def _reactions(
     """A plan for each event that can make a term true; the guard `last` blocks a second answer."""
     plans = [
         Reaction(
-            Change("+" if positive else "-", name),
+            BeliefChange("+" if positive else "-", name),
             (
                 *(Guard(value, other) for other, value in term if other != name),
                 *([last] if last else []),
@@ -243,5 +243,5 @@ def _reactions(
 def _releases(terms: tuple[Term, ...], response: str) -> tuple[Reaction, ...]:
     """The plan that takes the only response back when the only trigger goes."""
     (((trigger, _),),) = terms
-    deeds = (Action(f"undo_{response}"), Change("-", response))
-    return (Reaction(Change("-", trigger), (), deeds),)
+    deeds = (Action(f"undo_{response}"), BeliefChange("-", response))
+    return (Reaction(BeliefChange("-", trigger), (), deeds),)

@@ -14,7 +14,7 @@ from functools import lru_cache
 from typing import assert_never
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import occurring, parts
+from compiler.formalization.letters import parts, possible_letters
 from compiler.formalization.obligation import Kind, obligation
 from compiler.formalization.reference import (
     BROKEN,
@@ -118,7 +118,7 @@ def explored(requirement: FormalizedRequirement) -> Automaton:
         TooManyStatesError: it has more than `MOST_STATES`.
     """
     kind = template(requirement.sentence, requirement.ticks or 0)
-    return _cached(kind, occurring(requirement.sentence))
+    return _cached(kind, possible_letters(requirement.sentence))
 
 
 @lru_cache(maxsize=4)  # a requirement is asked whether it is refused before it is emitted

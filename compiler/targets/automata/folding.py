@@ -46,7 +46,7 @@ class Edge:
 
 
 @dataclass(frozen=True, slots=True)
-class Folded:
+class FoldedChart:
     """A deterministic folded chart; deciding nodes have no edges."""
 
     nodes: tuple[Node, ...]
@@ -54,7 +54,7 @@ class Folded:
     start: str
 
 
-def folded(requirement: FormalizedRequirement) -> Folded:
+def folded_chart(requirement: FormalizedRequirement) -> FoldedChart:
     """The folded chart of a requirement; an initial node that equals another one is merged with it.
 
     Raises:
@@ -92,7 +92,7 @@ class _Folding:
             count = (count > 0) - (count < 0)
         return state.phase, state.held, count
 
-    def result(self) -> Folded:
+    def result(self) -> FoldedChart:
         edges = [
             edge
             for members in self.groups.values()
@@ -102,7 +102,7 @@ class _Folding:
         for index, name in ((self.chart.violated, VIOLATED), (self.chart.satisfied, SATISFIED)):
             if self.chart.has(index):
                 nodes.append(Node(name, (name,), None, name == SATISFIED))
-        return Folded(tuple(nodes), tuple(edges), self.names[self.chart.start])
+        return FoldedChart(tuple(nodes), tuple(edges), self.names[self.chart.start])
 
     def _count(self, index: int) -> int | None:
         """The counter of a state: k ticks, or the register of triggers."""
@@ -182,7 +182,7 @@ def _ago(ticks: int) -> str:
     return "1 tick ago" if ticks == 1 else f"{ticks} ticks ago"
 
 
-def _without_twin(picture: Folded) -> Folded:
+def _without_twin(picture: FoldedChart) -> FoldedChart:
     """The chart without its initial node if another node has equal acceptance and edges."""
     by_name = {node.name: node for node in picture.nodes}
     start = by_name[picture.start]
@@ -193,9 +193,9 @@ def _without_twin(picture: Folded) -> Folded:
         if same and _leaving(picture, start.name) == _leaving(picture, node.name):
             nodes = tuple(other for other in picture.nodes if other is not start)
             edges = tuple(edge for edge in picture.edges if edge.source != start.name)
-            return Folded(nodes, edges, node.name)
+            return FoldedChart(nodes, edges, node.name)
     return picture
 
 
-def _leaving(picture: Folded, name: str) -> set[Edge]:
+def _leaving(picture: FoldedChart, name: str) -> set[Edge]:
     return {replace(edge, source="") for edge in picture.edges if edge.source == name}

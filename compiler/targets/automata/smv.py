@@ -15,7 +15,7 @@ from pathlib import PurePosixPath
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import atoms_of, excluded
+from compiler.formalization.letters import atoms_of, impossible_combinations
 from compiler.formalization.obligation import TRAITS, Obligation, Trait, obligation
 from compiler.formalization.record import wording
 from compiler.logic import printing
@@ -74,7 +74,9 @@ def _text(requirement: FormalizedRequirement) -> str:
         id=requirement.id,
         sentence=wording(requirement.entry),
         variables=[(names[name], meanings.get(name, name)) for name in names],
-        impossible=[_together(exclusion, names) for exclusion in excluded(requirement)],
+        impossible=[
+            _together(exclusion, names) for exclusion in impossible_combinations(requirement)
+        ],
         instance=instance,
         module_name=monitor_name,
         module=module,

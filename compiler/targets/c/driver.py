@@ -13,7 +13,7 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.program.program import Counter
 from compiler.program.rails import Reading, Ring
-from compiler.targets.c.monitor import printed
+from compiler.targets.c.monitor import c_printer
 from compiler.targets.c.printer import Printer
 
 ENTRY = "fretc_driver"
@@ -53,7 +53,7 @@ def driver(name: str, base: str, requirements: Sequence[FormalizedRequirement]) 
         base: the prefix of its functions.
         requirements: the requirements, in the order of outcomes.
     """
-    printer = printed(name, requirements)
+    printer = c_printer(name, requirements)
     program, ranges = printer.rail, [*_ranges(printer)]
     ends = {-1, 0, 1, *(end for cell in ranges for end in (cell.least, cell.most))}
     text = render(

@@ -25,7 +25,7 @@ from compiler.signals.functions import Functions, functions
 from compiler.targets.c import signals
 from compiler.targets.c.printer import Printer
 from compiler.targets.comparison_names import comparison_names, in_words
-from compiler.targets.python.monitor import described, module, prefixes_of, refusal, remark
+from compiler.targets.python.monitor import description_of, module, prefixes_of, refusal, remark
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
@@ -98,7 +98,7 @@ class Interface:
 def interface(requirements: Sequence[FormalizedRequirement]) -> tuple[Interface, ...]:
     """The interface of each requirement's monitor, in separate files as `emit` writes them."""
     every = [
-        (name, base, printed(name, [requirement]))
+        (name, base, c_printer(name, [requirement]))
         for name, base, requirement in _apart(requirements)
     ]
     return tuple(
@@ -112,7 +112,7 @@ def _files(
     name: str, base: str, requirements: Sequence[FormalizedRequirement]
 ) -> tuple[Artifact, ...]:
     """The header and the source of one monitor for all of the requirements."""
-    printer = printed(name, requirements)
+    printer = c_printer(name, requirements)
     meanings = {
         atom: text for requirement in requirements for atom, text in in_words(requirement).items()
     }
@@ -124,7 +124,7 @@ def _files(
         "c/monitor.h.j2",
         **values,
         guard=signals.guard(name),
-        formalized=[described(requirement) for requirement in requirements],
+        formalized=[description_of(requirement) for requirement in requirements],
         tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         version=__version__,
         inputs=[{"name": own, "text": meanings.get(name, name)} for name, own in inputs],
@@ -139,7 +139,7 @@ def _files(
 
 
 @dataclass(frozen=True, slots=True)
-class Joined:
+class JoinedInterface:
     """The names in the interface of one monitor for all requirements; all begin with `monitors`."""
 
     inputs: Mapping[str, str]
@@ -151,17 +151,17 @@ class Joined:
 
 
 @with_recursion_limit
-def joined(requirements: Sequence[FormalizedRequirement]) -> Joined:
+def joined_interface(requirements: Sequence[FormalizedRequirement]) -> JoinedInterface:
     """The interface of `emit` with `one_file`, for requirements with bindings."""
-    printer = printed("monitors", requirements)
+    printer = c_printer("monitors", requirements)
     sample_functions = functions(requirements, printer.names, signals.LANGUAGE, C)
     assert sample_functions is not None, "there are bindings"
-    return Joined(
+    return JoinedInterface(
         printer.names, tuple(reading.prefix for reading in printer.rail.readings), sample_functions
     )
 
 
-def printed(name: str, requirements: Sequence[FormalizedRequirement]) -> Printer:
+def c_printer(name: str, requirements: Sequence[FormalizedRequirement]) -> Printer:
     """The printer of C for a monitor of all requirements.
 
     Args:

@@ -19,8 +19,8 @@ from compiler.program.lowering import program
 from compiler.targets.javascript import signals
 from compiler.targets.javascript.constants import Constants, scale, truth
 from compiler.targets.javascript.printer import Printer
-from compiler.targets.python.comparisons import TRUTH, InputAdapter, Spelling, Writer, front
-from compiler.targets.python.monitor import described, module, refusal, remark
+from compiler.targets.python.comparisons import TRUTH, InputAdapter, Spelling, Writer, input_adapter
+from compiler.targets.python.monitor import description_of, module, refusal, remark
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
@@ -63,7 +63,7 @@ def text(*requirements: FormalizedRequirement) -> str:
         "js/monitor.mjs.j2",
         title=", ".join(requirement.id for requirement in requirements),
         version=__version__,
-        formalized=[described(requirement) for requirement in requirements],
+        formalized=[description_of(requirement) for requirement in requirements],
         tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         body=code.text,
         exports=code.exports,
@@ -87,7 +87,7 @@ def body(*requirements: FormalizedRequirement) -> Body:
     propositions = tuple(
         dict.fromkeys(name for requirement in requirements for name in requirement.watched)
     )
-    compared = front(requirements, propositions)
+    compared = input_adapter(requirements, propositions)
     inputs = compared.inputs if compared else {}
     names = legal_names((*propositions, *inputs), ())
     monitor_program = program({requirement.id: requirement.watch for requirement in requirements})
@@ -95,7 +95,7 @@ def body(*requirements: FormalizedRequirement) -> Body:
     lines = _Front.of(compared, propositions, names) if compared else None
     written = render(
         "js/body.js.j2",
-        formalized=[described(requirement) for requirement in requirements],
+        formalized=[description_of(requirement) for requirement in requirements],
         propositions=propositions,
         variables=[
             {

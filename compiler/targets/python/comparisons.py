@@ -46,7 +46,7 @@ class Input:
 
 
 @dataclass(frozen=True, slots=True)
-class Compared:
+class CompiledComparison:
     """A comparison that can be compiled, with its inputs and units."""
 
     inputs: Mapping[str, Input]
@@ -66,12 +66,12 @@ class InputAdapter:
     """The adapter from the variables of a tick to the truth of propositions."""
 
     inputs: Mapping[str, Input]
-    comparisons: Mapping[str, Compared]
+    comparisons: Mapping[str, CompiledComparison]
     """The comparisons by the names of their propositions."""
 
 
 @with_recursion_limit
-def front(
+def input_adapter(
     requirements: Sequence[FormalizedRequirement], propositions: Sequence[str]
 ) -> InputAdapter | None:
     """The adapter of a monitor: its variables and comparisons; None if nothing is compared.
@@ -83,7 +83,7 @@ def front(
         requirements: the requirements of one monitor.
         propositions: the propositions that the monitor reads.
     """
-    comparisons: dict[str, Compared] = {}
+    comparisons: dict[str, CompiledComparison] = {}
     opaque: set[str] = set()
     for requirement in requirements:
         for name, compared in _comparisons(requirement).items():
@@ -103,9 +103,9 @@ def front(
     return InputAdapter(inputs, usable) if inputs else None
 
 
-def _comparisons(requirement: FormalizedRequirement) -> dict[str, Compared]:
+def _comparisons(requirement: FormalizedRequirement) -> dict[str, CompiledComparison]:
     """The comparisons of a sentence that can be compiled, by their propositions' names."""
-    by_name: dict[str, Compared] = {}
+    by_name: dict[str, CompiledComparison] = {}
     for tree in conditions(requirement.sentence):
         for part in e.parts(tree):
             if isinstance(part, e.Comparison):
@@ -116,7 +116,7 @@ def _comparisons(requirement: FormalizedRequirement) -> dict[str, Compared]:
 
 
 def _clashing(
-    requirements: Sequence[FormalizedRequirement], comparisons: Iterable[Compared]
+    requirements: Sequence[FormalizedRequirement], comparisons: Iterable[CompiledComparison]
 ) -> Iterator[str]:
     """The variables with two kinds, or two units."""
     kinds: dict[str, Input] = {
@@ -133,7 +133,7 @@ def _clashing(
                 yield name
 
 
-def _compared(tree: e.Comparison, requirement: FormalizedRequirement) -> Compared | None:
+def _compared(tree: e.Comparison, requirement: FormalizedRequirement) -> CompiledComparison | None:
     """The compiled comparison; None if it cannot be compiled.
 
     A comparison bound by its text is evaluated from the names in its binding; the names in the
@@ -150,9 +150,9 @@ def _compared(tree: e.Comparison, requirement: FormalizedRequirement) -> Compare
     spoken = _spoken(tree, signals)
     if spoken is not None:
         ids, words = spoken
-        return Compared({variable(id): Input(WORD, words) for id in ids}, tree, units)
+        return CompiledComparison({variable(id): Input(WORD, words) for id in ids}, tree, units)
     numbers = {variable(id): Input(NUMBER, infinite=_infinite(signals.get(id))) for id in names}
-    compared = Compared(numbers, tree, units)
+    compared = CompiledComparison(numbers, tree, units)
     try:
         Writer(dict.fromkeys(compared.inputs, "x")).comparison(compared)
     except NotCompiledError:
@@ -232,7 +232,7 @@ class Spelling:
 
 
 def _number(value: Fraction) -> str:
-    return f'exact("{written(value)}")'
+    return f'exact("{fraction_text(value)}")'
 
 
 def _scale(value: Fraction) -> str:
@@ -253,7 +253,7 @@ class Writer:
     earlier: dict[tuple[str, str], str] = field(default_factory=dict)
     """(expression, initial value) → name of the stored value."""
 
-    def comparison(self, compared: Compared) -> str:
+    def comparison(self, compared: CompiledComparison) -> str:
         """The code for the truth of a comparison.
 
         Raises:
@@ -276,7 +276,7 @@ class Writer:
             raise NotCompiledError
         return text
 
-    def _spoken(self, compared: Compared, op: str) -> str:
+    def _spoken(self, compared: CompiledComparison, op: str) -> str:
         sides = (compared.tree.left, compared.tree.right)
         first, second = (
             python(side.text) if isinstance(side, e.Word) else self.parameters[variable(side.id)]
@@ -389,7 +389,7 @@ class Writer:
         return _Term(f"power({self._text(base)}, {times})", scale)
 
 
-def threshold(compared: Compared) -> tuple[str, Fraction] | None:
+def threshold(compared: CompiledComparison) -> tuple[str, Fraction] | None:
     """The variable of a comparison with a number, and the number in its unit."""
     names = {name: name for name in compared.inputs}
     writer = Writer(names, units=compared.units)
@@ -402,7 +402,7 @@ def threshold(compared: Compared) -> tuple[str, Fraction] | None:
     return None
 
 
-def numbers(compared: Compared) -> Iterator[Fraction]:
+def numbers(compared: CompiledComparison) -> Iterator[Fraction]:
     """The numbers in a comparison."""
     for part in e.parts(compared.tree.left), e.parts(compared.tree.right):
         for node in part:
@@ -426,7 +426,7 @@ def _constant(value: Fraction | None, scale: Fraction | None = None) -> _Term:
     return _Term("", scale, value)
 
 
-def written(value: Fraction) -> str:
+def fraction_text(value: Fraction) -> str:
     """A fraction as text: a short decimal, else a quotient such as `25/18`."""
     for places in range(_MOST_PLACES + 1):
         digits = value * 10**places

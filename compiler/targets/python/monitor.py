@@ -16,13 +16,19 @@ from pathlib import PurePosixPath
 from compiler.files.artifact import Artifact
 from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import FormalizedRequirement, plain
+from compiler.formalization.formalized import FormalizedRequirement, without_probability
 from compiler.formalization.obligation import TRAITS, Trait, obligation
 from compiler.logic import printing
 from compiler.logic.identifiers import legal_names, underlined
 from compiler.logic.spelling.reserved_words import PYTHON
 from compiler.program.program import MARKS, SIGNALS
-from compiler.targets.python.comparisons import ANNOTATIONS, NAMES, InputAdapter, Writer, front
+from compiler.targets.python.comparisons import (
+    ANNOTATIONS,
+    NAMES,
+    InputAdapter,
+    Writer,
+    input_adapter,
+)
 from compiler.targets.python.program import (
     Program,
     locals_of,
@@ -147,12 +153,12 @@ def text(*requirements: FormalizedRequirement) -> str:
     probabilistic = [
         requirement for requirement in requirements if requirement.sentence.probability
     ]
-    requirements = tuple(map(plain, requirements))
+    requirements = tuple(map(without_probability, requirements))
     names = tuple(
         dict.fromkeys(name for requirement in requirements for name in requirement.watched)
     )
     prefixes = prefixes_of([requirement.id for requirement in requirements])
-    compared = front(requirements, names)
+    compared = input_adapter(requirements, names)
     variables = compared.inputs if compared else {}
     parameters = parameters_of(names, prefixes.values(), variables)
     code = program(
@@ -166,7 +172,7 @@ def text(*requirements: FormalizedRequirement) -> str:
         title=", ".join(requirement.id for requirement in requirements),
         class_name=_class_name(requirements[0].id) if len(requirements) == 1 else "All",
         version=__version__,
-        formalized=[described(requirement) for requirement in requirements],
+        formalized=[description_of(requirement) for requirement in requirements],
         probabilistic=[_probability_note(requirement) for requirement in probabilistic],
         tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         inputs=inputs,
@@ -300,7 +306,7 @@ def _probability_note(requirement: FormalizedRequirement) -> dict[str, str]:
     }
 
 
-def described(requirement: FormalizedRequirement) -> dict[str, object]:
+def description_of(requirement: FormalizedRequirement) -> dict[str, object]:
     """The description of a requirement at the top of a monitor."""
     return {
         "id": requirement.id,
@@ -376,7 +382,7 @@ def parameters_of(
 def _names(requirement: FormalizedRequirement) -> Mapping[str, str]:
     """Variable or proposition → the parameter of a step."""
     names = requirement.watched
-    compared = front([plain(requirement)], names)
+    compared = input_adapter([without_probability(requirement)], names)
     variables = compared.inputs if compared else ()
     return parameters_of(names, prefixes_of([requirement.id]).values(), variables)
 

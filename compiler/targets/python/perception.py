@@ -13,7 +13,7 @@ from typing import assert_never
 
 from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.binding_agreement import way_out
+from compiler.formalization.binding_agreement import binding_fix
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals import numbers as n
 from compiler.signals.policies import Meaning, Policy, instant
@@ -45,7 +45,7 @@ def _reasons(requirement: FormalizedRequirement) -> Iterator[tuple[str, str]]:
     unbound = [name for name in requirement.watched if name not in declared.propositions]
     if unbound:
         name = unbound[0]
-        yield f"the bindings do not define `{name}`", way_out(requirement, name, declared)
+        yield f"the bindings do not define `{name}`", binding_fix(requirement, name, declared)
     yield from _of_clock(declared)
     if unbound:
         return
@@ -100,14 +100,14 @@ def text(requirements: Sequence[FormalizedRequirement]) -> str:
     )
 
 
-def setting(requirements: Sequence[FormalizedRequirement]) -> Setting:
+def setting(requirements: Sequence[FormalizedRequirement]) -> SettingTable:
     """The table of requirements that were not refused."""
     at_instant = instant(requirements)
     declared = requirements[0].declarations
     assert at_instant is not None, "it is refused"
     assert declared is not None, "it is refused"
     assert declared.clock.period is not None, "it is refused"
-    return Setting(
+    return SettingTable(
         tuple(map(_policy, at_instant.policies)),
         tuple(map(_meaning, at_instant.meanings)),
         declared.clock.period,
@@ -119,7 +119,7 @@ def setting(requirements: Sequence[FormalizedRequirement]) -> Setting:
 
 
 @dataclass(frozen=True, slots=True)
-class Setting:
+class SettingTable:
     """The entries of the table, as code."""
 
     policies: tuple[str, ...]

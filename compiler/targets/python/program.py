@@ -242,9 +242,9 @@ class _Printer:
             return ()
         return (f"{block.name} = {self._column(block.column)}",)
 
-    def _column(self, column: v.Value | c.Before | c.Since) -> str:
+    def _column(self, column: v.Value | c.PreviousColumn | c.Since) -> str:
         match column:
-            case c.Before(value, weak):
+            case c.PreviousColumn(value, weak):
                 return (
                     f"{'weak_previous' if weak else 'previous'}({self.text(value).column}, every)"
                 )

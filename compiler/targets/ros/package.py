@@ -19,7 +19,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.policies import instant
 from compiler.targets.python import interceptor, monitor, perception
 from compiler.targets.target import Options, stem
-from compiler.targets.witness_traces import words
+from compiler.targets.witness_traces import witness_traces
 from fretish.bindings.declarations import Interception, Signal, short_type
 from fretish.bindings.tables.interceptor import TABLE
 from fretish.clock import TimeSource
@@ -302,13 +302,15 @@ def modules(package: Package) -> Mapping[str, str]:
 
 def tests(package: Package) -> str:
     """Unit tests of both files: shortest runs to each verdict, and a node without messages."""
-    witnesses = {requirement.id: words(requirement) for requirement in package.requirements}
+    witnesses = {
+        requirement.id: witness_traces(requirement) for requirement in package.requirements
+    }
     return render("ros/test_monitor.py.j2", package=package, words=witnesses, version=__version__)
 
 
 def documents(package: Package, ros: int) -> Mapping[str, str]:
     """LICENSE, README.md and CHANGELOG.rst."""
-    described = [monitor.described(requirement) for requirement in package.requirements]
+    described = [monitor.description_of(requirement) for requirement in package.requirements]
     given = {"package": package, "ros": ros, "version": __version__, "formalized": described}
     return {
         "LICENSE": render("ros/LICENSE.j2", **given),

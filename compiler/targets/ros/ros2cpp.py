@@ -22,14 +22,14 @@ from compiler.signals.functions import SignalFunction
 from compiler.signals.policies import Meaning, Policy, instant
 from compiler.signals.printing import parts
 from compiler.targets.c import monitor
-from compiler.targets.c.monitor import Joined, joined
+from compiler.targets.c.monitor import JoinedInterface, joined_interface
 from compiler.targets.python import perception
-from compiler.targets.python.monitor import described
+from compiler.targets.python.monitor import description_of
 from compiler.targets.ros import package as shared
 from compiler.targets.ros.package import Package
 from compiler.targets.ros.ros2 import qos
 from compiler.targets.target import DEFAULT, Options, Target
-from compiler.targets.witness_traces import RepeatedTick, words
+from compiler.targets.witness_traces import RepeatedTick, witness_traces
 from fretish.bindings.declarations import Reading, Reduce
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -79,7 +79,7 @@ def emit(
 def _values(package: Package) -> dict[str, Any]:
     at_instant = instant(package.requirements)
     assert at_instant is not None, "it is refused"
-    names = joined(package.requirements)
+    names = joined_interface(package.requirements)
     places = {policy.signal.name: place for place, policy in enumerate(at_instant.policies)}
     topics = [topic.name for topic in package.topics]
     signals = [
@@ -124,14 +124,14 @@ def _values(package: Package) -> dict[str, Any]:
                 "id": requirement.id,
                 "member": member,
                 "topics": [topics.index(name) for name in perception.topics_of(requirement)],
-                "described": described(requirement),
+                "described": description_of(requirement),
             }
             for requirement, member in zip(package.requirements, names.outcomes, strict=True)
         ],
         "words": [
             (place, word.name, [_ticks(function, order) for function in word.ticks])
             for place, requirement in enumerate(package.requirements)
-            for word in words(requirement)
+            for word in witness_traces(requirement)
         ],
         "parameters": [
             (function, _literal(function.value), wrap(function.text, 80, drop_whitespace=False))
@@ -179,7 +179,7 @@ _MEANINGS = {
 
 
 def _meanings(
-    meanings: Sequence[Meaning], names: Joined, places: Mapping[str, int]
+    meanings: Sequence[Meaning], names: JoinedInterface, places: Mapping[str, int]
 ) -> list[dict[str, Any]]:
     held = iter(names.signals.held)
     return [

@@ -20,11 +20,11 @@ from compiler.program.lowering import program
 from compiler.program.rails import Reading, rail
 from compiler.targets.c.monitor import too_large
 from compiler.targets.comparison_names import comparison_names, in_words
-from compiler.targets.python.monitor import described, module, prefixes_of, refusal, remark
+from compiler.targets.python.monitor import description_of, module, prefixes_of, refusal, remark
 from compiler.targets.rust import signals
 from compiler.targets.rust.printer import Printer
 from compiler.targets.target import DEFAULT, Options, Target, stem
-from compiler.targets.witness_traces import words
+from compiler.targets.witness_traces import witness_traces
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
@@ -67,7 +67,7 @@ def _crate(name: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Ar
     library = render(
         "rust/lib.rs.j2",
         title=", ".join(requirement.id for requirement in requirements),
-        formalized=[described(requirement) for requirement in requirements],
+        formalized=[description_of(requirement) for requirement in requirements],
         tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         version=__version__,
         inputs=[{"name": names[atom], "text": meanings.get(atom, atom)} for atom in propositions],
@@ -78,7 +78,9 @@ def _crate(name: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Ar
         ],
         readings=[_reading(reading, printer) for reading in cells.readings],
     )
-    witnesses = {members[requirement.id]: words(requirement) for requirement in requirements}
+    witnesses = {
+        members[requirement.id]: witness_traces(requirement) for requirement in requirements
+    }
     tests = render("rust/words.rs.j2", crate=name, names=names, words=witnesses)
     manifest = render("rust/Cargo.toml.j2", crate=name, monitor=None)
     files = {f"{name}/Cargo.toml": manifest, f"{name}/src/lib.rs": library}

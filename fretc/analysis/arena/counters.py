@@ -234,7 +234,7 @@ def _after(tick: _Tick, n: int) -> _Timing:
     last = equals(count, n + 1)
     tick.memory.set(bits, only(due - last, successor(count)))
     tick.memory.steps[clash] = clashes - last
-    return _Timing(due & bdd.choice(last, clashes | -tick.q, tick.q))
+    return _Timing(due & bdd.ite(last, clashes | -tick.q, tick.q))
 
 
 def _not_after(tick: _Tick, n: int) -> _Timing:

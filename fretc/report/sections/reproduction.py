@@ -12,7 +12,7 @@ from compiler.files.shell_quoting import (
     UnencodableNameError,
     check_of,
     is_sha256,
-    unsayable,
+    unquotable_comment,
     word,
     words,
 )
@@ -69,7 +69,7 @@ def _command(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
     try:
         command = text()
     except UnencodableNameError as error:
-        command = unsayable(str(error))
+        command = unquotable_comment(str(error))
     if command:
         yield Command(purpose, command)
 

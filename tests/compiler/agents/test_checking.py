@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from compiler.agents.checking import checked
+from compiler.agents.checking import check_agent
 from compiler.logic.claims import Layer, Proof, Result, not_checked, proved, vacuous
 from compiler.targets.ajpf import properties as ajpf
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -32,13 +32,13 @@ CONTROLS = "1a_reach: [] (~(B(agilex_agent,too_close)))\n1a_resp: [] (~(B(agilex
 def lines(
     properties: str, percepts: Sequence[str], agent: str = PAPER, limit: int = 10_000
 ) -> tuple[Proof, ...]:
-    found = checked(Source("sif.gwen", agent), Source("sif.psl", properties), percepts, limit)
+    found = check_agent(Source("sif.gwen", agent), Source("sif.psl", properties), percepts, limit)
     assert not isinstance(found, Diagnostic), found.message
     return found
 
 
 def refused(properties: str, percepts: Sequence[str], agent: str = PAPER) -> Diagnostic:
-    found = checked(Source("sif.gwen", agent), Source("sif.psl", properties), percepts)
+    found = check_agent(Source("sif.gwen", agent), Source("sif.psl", properties), percepts)
     assert isinstance(found, Diagnostic)
     return found
 
@@ -198,10 +198,10 @@ def test_in_an_only_scope_an_agent_that_never_responds_keeps_the_prohibition() -
     """As AJPF says; that the mode is left at all is the control that counts."""
     made = requirement("only in m mode the ag shall eventually satisfy r")
     idle = PAPER.replace("agilex_agent", "ag").replace("too_close", "m")
-    found = checked(Source("a.gwen", idle), Source("p.psl", ajpf.text(made)), ["m"])
+    found = check_agent(Source("a.gwen", idle), Source("p.psl", ajpf.text(made)), ["m"])
     assert not isinstance(found, Diagnostic)
     assert statuses(found) == [("R1", "proved"), ("R1_reach", "proved")]
     responding = idle.replace("stop_moving,", "+r,")
-    found = checked(Source("a.gwen", responding), Source("p.psl", ajpf.text(made)), ["m"])
+    found = check_agent(Source("a.gwen", responding), Source("p.psl", ajpf.text(made)), ["m"])
     assert not isinstance(found, Diagnostic)
     assert statuses(found)[0] == ("R1", "counterexample")

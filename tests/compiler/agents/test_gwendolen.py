@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.agents.gwendolen import Action, Agent, Change, Guard, read
+from compiler.agents.gwendolen import Action, Agent, BeliefChange, Guard, read
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
@@ -44,13 +44,13 @@ def test_an_agent_is_its_beliefs_and_its_plans_in_their_order() -> None:
     assert found.name == "watch_agent"
     assert found.beliefs == ("ready", "speed(1,-2.5)")
     assert [(p.event, p.guards, p.deeds) for p in found.plans] == [
-        (Change("+", "zone_near"), (), (Action("halt_base"), Change("+", "halted"))),
+        (BeliefChange("+", "zone_near"), (), (Action("halt_base"), BeliefChange("+", "halted"))),
         (
-            Change("-", "zone_near"),
+            BeliefChange("-", "zone_near"),
             (Guard(True, "halted"), Guard(False, "speed(3)")),
-            (Action("release_base(1,fast)"), Change("-", "halted")),
+            (Action("release_base(1,fast)"), BeliefChange("-", "halted")),
         ),
-        (Change("-", "ready"), (), ()),
+        (BeliefChange("-", "ready"), (), ()),
     ]
     assert found.plans[1].span.line == 11
 

@@ -16,7 +16,13 @@ from compiler.explanation.examples import examples
 from compiler.explanation.explain import explanation
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons
-from compiler.formalization.numbers.reals import Impossible, Possible, Reals, Undecided, by_numbers
+from compiler.formalization.numbers.reals import (
+    Impossible,
+    Possible,
+    Reals,
+    Undecided,
+    with_numeric_counterexample,
+)
 from compiler.logic.claims import Result
 from compiler.logic.orders import Exclusion
 from fretc.testing.generation import batch
@@ -265,12 +271,12 @@ def test_another_counterexample_is_shown_where_numbers_make_one_and_none_is_lost
         left = (fault for fault in faults if not any(has(fault, each) for each in excluded))
         return next((Shown((fault,)) for fault in left), None)
 
-    found, note = by_numbers(made, atoms, Shown, compare)
+    found, note = with_numeric_counterexample(made, atoms, Shown, compare)
     assert isinstance(found, Shown)
     possible = [f for f in faults if is_satisfiable(tuple(zip(some, f, strict=True)))]
     assert found.word[0] == (possible or faults)[0]
     assert bool(note) is not bool(possible)
-    assert by_numbers(made, atoms, Shown, lambda _: None) == (None, "")
+    assert with_numeric_counterexample(made, atoms, Shown, lambda _: None) == (None, "")
 
 
 @pytest.mark.slow

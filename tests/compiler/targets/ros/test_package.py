@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import load
-from compiler.project.paths import listed
+from compiler.project.paths import expanded_paths
 from compiler.targets.python import interceptor
 from compiler.targets.ros import package as p
 from compiler.targets.target import Options
@@ -27,7 +27,7 @@ ROOT = Path(__file__).parents[4]
 
 
 def described(path: str) -> p.Package:
-    paths = listed([str(ROOT / path)])
+    paths = expanded_paths([str(ROOT / path)])
     assert not isinstance(paths, Diagnostic)
     project = load(paths)
     assert project.formalized
