@@ -126,9 +126,9 @@ def _checked(
         if mismatch is not None:
             return mismatch
     try:
-        explored = _Explored.of(Model(read, tuple(drawn)), limit)
+        explored = _ExploredModel.of(Model(read, tuple(drawn)), limit)
         spoilt = broken if isinstance(broken, Agent) else None
-        return tuple(_Lines(props, explored, spoilt, artefacts, limit).all())
+        return tuple(_PropertyProofs(props, explored, spoilt, artefacts, limit).all())
     except TooManyStatesError as error:
         return _unknown(props, f"the agent has {error}", artefacts)
 
@@ -179,15 +179,15 @@ def _text(formula: f.Formula) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class _Explored:
+class _ExploredModel:
     """A model with all of its reachable states."""
 
     model: Model
     graph: Explored[State]
 
     @staticmethod
-    def of(model: Model, limit: int) -> _Explored:
-        return _Explored(model, model.explored(limit))
+    def of(model: Model, limit: int) -> _ExploredModel:
+        return _ExploredModel(model, model.explored(limit))
 
     @property
     def size(self) -> str:
@@ -225,11 +225,11 @@ class _Explored:
 
 
 @dataclass(frozen=True, slots=True)
-class _Lines:
+class _PropertyProofs:
     """The evidence of one file of properties."""
 
     properties: tuple[Property, ...]
-    explored: _Explored
+    explored: _ExploredModel
     mutant: Agent | None
     """An agent that must violate the properties. None: each property gets its own mutant."""
     artefacts: Mapping[str, str]
@@ -296,7 +296,7 @@ class _Lines:
         claim = f"the check can fail: an agent without the response violates {prop.key}"
         if mutant is None:
             return
-        spoilt = _Explored.of(Model(mutant, self.explored.model.percepts), self.limit)
+        spoilt = _ExploredModel.of(Model(mutant, self.explored.model.percepts), self.limit)
         if spoilt.violation(prop.formula) is None:
             detail = f"that agent satisfies {prop.key}, too, so {prop.key} shows no response"
             yield self._line(prop, claim, vacuous(detail))

@@ -91,8 +91,8 @@ def examples(requirement: FormalizedRequirement, wanted: int = WANTED) -> Exampl
     except TooManyStatesError:
         return Examples(atoms, (), (), f"its automaton has more than {MOST_STATES} states")
     search = _Search(automaton, letters)
-    satisfied = tuple(_different(search, search.satisfying(), wanted))
-    violated = tuple(_different(search, search.violating(), wanted))
+    satisfied = tuple(_different_examples(search, search.satisfying(), wanted))
+    violated = tuple(_different_examples(search, search.violating(), wanted))
     shown = {
         valuation
         for example in (*satisfied, *violated)
@@ -106,7 +106,7 @@ def examples(requirement: FormalizedRequirement, wanted: int = WANTED) -> Exampl
 
 
 @dataclass(frozen=True, slots=True)
-class _Chosen:
+class _LetterValuations:
     """A valuation of the atoms for each letter."""
 
     letters: Mapping[Letter, Valuation]
@@ -117,15 +117,15 @@ class _Chosen:
 
 def _chosen(
     requirement: FormalizedRequirement, atoms: Sequence[str], every: Mapping[Valuation, Letter]
-) -> _Chosen:
+) -> _LetterValuations:
     """For each letter the valuation with the fewest true atoms that real numbers make."""
     if not comparisons(requirement):
-        return _Chosen(_quiet_first(every))
+        return _LetterValuations(_fewest_true_first(every))
     from compiler.formalization.numbers.reals import Impossible, Possible, Reals
 
     reals, excluded = Reals(requirement), dict[Letter, Exclusion]()
     possible, undecided = dict[Valuation, Letter](), dict[Valuation, Letter]()
-    for valuation, letter in _by_noise(every):
+    for valuation, letter in _by_true_atoms(every):
         if letter in possible.values():
             continue
         match reals.answer(dict(zip(atoms, valuation, strict=True))):
@@ -136,20 +136,20 @@ def _chosen(
             case _:
                 undecided.setdefault(valuation, letter)
     spare = {v: letter for v, letter in undecided.items() if letter not in possible.values()}
-    letters = _quiet_first({**possible, **spare})
+    letters = _fewest_true_first({**possible, **spare})
     gone = (exclusion for letter, exclusion in excluded.items() if letter not in letters)
-    return _Chosen(letters, frozenset(spare), next(gone, ()))
+    return _LetterValuations(letters, frozenset(spare), next(gone, ()))
 
 
-def _quiet_first(letter_of: Mapping[Valuation, Letter]) -> dict[Letter, Valuation]:
+def _fewest_true_first(letter_of: Mapping[Valuation, Letter]) -> dict[Letter, Valuation]:
     """For each letter the valuation with the fewest true atoms; the quietest letters first."""
     chosen: dict[Letter, Valuation] = {}
-    for valuation, letter in _by_noise(letter_of):
+    for valuation, letter in _by_true_atoms(letter_of):
         chosen.setdefault(letter, valuation)
     return chosen
 
 
-def _by_noise(letter_of: Mapping[Valuation, Letter]) -> Sequence[tuple[Valuation, Letter]]:
+def _by_true_atoms(letter_of: Mapping[Valuation, Letter]) -> Sequence[tuple[Valuation, Letter]]:
     return sorted(letter_of.items(), key=lambda pair: (sum(pair[0]), pair[0][::-1]))
 
 
@@ -289,7 +289,7 @@ class _Search:
         )
 
 
-def _different(search: _Search, runs: Iterator[Run], wanted: int) -> Iterator[Example]:
+def _different_examples(search: _Search, runs: Iterator[Run], wanted: int) -> Iterator[Example]:
     """The first runs that behave differently, each checked by the definition."""
     seen: set[tuple[object, ...]] = set()
     spare: Example | None = None

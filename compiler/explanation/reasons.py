@@ -50,20 +50,20 @@ def why(
     shown = len(prefix) + len(loop)
     every = [w for w in windows(counted, m, p, stop) if w.trigger < shown]
     displayed = [w for w in every if w.trigger < len(prefix)] or every
-    teller = _Teller(requirement, counted, q, len(prefix) - 1, endless=bool(loop))
-    broken = [window for window in every if not window.kept(q)]
+    writer = _ReasonWriter(requirement, counted, q, len(prefix) - 1, endless=bool(loop))
+    broken = [window for window in every if not window.is_met(q)]
     assert satisfied is None or satisfied is not bool(broken), (counted, prefix, loop)
     if broken:
-        return f"{teller.sentence(broken[0], kept=False)}{teller.bound()}"
+        return f"{writer.sentence(broken[0], met=False)}{writer.bound()}"
     if not displayed:
-        return _nothing(requirement, counted, m)
-    sentences = [teller.sentence(window, kept=True) for window in displayed[:_MOST]]
+        return _nothing_demanded(requirement, counted, m)
+    sentences = [writer.sentence(window, met=True) for window in displayed[:_MOST]]
     left = len(displayed) - _MOST
     rest = [f"and so on, {left} more time{'s' * (left > 1)}"] if left > 0 else []
-    return f"{'; '.join([*sentences, *rest])}{teller.bound()}"
+    return f"{'; '.join([*sentences, *rest])}{writer.bound()}"
 
 
-def _nothing(requirement: FormalizedRequirement, counted: Template, m: Column) -> str:
+def _nothing_demanded(requirement: FormalizedRequirement, counted: Template, m: Column) -> str:
     """The reason if no demand begins."""
     scope, condition = requirement.written.scope, requirement.written.condition
     if not intervals(counted.scope, m):
@@ -74,7 +74,7 @@ def _nothing(requirement: FormalizedRequirement, counted: Template, m: Column) -
 
 
 @dataclass(frozen=True, slots=True)
-class _Teller:
+class _ReasonWriter:
     """The words for one trace."""
 
     requirement: FormalizedRequirement
@@ -86,21 +86,23 @@ class _Teller:
     endless: bool
     """Whether a loop that matters follows."""
 
-    def sentence(self, window: ObligationWindow, *, kept: bool) -> str:
+    def sentence(self, window: ObligationWindow, *, met: bool) -> str:
         """`triggered at tick 1, ...`."""
         begun = "triggered" if self.requirement.sentence.condition else "begins"
         start = f"{begun} at tick {window.trigger}"
         if not window.parts:
-            return f"{start}, {self._spared(window)}"
-        if window.either and not kept:
+            return f"{start}, {self._no_demand_reason(window)}"
+        if window.either and not met:
             early, late = window.parts
             return (
                 f"{start}, {self._name} is false at {_ticks(early.first, early.last)} and comes at "
                 f"tick {late.first}, at which it is then forbidden"
             )
-        chosen = [part for part in window.parts if part.kept(self.q) is kept]
-        say = self._kept if kept else self._broken
-        clauses = " and ".join(say(part, window) for part in chosen[: 1 if window.either else None])
+        chosen = [part for part in window.parts if part.is_met(self.q) is met]
+        clause = self._met_clause if met else self._violation_clause
+        clauses = " and ".join(
+            clause(part, window) for part in chosen[: 1 if window.either else None]
+        )
         return f"{start}, {clauses}"
 
     def bound(self) -> str:
@@ -130,7 +132,7 @@ class _Teller:
     def _hit(self, first: int, *, value: bool) -> int | None:
         return next((t for t in range(first, len(self.q)) if self.q[t] is value), None)
 
-    def _kept(self, part: TickRange, window: ObligationWindow) -> str:
+    def _met_clause(self, part: TickRange, window: ObligationWindow) -> str:
         value = _wanted(part)
         clause = f"{self._name} is {str(value).lower()}"
         if part.need in (Expectation.SOME, Expectation.MISS):
@@ -164,7 +166,7 @@ class _Teller:
     def _is_closed(self, window: ObligationWindow) -> bool:
         return window.right < len(self.q) - 1
 
-    def _broken(self, part: TickRange, window: ObligationWindow) -> str:
+    def _violation_clause(self, part: TickRange, window: ObligationWindow) -> str:
         value = _wanted(part)
         wanted, opposite = str(value).lower(), str(not value).lower()
         clause = f"{self._name} is {opposite}"
@@ -200,11 +202,11 @@ class _Teller:
             case _:
                 assert_never(self._extent)
 
-    def _spared(self, window: ObligationWindow) -> str:
+    def _no_demand_reason(self, window: ObligationWindow) -> str:
         """The reason why a trigger demands nothing, or nothing more."""
         match self._extent:
             case Extent.STOP:
-                return self._unstopped(window)
+                return self._stop_reason(window)
             case Extent.NEXT:
                 return "the last tick of the scope: nothing is required"
             case Extent.DURATION:
@@ -217,7 +219,7 @@ class _Teller:
             case _:
                 assert_never(self._extent)
 
-    def _unstopped(self, window: ObligationWindow) -> str:
+    def _stop_reason(self, window: ObligationWindow) -> str:
         """The reason if the stop condition comes at once, not at all, or after the response."""
         negated = self.counted.scope is not None and self.counted.scope.negates
         if need(self.counted) in (Expectation.ALL, Expectation.NONE):

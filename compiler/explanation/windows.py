@@ -40,7 +40,7 @@ class TickRange:
     last: int
     need: Expectation
 
-    def kept(self, q: Column) -> bool:
+    def is_met(self, q: Column) -> bool:
         """Whether the response has the required value."""
         values = q[self.first : self.last + 1]
         match self.need:
@@ -68,10 +68,10 @@ class ObligationWindow:
     either: bool = False
     """Whether meeting one of the parts is enough."""
 
-    def kept(self, q: Column) -> bool:
+    def is_met(self, q: Column) -> bool:
         """Whether the response meets the demand."""
-        kept = [part.kept(q) for part in self.parts]
-        return not kept or (any(kept) if self.either else all(kept))
+        met = [part.is_met(q) for part in self.parts]
+        return not met or (any(met) if self.either else all(met))
 
 
 def windows(template: Template, m: Column, p: Column, s: Column) -> tuple[ObligationWindow, ...]:
@@ -92,7 +92,7 @@ def windows(template: Template, m: Column, p: Column, s: Column) -> tuple[Obliga
 
 def is_satisfied(template: Template, m: Column, p: Column, q: Column, s: Column) -> bool:
     """FRET's verdict on a finite trace: whether every trigger's demand is met."""
-    return all(window.kept(q) for window in windows(template, m, p, s))
+    return all(window.is_met(q) for window in windows(template, m, p, s))
 
 
 def intervals(scope: ScopeKind | None, m: Column) -> list[tuple[int, int]]:

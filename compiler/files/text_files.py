@@ -158,7 +158,7 @@ def _fill(temporary: Path, content: str | bytes | Iterable[str], *, like: Path) 
     whole = (content,) if isinstance(content, str | bytes) else content
     pieces = (piece.encode() if isinstance(piece, str) else piece for piece in whole)
     data = next(pieces, b"")
-    mode = stat.S_IMODE(like.stat().st_mode) if like.exists() else _usual()
+    mode = stat.S_IMODE(like.stat().st_mode) if like.exists() else _default_permissions()
     if data.startswith(b"#!"):
         mode |= (mode & _READABLE) >> 2
     descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_WRONLY, 0o600)
@@ -169,7 +169,7 @@ def _fill(temporary: Path, content: str | bytes | Iterable[str], *, like: Path) 
         os.fchmod(descriptor, mode)
 
 
-def _usual() -> int:
+def _default_permissions() -> int:
     """The permissions of a new file under the present umask."""
     mask = os.umask(0o077)
     os.umask(mask)

@@ -25,9 +25,9 @@ from compiler.program.values import (
     Literal,
     Value,
     Variable,
-    both,
-    either,
+    and_,
     not_,
+    or_,
 )
 from fretish.reading.recursion import with_recursion_limit
 from monitors.kernel.verdicts import Signals
@@ -155,7 +155,7 @@ class _Writer:
                 return self.value(arg, not positive)
             case f.And(args) | f.Or(args):
                 values = [self.value(arg, positive) for arg in args]
-                return both(values) if isinstance(formula, f.And) == positive else either(values)
+                return and_(values) if isinstance(formula, f.And) == positive else or_(values)
             case f.Implies(left, right):
                 return self.value(f.Or((f.Not(left), right)), positive)
             case f.Iff(left, right):
@@ -213,10 +213,10 @@ class _Writer:
         self, formula: f.Formula, left: f.Formula, right: f.Formula, positive: bool
     ) -> Value:
         """The difference of two formulas, or their agreement if negated."""
-        value = either(
+        value = or_(
             [
-                both([self.value(left), self.value(right, not positive)]),
-                both([self.value(left, False), self.value(right, positive)]),
+                and_([self.value(left), self.value(right, not positive)]),
+                and_([self.value(left, False), self.value(right, positive)]),
             ]
         )
         name = self._name("differ" if positive else "agree")
@@ -262,9 +262,9 @@ class _Writer:
         name = self._name("since")
         witness, guard, before = sides.witness, sides.guard, Variable(name)
         if sides.positive:
-            value = either([witness, both([guard, before])])
+            value = or_([witness, and_([guard, before])])
         else:
-            value = both([witness, either([guard, before])])
+            value = and_([witness, or_([guard, before])])
         cell = Flag(name, not sides.positive, comment)
         return self._add(name, comment, Assign(name, value), sides.column(), cell)
 

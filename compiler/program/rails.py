@@ -30,8 +30,8 @@ from compiler.program.values import (
     Literal,
     Value,
     Variable,
-    both,
-    either,
+    and_,
+    or_,
     parts,
 )
 
@@ -114,12 +114,12 @@ def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
     for block in blocks:
         steps = list[Step]()
         for instruction in block.instructions:
-            new_cells, moves = _static(instruction, windows)
+            new_cells, moves = _without_windows(instruction, windows)
             cells.extend(new_cells)
             steps.extend(moves)
         stages.append(StatementGroup(block.comment, tuple(steps)))
     for requirement in program.requirements:
-        marks, stage, reading = _remembered(
+        marks, stage, reading = _mark_cells(
             requirement, prefixes[requirement.id], clock_of.get(requirement.id)
         )
         cells.extend(marks)
@@ -130,12 +130,12 @@ def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
 
 def _literals(program: Program, blocks: Iterable[Block]) -> tuple[Literal, ...]:
     """The literals that are read."""
-    values = [*_told(program), *(value for block in blocks for value in _values(block))]
+    values = [*_output_values(program), *(value for block in blocks for value in _values(block))]
     used = {value for value in values if isinstance(value, Literal)}
     return tuple(literal for literal in program.literals if literal in used)
 
 
-def _told(program: Program) -> Iterator[Value]:
+def _output_values(program: Program) -> Iterator[Value]:
     """The signals, and all values within them."""
     for requirement in program.requirements:
         for signal in requirement.signals:
@@ -145,7 +145,7 @@ def _told(program: Program) -> Iterator[Value]:
 def _needed(program: Program) -> tuple[Block, ...]:
     """The blocks that signals depend on."""
     blocks = {block.name: block for block in program.blocks if block.instructions}
-    waiting = [*_told(program)]
+    waiting = [*_output_values(program)]
     needed: set[str] = set()
     while waiting:
         value = waiting.pop()
@@ -185,16 +185,16 @@ def _cells(block: Block) -> Iterator[str]:
             yield instruction.cell
 
 
-def _static(
+def _without_windows(
     instruction: Instruction, windows: Mapping[str, Window]
 ) -> tuple[tuple[Cell, ...], tuple[Step, ...]]:
     """The instruction with windows replaced, and the cells needed for that."""
     if isinstance(instruction, Slide):
-        return _slid(instruction, windows[instruction.window])
+        return _ring_and_step(instruction, windows[instruction.window])
     return (), (instruction,)
 
 
-def _slid(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, ...]]:
+def _ring_and_step(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, ...]]:
     """A window as a ring and counters, and its step."""
     name, lo, none = slide.name, window.lo, window.hi - window.lo + 1
     past, guarded = Variable(f"past_{name}"), slide.guard != TRUE
@@ -202,7 +202,7 @@ def _slid(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, .
     note = f"ticks since a witness became {lo} ticks old; {none}: none"
     age = Counter(f"age_{name}", none, 0, none, note)
     clear = Counter(f"clear_{name}", 0, 0, lo, "ticks in a row with the guard")
-    old = both([past, Age(clear.name, Comparison.AT_LEAST, lo)]) if guarded else past
+    old = and_([past, Age(clear.name, Comparison.AT_LEAST, lo)]) if guarded else past
     grown, lost = Advance(age.name, none), Count(age.name, none)
     older = Choose(((old, Count(age.name, 0)), (slide.guard, grown)), lost)
     row = Choose(((slide.guard, Advance(clear.name, lo)),), Count(clear.name, 0))
@@ -216,7 +216,7 @@ def _slid(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, .
     return (ring, *((clear,) if guarded else ()), age), steps
 
 
-def _remembered(
+def _mark_cells(
     requirement: Requirement, prefix: str, clock: str | None
 ) -> tuple[list[Cell], StatementGroup, Reading]:
     """The marks of a requirement as cells, with the statements that update them and its reading.
@@ -230,7 +230,7 @@ def _remembered(
         latches[name] = Variable(flag.name) if signal != FALSE else FALSE
         if signal != FALSE:
             cells.append(flag)
-            steps.append(Assign(flag.name, either([Variable(flag.name), signal])))
+            steps.append(Assign(flag.name, or_([Variable(flag.name), signal])))
     deadline = None
     if requirement.horizon is not None and clock is not None:
         deadline = Deadline(clock, requirement.horizon)
@@ -247,8 +247,8 @@ def _remembered(
         else:
             steps.append(Choose(((signals.owed, grown),), none))
     truths = {
-        "violated": either(latches.values()),
-        "failed": either([latches["broken"], signals.fails]),
+        "violated": or_(latches.values()),
+        "failed": or_([latches["broken"], signals.fails]),
         "trigger": signals.trigger,
         "breach": signals.breach,
         "open": signals.owed,

@@ -77,7 +77,7 @@ Value = Constant | Literal | Variable | Age | Not | And | Or
 TRUE, FALSE = Constant(True), Constant(False)
 
 
-def both(values: Iterable[Value]) -> Value:
+def and_(values: Iterable[Value]) -> Value:
     """The conjunction; constants fold."""
     rest = tuple(value for value in values if value != TRUE)
     if FALSE in rest:
@@ -87,7 +87,7 @@ def both(values: Iterable[Value]) -> Value:
     return And(rest)
 
 
-def either(values: Iterable[Value]) -> Value:
+def or_(values: Iterable[Value]) -> Value:
     """The disjunction; constants fold."""
     rest = tuple(value for value in values if value != FALSE)
     if TRUE in rest:

@@ -61,8 +61,8 @@ def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
         if mistake.is_error and mistake not in of_formulas
     }
     for requirement in project.requirements if others else ():
-        way = _Way.of(requirement, project)
-        reasons = [mistake for mistake, owners in others.items() if way.reads(mistake, owners)]
+        path = _UpwardPath.of(requirement, project)
+        reasons = [mistake for mistake, owners in others.items() if path.reads(mistake, owners)]
         errors.setdefault(id(requirement), []).extend(reasons)
     return {key: tuple(dict.fromkeys(why)) for key, why in errors.items() if why}
 
@@ -71,7 +71,7 @@ _OF_SETTINGS = (Code.BAD_SETTINGS, Code.BAD_ACCEPTANCE)
 
 
 @dataclass(frozen=True, slots=True)
-class _Way:
+class _UpwardPath:
     """The path from a requirement up to its hazards."""
 
     above: Sequence[RequirementEntry]
@@ -83,7 +83,7 @@ class _Way:
     cannot be read."""
 
     @classmethod
-    def of(cls, requirement: RequirementEntry, project: Project) -> _Way:
+    def of(cls, requirement: RequirementEntry, project: Project) -> _UpwardPath:
         by_id = {entry.id: entry for entry in project.requirements}
         above, ends = [requirement], set[str]()
         for entry in above:  # it grows while it is walked

@@ -92,7 +92,7 @@ def body(*requirements: FormalizedRequirement) -> Body:
     names = legal_names((*propositions, *inputs), ())
     monitor_program = program({requirement.id: requirement.watch for requirement in requirements})
     printer = Printer.of(monitor_program, names)
-    lines = _Front.of(compared, propositions, names) if compared else None
+    lines = _AdapterCode.of(compared, propositions, names) if compared else None
     written = render(
         "js/body.js.j2",
         formalized=[description_of(requirement) for requirement in requirements],
@@ -134,7 +134,7 @@ def body(*requirements: FormalizedRequirement) -> Body:
 
 
 @dataclass(frozen=True, slots=True)
-class _Front:
+class _AdapterCode:
     """The code that computes truth values from variables."""
 
     constants: tuple[str, ...]
@@ -147,7 +147,7 @@ class _Front:
     @classmethod
     def of(
         cls, compared: InputAdapter, propositions: Sequence[str], names: Mapping[str, str]
-    ) -> _Front:
+    ) -> _AdapterCode:
         """The code for given names of variables and propositions."""
         constants = Constants()
         variables = {name: f"v_{names[name]}" for name in compared.inputs}

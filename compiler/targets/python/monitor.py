@@ -165,7 +165,7 @@ def text(*requirements: FormalizedRequirement) -> str:
         {requirement.id: requirement.watch for requirement in requirements}, parameters, prefixes
     )
     runtime = kernel_of_variables() if compared else kernel()
-    lines = _Lines.of(compared, parameters) if compared else None
+    lines = _AdapterCode.of(compared, parameters) if compared else None
     inputs = [_Input(name, parameters[name], _is_negated(name, code)) for name in names]
     return render(
         "monitor/monitor.py.j2",
@@ -198,7 +198,7 @@ def is_inlined(requirements: int, inputs: int) -> bool:
 
 
 def _digest(
-    code: Program, requirements: Sequence[FormalizedRequirement], front: _Lines | None
+    code: Program, requirements: Sequence[FormalizedRequirement], front: _AdapterCode | None
 ) -> str:
     """SHA-256 of everything that defines the meaning of the saved state."""
     identities = [
@@ -237,7 +237,7 @@ class _Variable:
 
 
 @dataclass(frozen=True, slots=True)
-class _Lines:
+class _AdapterCode:
     """The code that computes truth values from variables."""
 
     variables: tuple[_Variable, ...]
@@ -258,7 +258,7 @@ class _Lines:
         return _tuple([text for _, _, text in self.earlier])
 
     @classmethod
-    def of(cls, compared: InputAdapter, parameters: Mapping[str, str]) -> _Lines:
+    def of(cls, compared: InputAdapter, parameters: Mapping[str, str]) -> _AdapterCode:
         """The code for given names of variables and propositions."""
         writer = Writer({name: parameters[name] for name in compared.inputs})
         comparisons = tuple(
