@@ -21,7 +21,7 @@ from pathlib import Path
 from compiler.emit import TARGETS
 from compiler.files.text_files import write as deliver
 from compiler.project.folder import load
-from compiler.project.paths import listed
+from compiler.project.paths import expanded_paths
 from compiler.targets.target import Options
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.ros1 import PYTHON, missing, ros, until
@@ -76,7 +76,7 @@ def package(folder: Path, kind: str, count: int, time: str) -> Path:
     }
     texts[project_folder / "bindings.toml"] = BINDINGS.format(time=time, **KINDS[kind])
     assert deliver(texts) is None
-    paths = listed([str(project_folder)])
+    paths = expanded_paths([str(project_folder)])
     assert not isinstance(paths, Diagnostic)
     project = load(paths)
     target, options = (

@@ -21,7 +21,8 @@ from compiler.files.build_id import __version__
 from compiler.files.records import decoded
 from compiler.files.text_files import sha256
 from compiler.formalization.record import wording
-from compiler.project.folder import Project, load
+from compiler.project.folder import load
+from compiler.project.project import Project
 from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import BINDINGS as BOUND
 from fretc.audit.evidence.basis import of_all

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from compiler.formalization import reference
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import meanings
+from compiler.formalization.letters import letters_by_valuation
 from compiler.project.folder import load
 from compiler.project.paths import requirement_files
 from compiler.situations.mutants import mutants
@@ -62,7 +62,7 @@ def as_word(requirement: FormalizedRequirement, rows: Sequence[Valuation]) -> Wo
 def by_flips(requirement: FormalizedRequirement) -> Iterator[Word]:
     """For each atom a shortest accepted word that one flip of it makes a rejected one."""
     template = reference.template(requirement.sentence, requirement.ticks or 0)
-    letters = meanings(requirement.sentence, requirement.watched)
+    letters = letters_by_valuation(requirement.sentence, requirement.watched)
     start = (reference.initial(template), reference.initial(template), False)
     for place in range(len(requirement.watched)):
         seen, waiting = {start}, deque([(start, ())])

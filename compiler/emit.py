@@ -1,6 +1,7 @@
-"""The targets, in one table: what `--emit` can make.
+"""The table of all targets of `--emit`.
 
-The names are there at once; a target is imported when it is asked for, so that help is quick.
+The names are available at once. A target's module is imported on first use, so that `--help` is
+fast.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ _MODULES: Mapping[str, str] = {
     "json": "json_record",
     "fret-json": "fret",
 }
-"""In the order of the help; each module below `compiler.targets` has its `TARGET`."""
+"""Target name → module below `compiler.targets` that has its `TARGET`, in the order of the help."""
 
 
 class _Targets(Mapping[str, "Target"]):
@@ -55,11 +56,11 @@ class _Targets(Mapping[str, "Target"]):
 TARGETS: Mapping[str, Target] = _Targets()
 
 
-def renamed(requirement: FormalizedRequirement) -> dict[str, dict[str, str]]:
-    """Kind of file → name of the user → what it is called there, where that is another name."""
-    found: dict[str, dict[str, str]] = {}
+def renamed_propositions(requirement: FormalizedRequirement) -> dict[str, dict[str, str]]:
+    """For each kind of file: the names that are spelt differently there, with the spelling."""
+    renamed_names: dict[str, dict[str, str]] = {}
     for kind, target in TARGETS.items():
         names = target.names(requirement).items()
         own = {name: new for name, new in names if name != new and not is_compound(name)}
-        found |= {kind: own} if own else {}
-    return found
+        renamed_names |= {kind: own} if own else {}
+    return renamed_names

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from compiler.files.build_id import __version__ as __version__
     from compiler.formalization.formalized import FormalizedRequirement as FormalizedRequirement
     from compiler.logic.claims import Proof as Proof
-    from compiler.project.folder import Project as Project
+    from compiler.project.project import Project as Project
     from fretc.api.audits import Audit as Audit
     from fretc.api.audits import audit_logs as audit_logs
     from fretc.api.monitors import Monitor as Monitor
@@ -38,7 +38,7 @@ _HOMES = {
     "FormalizedRequirement": "compiler.formalization.formalized",
     "Formulas": "fretc.api.requirements",
     "Monitor": "fretc.api.monitors",
-    "Project": "compiler.project.folder",
+    "Project": "compiler.project.project",
     "Proof": "fretc.api.proofs",
     "Refusal": "fretc.api.refusal",
     "Report": "fretc.api.reports",

@@ -17,7 +17,7 @@ import click
 
 from compiler.emit import TARGETS
 from compiler.files.build_id import __version__
-from compiler.files.processes import shield
+from compiler.files.processes import isolate_imports
 from fretc.api.refusal import too_deep
 from fretc.terminal.completion import answered
 from fretc.terminal.group import DEFAULT, Commands, Registry
@@ -167,7 +167,7 @@ def _prepare() -> None:
 
     Nor is anything executed that happens to lie in the current folder.
     """
-    shield()
+    isolate_imports()
     gc.set_threshold(_GARBAGE)
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)

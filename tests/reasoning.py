@@ -9,7 +9,7 @@ guards.
 from collections.abc import Callable, Iterator
 from itertools import combinations, permutations
 
-from compiler.agents.gwendolen import Action, Agent, Change
+from compiler.agents.gwendolen import Action, Agent, BeliefChange
 
 Beliefs = frozenset[str]
 Item = tuple[str, ...]
@@ -115,7 +115,7 @@ class Machine:
         return ()
 
 
-def _deed(deed: Action | Change) -> str:
+def _deed(deed: Action | BeliefChange) -> str:
     return str(deed)
 
 

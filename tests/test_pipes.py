@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from compiler.files import text_files as files
-from compiler.files.text_files import content, regular
+from compiler.files.text_files import content, open_regular
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.readers import command, put, readers
 
@@ -71,4 +71,4 @@ def test_no_more_is_read_than_a_text_may_have(
 
 def test_a_folder_is_called_a_folder(tmp_path: Path) -> None:
     with pytest.raises(IsADirectoryError):
-        regular(tmp_path)
+        open_regular(tmp_path)

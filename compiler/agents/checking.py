@@ -1,8 +1,8 @@
 """The layer AGENT of `fretc verify`: the texts of an agent and of its properties, in a model.
 
-It examines texts: the `.gwen` and `.psl` that MCAPL would read, not the requirement behind them.
-A verdict comes with two checks of the check: the controls of a property, which must be violated,
-and an agent without the response, which must violate the property.
+The texts that are checked are the `.gwen` and `.psl` files that MCAPL would read, not the
+requirement behind them. Two checks of the check accompany each verdict: the controls of a property
+must be violated, and an agent without the response must violate the property.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from compiler.agents import gwendolen, psl
-from compiler.agents.gwendolen import Action, Agent, Change
+from compiler.agents.gwendolen import Action, Agent, BeliefChange
 from compiler.agents.model import Model, State, narration
 from compiler.agents.psl import Property
 from compiler.agents.psl_printing import property_text
-from compiler.agents.vacuity import bare, demanded
+from compiler.agents.vacuity import positive_atoms, without_consequences
 from compiler.files import records
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
@@ -40,7 +40,7 @@ from fretish.diagnostics.source import Source
 from fretish.reading.recursion import with_recursion_limit
 
 STATES = 200_000
-"""The exploration stops at so many states, unless the caller asks for more."""
+"""Default limit of the number of states to explore."""
 CONTROLS = ("reach", "resp", "stop")
 """`<key>_reach` is a control of `<key>`: it must be violated."""
 _ATOM = re.compile(r"(?P<modality>[A-Za-z]+)\((?P<agent>\w+),(?P<literal>.*)\)", re.DOTALL)
@@ -48,7 +48,7 @@ _PERCEPT = re.compile(r"[a-z][A-Za-z0-9_]*(?:\([A-Za-z0-9_,. -]+\))?", re.ASCII)
 
 
 @with_recursion_limit
-def checked(
+def check_agent(
     agent: Source, properties: Source, percepts: Sequence[str], limit: int = STATES
 ) -> tuple[Proof, ...] | Diagnostic:
     """Evidence for each property of the file, in its order.
@@ -56,12 +56,12 @@ def checked(
     Args:
         agent: a `.gwen`.
         properties: a `.psl`.
-        percepts: what the environment draws freely; nothing else is ever perceived.
-        limit: how many states are explored; with more, nothing is known.
+        percepts: the percepts that the environment draws freely; the agent perceives nothing else.
+        limit: the number of states to explore; a property of a larger model is not checked.
 
     Returns:
-        The evidence; or the first thing that MCAPL would read in another way (F603, F610), a
-        property of another agent (F612), or what is no percept (F613).
+        The evidence; or the first text that MCAPL would read differently (F603, F610), a property
+        of another agent (F612), or an invalid percept (F613).
     """
     return _checked(agent, properties, percepts, limit, None)
 
@@ -76,10 +76,10 @@ def agent_evidence(
     """Evidence for the texts of a bundle.
 
     Args:
-        requirement: the requirement, which gives the lines its id and nothing else.
+        requirement: its id names the evidence; nothing else of it is read.
         files: texts by the names `SIF.gwen`, `SIF_mutant.gwen` and `SIF.psl`.
-        percepts: those that the environment of the bundle draws.
-        limit: how many states are explored.
+        percepts: the percepts that the environment of the bundle draws.
+        limit: the number of states to explore.
     """
     sif, mutant, properties = (
         Source(name, files[name]) for name in ("SIF.gwen", "SIF_mutant.gwen", "SIF.psl")
@@ -126,15 +126,15 @@ def _checked(
         if mismatch is not None:
             return mismatch
     try:
-        explored = _Explored.of(Model(read, tuple(drawn)), limit)
+        explored = _ExploredModel.of(Model(read, tuple(drawn)), limit)
         spoilt = broken if isinstance(broken, Agent) else None
-        return tuple(_Lines(props, explored, spoilt, artefacts, limit).all())
+        return tuple(_PropertyProofs(props, explored, spoilt, artefacts, limit).all())
     except TooManyStatesError as error:
         return _unknown(props, f"the agent has {error}", artefacts)
 
 
 def _percept(name: str) -> str | Diagnostic:
-    """The name in the spelling of the agent's beliefs; F613 where it is no percept."""
+    """The name as the agent spells beliefs; F613 if it is not a percept."""
     if _PERCEPT.fullmatch(name):
         text = f"GWENDOLEN :name: a :Initial Beliefs: {name} :Initial Goals: :Plans: +a : {{True}};"
         agent = gwendolen.read(Source("percept", text))
@@ -143,7 +143,7 @@ def _percept(name: str) -> str | Diagnostic:
     return Diagnostic(
         Code.BAD_PERCEPT,
         f"`{name}` cannot be a percept",
-        help="name it as the agent does: it begins with a small letter",
+        help="write it as in the agent: a name that begins with a small letter",
     )
 
 
@@ -153,9 +153,10 @@ def _other_agent(prop: Property, agent: Agent) -> Diagnostic | None:
         if match is not None and match["agent"] != agent.name:
             return Diagnostic(
                 Code.OTHER_AGENT,
-                f"{prop.key} speaks of the agent `{match['agent']}`; this one is `{agent.name}`",
+                f"{prop.key} is about the agent `{match['agent']}`, but this agent is "
+                f"`{agent.name}`",
                 prop.span,
-                help="AJPF crashes on an agent that is not there: name the one of `:name:`",
+                help="AJPF crashes on an unknown agent: use the name after `:name:`",
             )
     return None
 
@@ -178,15 +179,15 @@ def _text(formula: f.Formula) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class _Explored:
-    """A model with all of its states."""
+class _ExploredModel:
+    """A model with all of its reachable states."""
 
     model: Model
     graph: Explored[State]
 
     @staticmethod
-    def of(model: Model, limit: int) -> _Explored:
-        return _Explored(model, model.explored(limit))
+    def of(model: Model, limit: int) -> _ExploredModel:
+        return _ExploredModel(model, model.explored(limit))
 
     @property
     def size(self) -> str:
@@ -196,7 +197,7 @@ class _Explored:
         return check(self.graph.kripke, formula)
 
     def trace(self, formula: f.Formula, lasso: Lasso) -> Trace:
-        """A row for each stage: the atoms of the formula, and what led there."""
+        """The lasso as a table: a row for each state, with the atoms and the event before."""
         names = tuple(f.atoms(formula))
         labels = [self.graph.kripke.labels[state] for state in lasso.states]
         return Trace(
@@ -207,7 +208,7 @@ class _Explored:
         )
 
     def never(self, formula: f.Formula) -> list[str]:
-        """For each atom of the formula that is true in no state, why, in words."""
+        """A reason, in words, for each atom of the formula that no state makes true."""
         labels = self.graph.kripke.labels
         absent = [a for a in f.atoms(formula) if not any(a in label for label in labels)]
         return [self._why(atom) for atom in absent]
@@ -217,20 +218,20 @@ class _Explored:
         literal = match["literal"] if match else atom
         deeds = [deed for plan in self.model.agent.plans for deed in plan.deeds]
         if Action(literal) in deeds and atom.startswith("B("):
-            return f"`{literal}` is an action, and actions are not believed"
-        if literal in self.model.percepts or Change("+", literal) in deeds:
-            return f"`{literal}` never comes about"
+            return f"`{literal}` is an action, and an action is never a belief"
+        if literal in self.model.percepts or BeliefChange("+", literal) in deeds:
+            return f"nothing makes `{literal}` true"
         return f"no environment shows `{literal}`, and no plan adds it"
 
 
 @dataclass(frozen=True, slots=True)
-class _Lines:
+class _PropertyProofs:
     """The evidence of one file of properties."""
 
     properties: tuple[Property, ...]
-    explored: _Explored
+    explored: _ExploredModel
     mutant: Agent | None
-    """An agent that must violate the properties; None: each property gets one of its own."""
+    """An agent that must violate the properties. None: each property gets its own mutant."""
     artefacts: Mapping[str, str]
     limit: int
 
@@ -250,7 +251,7 @@ class _Lines:
         return proof(prop.key, Layer.AGENT, claim, outcome, engine, assumed, self.artefacts)
 
     def _main_of(self, prop: Property) -> Property | None:
-        """The property that this one is a control of."""
+        """The property of which `prop` is a control."""
         main, _, name = prop.key.rpartition("_")
         if name not in CONTROLS:
             return None
@@ -261,14 +262,16 @@ class _Lines:
             return not_checked("`_`, which matches everything, is not in the model")
         lasso = self.explored.violation(prop.formula)
         if lasso is not None:
-            detail = f"a run of {len(lasso.states)} stages breaks it ({self.explored.size} in all)"
+            detail = (
+                f"a run of {len(lasso.states)} stages violates it ({self.explored.size} in all)"
+            )
             return refuted(detail, self.explored.trace(prop.formula, lasso))
         why = self._vacuous(prop)
         size = self.explored.size
         return vacuous(why) if why else proved(f"all runs through {size} keep it")
 
     def _vacuous(self, prop: Property) -> str | None:
-        for conditions, rest in bare(prop.formula):
+        for conditions, rest in without_consequences(prop.formula):
             if self.explored.violation(rest) is None:
                 reasons = "; ".join(self.explored.never(f.And(conditions)))
                 because = f": {reasons}" if reasons else ""
@@ -289,13 +292,13 @@ class _Lines:
         return proved(f"a run of {len(lasso.states)} stages violates {prop.key}, as it should")
 
     def _of_mutant(self, prop: Property) -> Iterator[Proof]:
-        mutant = self.mutant or _without(self.explored.model.agent, demanded(prop.formula))
-        claim = f"the check can fail: an agent without the response breaks {prop.key}"
+        mutant = self.mutant or _without(self.explored.model.agent, positive_atoms(prop.formula))
+        claim = f"the check can fail: an agent without the response violates {prop.key}"
         if mutant is None:
             return
-        spoilt = _Explored.of(Model(mutant, self.explored.model.percepts), self.limit)
+        spoilt = _ExploredModel.of(Model(mutant, self.explored.model.percepts), self.limit)
         if spoilt.violation(prop.formula) is None:
-            detail = f"that agent keeps {prop.key} too, so that it says nothing of the response"
+            detail = f"that agent satisfies {prop.key}, too, so {prop.key} shows no response"
             yield self._line(prop, claim, vacuous(detail))
         else:
             yield self._line(prop, claim, proved(f"it does, within {spoilt.size}"))
@@ -306,7 +309,7 @@ def _control_claim(prop: Property) -> str:
 
 
 def _without(agent: Agent, atoms: frozenset[str]) -> Agent | None:
-    """The agent without the deeds that make the atoms true; None where it has none."""
+    """The agent without the deeds that make the atoms true; None if it has no such deed."""
     name = agent.name
 
     def makes(deed: gwendolen.Deed) -> bool:

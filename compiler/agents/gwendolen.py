@@ -1,8 +1,8 @@
-"""Agents in Gwendolen (`.gwen`), read strictly: what MCAPL would repair in silence is a mistake.
+"""Strict reader of Gwendolen agents (`.gwen`): what MCAPL would silently repair is an error.
 
-MCAPL's parser prints a syntax error and goes on, so that an agent runs and is verified that is not
-the one in the file. Here an agent is either read exactly as MCAPL reads it, or F610 tells what
-MCAPL would have made of it; F611 names what is Gwendolen and not part of the model in `agent.py`.
+MCAPL's parser prints a syntax error and goes on, so the agent that runs and is verified differs
+from the one in the file. This reader reads an agent exactly as MCAPL does, or F610 reports what
+MCAPL would make of it. F611 names what is valid Gwendolen but not part of the model in `model.py`.
 
 Source: the grammar of MCAPL; Dennis, Gwendolen semantics: 2017, University of Liverpool.
 """
@@ -33,14 +33,14 @@ Sign = Literal["+", "-"]
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class BeliefChange:
     """`+b` or `-b`: as a deed, what the agent does to its beliefs; as an event, what happened."""
 
     sign: Sign
     belief: str
 
     def __str__(self) -> str:
-        """As it is written."""
+        """The text in Gwendolen."""
         return f"{self.sign}{self.belief}"
 
 
@@ -51,11 +51,11 @@ class Action:
     name: str
 
     def __str__(self) -> str:
-        """As it is written."""
+        """The text in Gwendolen."""
         return self.name
 
 
-Deed = Change | Action
+Deed = BeliefChange | Action
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,9 +70,9 @@ class Guard:
 class Plan:
     """`event : {guards} <- deeds;`; it may be chosen where all of the guards hold."""
 
-    event: Change
+    event: BeliefChange
     guards: tuple[Guard, ...]
-    """None for `True`."""
+    """The guard, or None for `True`."""
     deeds: tuple[Deed, ...]
     span: Span = field(compare=False, repr=False)
 
@@ -83,9 +83,9 @@ class Agent:
 
     name: str
     beliefs: tuple[str, ...]
-    """The initial ones."""
+    """The initial beliefs."""
     plans: tuple[Plan, ...]
-    """In the order of the file, which is that in which they are tried."""
+    """In the order of the file, in which they are tried."""
     name_span: Span = field(compare=False, repr=False)
 
 
@@ -93,7 +93,7 @@ _MOST_LEVELS = 50
 
 
 def read(source: Source) -> Agent | Diagnostic:
-    """The agent of a file; or F610 for what MCAPL misreads, F611 for what the model leaves out."""
+    """The agent of a file; F610 if MCAPL misreads it, F611 for a feature beyond the model."""
     return with_budget(len(source.text), source.span(0, 0), lambda: _read(source))
 
 
@@ -117,7 +117,7 @@ GRAMMAR = Grammar(
 
 
 class _Reader:
-    """Lark's tree → `Agent`; raises TrapError at the first thing that is not to be."""
+    """Converts Lark's tree into an `Agent`; raises TrapError at the first invalid part."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -164,7 +164,7 @@ class _Reader:
             raise beyond("a second agent", self.span(cast(Token, agents[1].children[0])))
 
     def check_headings(self, sections: list[Tree[Token]]) -> None:
-        """All that must be there, each once, in their order."""
+        """Check that every required section is present, once, and in order."""
         expected = list(HEADINGS)
         for section in sections:
             token = cast(Token, section.children[0])
@@ -195,7 +195,7 @@ class _Reader:
         return literals
 
     def unnegated(self, parent: Tree[Token]) -> str:
-        """The literal below, where no `~` may stand before it."""
+        """The literal below `parent`, where no `~` may stand before it."""
         for part in parent.children:
             if isinstance(part, Token) and part.type == "NOT":
                 raise misread(
@@ -228,14 +228,14 @@ class _Reader:
             span,
         )
 
-    def change(self, part: Tree[Token]) -> Change:
+    def change(self, part: Tree[Token]) -> BeliefChange:
         """An event or a deed about a belief."""
         if _trees(part, "goal"):
             raise beyond("a goal", self.span(part))
-        return Change(cast(Sign, str(part.children[0])), self.unnegated(part))
+        return BeliefChange(cast(Sign, str(part.children[0])), self.unnegated(part))
 
     def guard(self, guard: Tree[Token]) -> Guard | None:
-        """None for `True`."""
+        """The guard, or None for `True`."""
         first = cast(Token, guard.children[0])
         negated = first.type == "NOT"
         if guard.data == "has_goal":

@@ -1,4 +1,4 @@
-"""Diagnostics of texts that are no Gwendolen, or Gwendolen beyond the model."""
+"""Diagnostics of texts that are not Gwendolen, or use Gwendolen beyond the model."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from fretish.diagnostics.source import Source, Span
 
 HEADINGS = (":Initial Beliefs:", ":Initial Goals:", ":Plans:")
-"""All are to be there, in this order."""
+"""The required sections, in order."""
 _ALL_HEADINGS = (":name:", ":Reasoning Rules:", *HEADINGS)
 
 
 class TrapError(Exception):
-    """The text has something that is not allowed in it."""
+    """The text contains something invalid; the exception carries the diagnostic."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
@@ -23,12 +23,12 @@ class TrapError(Exception):
 
 
 def misread(message: str, span: Span, fix: str) -> TrapError:
-    """F610, to be raised."""
+    """The exception for F610."""
     return TrapError(Diagnostic(Code.BAD_AGENT, message, span, fix))
 
 
 def beyond(feature: str, span: Span) -> TrapError:
-    """F611, to be raised."""
+    """The exception for F611."""
     return TrapError(_beyond(feature, span))
 
 
@@ -46,7 +46,7 @@ _COMMENTS = "comments are `// ...` and `/* ... */` only"
 
 
 def unexpected(error: UnexpectedInput, source: Source) -> Diagnostic:
-    """F610 or F611 for what does not fit into the grammar at all."""
+    """F610 or F611 for a text that the grammar rejects."""
     token = error.token if isinstance(error, UnexpectedToken) else None
     if token is not None and token.type == "$END":
         length = len(source.text.rstrip())
@@ -85,11 +85,11 @@ _HEADING = re.compile(r":[A-Za-z][A-Za-z ]*:")
 
 
 def _mistake(source: Source, at: int) -> Diagnostic | None:
-    """Common mistakes of users, which MCAPL does not read."""
+    """F610 for a common mistake of users, if one stands at this position."""
     rest = source.text[at:]
     place = source.span(at, at + 1)
     if rest.startswith(("#", "%")):
-        return Diagnostic(Code.BAD_AGENT, f"`{rest[0]}` begins no comment", place, _COMMENTS)
+        return Diagnostic(Code.BAD_AGENT, f"`{rest[0]}` does not begin a comment", place, _COMMENTS)
     if rest.startswith("/*"):
         return Diagnostic(Code.BAD_AGENT, "the comment has no end", place, "close it with `*/`")
     if rest.startswith("-") and _NAME_SECTION.search(source.text[:at]):
@@ -101,7 +101,7 @@ def _mistake(source: Source, at: int) -> Diagnostic | None:
     near = suggestion(heading[0], _ALL_HEADINGS)
     return Diagnostic(
         Code.BAD_AGENT,
-        f"`{heading[0]}` is no heading",
+        f"`{heading[0]}` is not a heading",
         source.span(at, at + heading.end()),
         f"did you mean `{near}`?" if near else f"headings are {', '.join(HEADINGS)}",
     )
@@ -113,7 +113,7 @@ def _follows_rules(error: UnexpectedToken) -> bool:
 
 
 def _wanted(error: UnexpectedInput) -> str:
-    """What the grammar expects there, in the words of the language."""
+    """The symbols that the grammar expects at the error, in the words of the language."""
     accepted: set[str] = set()
     if isinstance(error, UnexpectedToken):
         accepted = set(error.accepts or error.expected)

@@ -2,7 +2,7 @@
 
 States are the stages of the reasoning cycle: perceive; select an intention; plan it; execute one
 deed. The environment draws each percept anew, freely, at the start, at every action that is not
-silent, and whenever the agent is idle, for ever; it never speaks of anything else.
+silent, and whenever the agent is idle, for ever. It changes nothing else.
 
 AJPF's semantics: percepts that are drawn together are believed one after the other, those that
 went first, and each change is a state of its own, which a property sees. A belief raises `+b` only
@@ -27,7 +27,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import chain, combinations, pairwise, permutations, product
 
-from compiler.agents.gwendolen import Action, Agent, Change, Deed
+from compiler.agents.gwendolen import Action, Agent, BeliefChange, Deed
 from compiler.logic.kripke import Explored, explore
 
 SILENT = ("print", "remove_shared", "assert_shared")
@@ -50,10 +50,10 @@ class ReasoningStep(StrEnum):
 class Notice:
     """A perceived change of belief that the agent makes in a later turn."""
 
-    change: Change
+    change: BeliefChange
 
     def __str__(self) -> str:
-        """As a deed of its own."""
+        """The text of the notice as a deed."""
         return f"the percept {self.change}"
 
 
@@ -61,7 +61,7 @@ class Notice:
 class Intention:
     """The deeds of the agent for an event, or for a percept."""
 
-    event: Change | Notice
+    event: BeliefChange | Notice
     deeds: tuple[Deed | Notice, ...] = ()
     """The deeds left; empty for an event until a plan is chosen."""
 
@@ -71,13 +71,13 @@ class State:
     """The agent and its environment between two stages."""
 
     percepts: Beliefs
-    """What the environment shows."""
+    """The percepts that the environment shows."""
     up_to_date: bool
     """Whether the agent has perceived `percepts` since the environment drew them."""
     perceived: Beliefs
     """Beliefs that come from percepts."""
     own: Beliefs
-    """Beliefs that the agent has added, or began with."""
+    """Beliefs that the agent added, or began with."""
     current: Intention | None
     waiting: tuple[Intention, ...]
     stage: ReasoningStep
@@ -88,12 +88,12 @@ class State:
 
     @property
     def beliefs(self) -> Beliefs:
-        """All that is believed."""
+        """All beliefs, perceived and own."""
         return self.perceived | self.own
 
 
 Step = tuple[str, State]
-"""An event, in words, and the state after it."""
+"""An event in words, and the state after it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,12 +105,12 @@ class Model:
 
     @property
     def initial(self) -> State:
-        """Nothing has been drawn yet."""
+        """The state before the environment draws the first percepts."""
         own = frozenset(self.agent.beliefs)
         return State(frozenset(), False, frozenset(), own, None, (), ReasoningStep.BEGIN, None)
 
     def steps(self, state: State) -> Iterator[Step]:
-        """Everything that may happen next; at least one thing."""
+        """Every possible next event with the state after it; at least one."""
         match state.stage:
             case ReasoningStep.BEGIN:
                 yield from self._drawn(state)
@@ -200,9 +200,9 @@ class Model:
                 words = "believes" if change.sign == "+" else "no longer believes"
                 for state in _believed(after, change):
                     yield f"{words} {change.belief}", state
-            case Change("+", belief):
+            case BeliefChange("+", belief):
                 yield f"adds {belief}", _added(after, belief)
-            case Change(_, belief):
+            case BeliefChange(_, belief):
                 for state in _removed(after, belief):
                     yield f"removes {belief}", state
 
@@ -218,9 +218,9 @@ def _with_percepts(state: State, percepts: Beliefs) -> State:
 
 
 def _perceived(state: State) -> Iterator[Step]:
-    """Beliefs without a percept go first; then beliefs of new percepts come."""
-    gone = [Change("-", belief) for belief in sorted(state.perceived - state.percepts)]
-    come = [Change("+", belief) for belief in sorted(state.percepts - state.perceived)]
+    """The next changes of beliefs: first those without a percept go, then new percepts come."""
+    gone = [BeliefChange("-", belief) for belief in sorted(state.perceived - state.percepts)]
+    come = [BeliefChange("+", belief) for belief in sorted(state.percepts - state.perceived)]
     done = replace(state, up_to_date=True, stage=ReasoningStep.SELECT)
     if state.up_to_date or not (gone or come):
         yield "perceives nothing new", done
@@ -234,14 +234,14 @@ def _perceived(state: State) -> Iterator[Step]:
                 yield f"perceives {change}", after
 
 
-def _noticed(state: State, changes: tuple[Change, ...]) -> State:
+def _noticed(state: State, changes: tuple[BeliefChange, ...]) -> State:
     """One intention for each change, unless the same intention waits already."""
     intentions = (Intention(Notice(change), (Notice(change),)) for change in changes)
     new = [intention for intention in intentions if intention not in state.waiting]
     return replace(state, waiting=(*state.waiting, *new))
 
 
-def _believed(state: State, change: Change) -> tuple[State, ...]:
+def _believed(state: State, change: BeliefChange) -> tuple[State, ...]:
     """One percept comes or goes; several outcomes where the agent has added the belief itself."""
     belief = {change.belief}
     if change.sign == "+":
@@ -267,12 +267,12 @@ def _selected(state: State) -> Step:
 
 def _added(state: State, belief: str) -> State:
     after = replace(state, own=state.own | {belief})
-    return after if belief in state.beliefs else _raised(after, Change("+", belief), 1)
+    return after if belief in state.beliefs else _raised(after, BeliefChange("+", belief), 1)
 
 
 def _removed(state: State, belief: str) -> tuple[State, ...]:
     """The agent removes a belief; several outcomes where the belief is also perceived."""
-    gone = Change("-", belief)
+    gone = BeliefChange("-", belief)
     less = replace(state, own=state.own - {belief})
     neither = replace(less, perceived=state.perceived - {belief})
     if belief not in state.beliefs:
@@ -282,7 +282,7 @@ def _removed(state: State, belief: str) -> tuple[State, ...]:
     return (_raised(neither, gone, 1),)
 
 
-def _raised(state: State, event: Change, times: int) -> State:
+def _raised(state: State, event: BeliefChange, times: int) -> State:
     return replace(state, waiting=(*state.waiting, *[Intention(event)] * times))
 
 
@@ -290,9 +290,9 @@ def narration(model: Model, explored: Explored[State], numbers: tuple[int, ...])
     """The event before each state of a run, in words.
 
     Args:
-        model: whose states they are.
-        explored: all of them.
-        numbers: a run, from the initial state on.
+        model: the model of the states.
+        explored: all states of the model.
+        numbers: the states of a run, from the initial state on.
     """
     actions = ["nothing yet"]
     for before, after in pairwise(numbers):

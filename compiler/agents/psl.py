@@ -1,10 +1,10 @@
-"""Property files of AJPF (`.psl`), read strictly: a text that AJPF would repair is a mistake.
+"""Strict reader of AJPF property files (`.psl`): a text that AJPF would repair is an error.
 
-AJPF's own reader splits a file line by line and its parser recovers from every error, so that
-a wrong property looks verified. This reader reads a property exactly as AJPF does, or F603 tells
-how AJPF would misread it, and where.
-Source: the file reader and the property grammar of MCAPL; Dennis et al., Model checking agent
-programming languages, ASE 19 (2012), section 4 (the property specification language).
+AJPF's own reader splits a file line by line, and its parser recovers from every error, so a wrong
+property looks verified. This reader reads a property exactly as AJPF does, or F603 reports where
+and how AJPF would misread it. Source: the file reader and the property grammar of MCAPL; Dennis et
+al., Model checking agent programming languages, ASE 19 (2012), section 4 (the property
+specification language).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from fretish.reading.limits import with_budget
 from fretish.reading.recursion import with_recursion_limit
 
 KEY = re.compile(r"[A-Za-z0-9_.-]+")
-"""What can stand in `target.args` as the key of a property."""
+"""A key that `target.args` can carry."""
 _LINES = re.compile(r"[^\r\n]*(?:\r\n|\n|\r|$)")
 
 
@@ -38,14 +38,14 @@ class Property:
     span: Span = field(compare=False, repr=False)
     """From the key to the end of the formula."""
     remarks: tuple[Diagnostic, ...] = field(default=(), compare=False, repr=False)
-    """Warnings about properties that probably do not mean what their author intends."""
+    """Warnings about a property that its author probably did not intend."""
 
 
 @with_recursion_limit
 def read(source: Source) -> tuple[Property, ...] | Diagnostic:
-    """All properties of a file, in its order; or F603 for the first thing that AJPF would misread.
+    """All properties of a file, in order; or F603 for the first text that AJPF would misread.
 
-    A file of comments has none.
+    A file with only comments has no properties.
     """
     return with_budget(len(source.text), source.span(0, 0), lambda: _read(source))
 
@@ -82,7 +82,7 @@ def _property(key: Span, text: JoinedText) -> Property:
 
 
 def _keyed(source: Source) -> Iterator[tuple[Span, JoinedText]]:
-    """Each key with the text of its formula, put together as AJPF's file reader does it.
+    """Each key with the text of its formula, joined as AJPF's file reader joins it.
 
     A line is split at its colons; one without a colon belongs to the line before it, with nothing
     between them.
@@ -113,7 +113,7 @@ def _lines(source: Source) -> Iterator[Span]:
 
 
 def _key(line: Span) -> Span:
-    """The text before the first colon; AJPF compares keys letter by letter."""
+    """The text before the first colon; AJPF compares keys character by character."""
     key = line.part(0, line.text.index(":"))
     if KEY.fullmatch(key.text):
         return key

@@ -59,7 +59,7 @@ _DROPPED = {
     "and": "a conjunction is `&`",
     "|": "a disjunction is `||`",
     "or": "a disjunction is `||`",
-    "%": "`%` begins no comment: a comment is a line that begins with `#`",
+    "%": "`%` does not begin a comment: a comment is a line that begins with `#`",
     "#": "a comment is a whole line, with `#` in its first column",
     "/*": "the comment has no end: close it with `*/`",
     "T": "AJPF crashes on a negated `T`: simplify the constant away",
@@ -81,7 +81,7 @@ class AjpfDivergenceError(Exception):
 
 
 def misread(message: str, span: Span, fix: str) -> AjpfDivergenceError:
-    """F603, to be raised."""
+    """The exception for F603."""
     return AjpfDivergenceError(Diagnostic(Code.BAD_PROPERTY, message, span, fix))
 
 
@@ -95,7 +95,7 @@ class JoinedText:
         self._after = pieces[0].end if not self._places else self._places[-1] + 1
 
     def span(self, start: int, end: int) -> Span:
-        """Where the characters `start..end` stand in the file."""
+        """The span in the file of the characters `start..end`."""
         if start >= end or start >= len(self._places):
             return self.source.span(self._after, self._after)
         return self.source.span(self._places[start], self._places[end - 1] + 1)
@@ -152,7 +152,7 @@ def _tokens(text: JoinedText) -> Iterator[_Token]:
 
 
 class _Reader:
-    """One function for each level of the grammar; `strings` are those that it has met."""
+    """A parser with one method for each level of the grammar; it collects `strings`."""
 
     def __init__(self, tokens: deque[_Token], end: Span) -> None:
         self.tokens = tokens

@@ -1,7 +1,7 @@
-"""Formula → text of a property file of AJPF, which AJPF reads as it is meant.
+"""Formulas as text of an AJPF property file, which AJPF reads with the intended meaning.
 
-Its parser repairs wrong text in silence and groups in its own way: so every operator has
-parentheses of its own, and what AJPF has no words for never gets here.
+AJPF's parser silently repairs invalid text and has its own precedences. So every operator is in
+parentheses, and formulas that AJPF cannot express are refused before.
 """
 
 from __future__ import annotations

@@ -9,16 +9,17 @@ from __future__ import annotations
 from compiler.logic import formula as f
 
 Bare = tuple[tuple[f.Formula, ...], f.Formula]
-"""The conditions within a formula; and the formula without what follows from them."""
+"""The conditions within a formula, and the formula without what they imply."""
 
 
-def bare(formula: f.Formula) -> tuple[Bare, ...]:
+def without_consequences(formula: f.Formula) -> tuple[Bare, ...]:
     """The formula without the consequences of its innermost conditions.
 
-    Where that holds as well, the conditions are never true where they matter. One for each part
-    of a conjunction that speaks of all times, and one for the whole where no part does. A condition
-    is the left side of an implication, and `a` in `!a | b` where `a` has no temporal operator;
-    under a negation there are none, nor are those that only choose among propositions.
+    If the result holds as well, the conditions are never true where they matter. There is one
+    result for each conjunct about all times, or one for the whole formula if there is no such
+    conjunct. A condition is the left side of an implication, or `a` in `!a | b` if `a` has no
+    temporal operator. A negation has no conditions, and neither has an implication among
+    propositions only.
     """
     flat = _flat(formula)
     parts = flat.args if isinstance(flat, f.And) else (flat,)
@@ -28,7 +29,7 @@ def bare(formula: f.Formula) -> tuple[Bare, ...]:
 
 
 def _flat(formula: f.Formula) -> f.Formula:
-    """With each chain of `|` in one node, however it was put in parentheses."""
+    """The formula with each chain of `|` in one node, however it was parenthesized."""
     return f.rebuild(formula, _flat)
 
 
@@ -59,22 +60,22 @@ def _disjunction(args: tuple[f.Formula, ...]) -> Bare:
 
 
 def _is_plain(formula: f.Formula) -> bool:
-    """Whether it has no temporal operator."""
+    """Whether the formula has no temporal operator."""
     logic = (f.Const, f.Atom, f.Not, f.And, f.Or, f.Xor, f.Implies, f.Iff)
     return isinstance(formula, logic) and all(map(_is_plain, f.children(formula)))
 
 
-def demanded(formula: f.Formula, positive: bool = True) -> frozenset[str]:
+def positive_atoms(formula: f.Formula, positive: bool = True) -> frozenset[str]:
     """The atoms that occur positively: under an even number of negations."""
     match formula:
         case f.Atom(name):
             return frozenset({name} if positive else ())
         case f.Not(arg):
-            return demanded(arg, not positive)
+            return positive_atoms(arg, not positive)
         case f.Implies(left, right):
-            return demanded(left, not positive) | demanded(right, positive)
+            return positive_atoms(left, not positive) | positive_atoms(right, positive)
         case f.Iff(left, right) | f.Xor(left, right):
             return frozenset(f.atoms(formula))
         case _:
-            parts = (demanded(part, positive) for part in f.children(formula))
+            parts = (positive_atoms(part, positive) for part in f.children(formula))
             return frozenset().union(*parts)

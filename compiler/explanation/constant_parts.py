@@ -1,4 +1,4 @@
-"""The parts of a sentence that are true of all numbers, or false: they demand nothing, or too much.
+"""Parts of a sentence that are always true or always false, whatever is measured.
 
 Only what comparisons make constant counts: `battery < 20 & battery > 30`.
 """
@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import MOST_ATOMS, excluded, temporal_predicate
+from compiler.formalization.letters import MOST_ATOMS, impossible_combinations, temporal_predicate
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
@@ -20,18 +20,19 @@ from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import ScopeKind
 
 _ByFirst = Mapping[str, Sequence[Exclusion]]
-"""What cannot be, by the first comparison: each part looks only at what speaks of it."""
+"""Impossible combinations by their first comparison, so that each part checks only those that
+concern it."""
 
 
 @with_recursion_limit
 def constant_parts(requirement: FormalizedRequirement) -> tuple[tuple[e.Expression, bool], ...]:
-    """Each part that has one truth value whatever is measured, and which; none within another.
+    """Each outermost part with a constant truth value, and that value.
 
-    The condition of a scope is looked at together with its mode.
+    The condition of a scope is checked together with its mode.
     """
     impossible: dict[str, list[Exclusion]] = {}
-    for each in excluded(requirement):
-        impossible.setdefault(each[0][0], []).append(each)
+    for exclusion in impossible_combinations(requirement):
+        impossible.setdefault(exclusion[0][0], []).append(exclusion)
     if not impossible or temporal_predicate(requirement.sentence):
         return ()
     parts = tuple(_constant(tuple(conditions(requirement.sentence)), impossible))
@@ -55,16 +56,16 @@ def _constant(
 
 
 def _value(part: e.Expression, impossible: _ByFirst) -> bool | None:
-    """Its value, where that is the same in all valuations that can occur, and only in these."""
+    """The value of the part if it is constant over exactly the possible valuations; else None."""
     formula = boolean(part, Uninterpreted().alone())
     atoms = tuple(dict.fromkeys(f.atoms(formula)))
     if not atoms or len(atoms) > MOST_ATOMS:
         return None
     every = tuple(product((False, True), repeat=len(atoms)))
-    spoken = [each for name in atoms for each in impossible.get(name, ())]
-    possible = only_possible(every, atoms, spoken)
-    found, all_ = ({*_values(formula, atoms, some)} for some in (possible, every))
-    return found.pop() if len(found) == 1 and len(all_) == 2 else None
+    exclusions = [exclusion for name in atoms for exclusion in impossible.get(name, ())]
+    possible = only_possible(every, atoms, exclusions)
+    values, all_ = ({*_values(formula, atoms, valuations)} for valuations in (possible, every))
+    return values.pop() if len(values) == 1 and len(all_) == 2 else None
 
 
 def _values(

@@ -1,9 +1,10 @@
-"""The picture of a sentence's meaning, as values: where it holds, what triggers, what is owed.
+"""The diagram of a sentence's meaning, as values: scope, triggers, and open demands.
 
-A sentence is drawn on one trace that shows all of it: the scope begins and ends, the condition is
-true for two ticks, the stop condition comes. What stands in the lanes is not drawn by hand for each
-form of sentence: it is read off that trace by the definition (`compiler.explanation.windows`).
-`compiler.explanation.drawing` lays it out; the reader's own names and numbers are all in here.
+A sentence is drawn on one trace that shows all of its parts: the scope begins and ends, the
+condition is true for two ticks, the stop condition comes. The content of the lanes is read off that
+trace by the definition (`compiler.explanation.windows`), and not drawn separately for each form of
+sentence. `compiler.explanation.drawing` computes the layout; the reader's names and numbers are all
+in these values.
 """
 
 from __future__ import annotations
@@ -22,23 +23,23 @@ from fretish.printer import expression
 from fretish.syntax import Extent, ScopeKind
 
 _LEAD, _TAIL, _WAIT = 2, 2, 3
-"""Ticks before the scope and after it, and ticks to wait where the sentence sets no bound."""
+"""Ticks before and after the scope, and ticks to wait if the sentence sets no bound."""
 
 
 class Kind(StrEnum):
     """What a lane shows."""
 
     MODE = "mode"
-    """Where the mode is true."""
+    """The ticks at which the mode is true."""
     SCOPE = "scope"
-    """Where the sentence is enforced."""
+    """The ticks at which the sentence is enforced."""
     CONDITION = "condition"
     STOP = "stop"
     TRIGGER = "trigger"
     BOUND = "bound"
     """From a trigger to the tick that the duration counts to."""
     NEED = "need"
-    """Where the response matters."""
+    """The ticks at which the response matters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +49,7 @@ class Stretch:
     first: int
     last: int
     goes_on: bool = False
-    """Whether it lasts as long as the run does, beyond the picture."""
+    """Whether the stretch lasts until the end of the run, beyond the picture."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,20 +58,20 @@ class Lane:
 
     kind: Kind
     name: str
-    """An expression of the sentence; empty where the lane is of none."""
+    """An expression of the sentence; empty for a lane without an expression."""
     note: str
-    """What a bar in it means."""
+    """The meaning of a bar in the lane."""
     stretches: tuple[Stretch, ...]
     need: Expectation | None = None
-    """For `Kind.NEED`."""
+    """The required response, for `Kind.NEED`."""
     trigger: int | None = None
-    """The tick of the trigger that asks for it, where there are several."""
+    """The tick of the trigger that makes the demand, if there are several triggers."""
     otherwise: bool = False
-    """Whether it is only asked for where the lane before it is not as it must be."""
+    """Whether the demand applies only if the demand of the lane before is not met."""
 
     @property
     def remark(self) -> str:
-        """All that is written beside the lane but its name."""
+        """The text beside the lane, without its name."""
         link = "or else " if self.otherwise else ""
         whose = "" if self.trigger is None else f", trigger at tick {self.trigger}"
         return f"{link}{self.note}{whose}"
@@ -78,7 +79,7 @@ class Lane:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """The trace that is drawn, a column for each part of the sentence."""
+    """The drawn trace, with a column for each part of the sentence."""
 
     m: Column
     p: Column
@@ -91,22 +92,22 @@ class Diagram:
 
     title: str
     ticks: int
-    """Of the picture; the run goes on after them, or ends with them."""
+    """The number of ticks in the picture; the run ends with them or continues."""
     ends: bool
-    """Whether the run ends with the last tick that is drawn."""
+    """Whether the run ends with the last tick of the picture."""
     period: int | None
-    """Nanoseconds of a tick, where a clock says it."""
+    """Nanoseconds of a tick, if there is a clock."""
     lanes: tuple[Lane, ...]
     trace: Trace
     windows: tuple[ObligationWindow, ...]
-    """What the triggers in the picture ask for."""
+    """The demands of the triggers in the picture."""
 
 
 def diagram(requirement: FormalizedRequirement) -> Diagram:
-    """The picture of a formalized sentence, whatever its bound."""
+    """The diagram of a formalized sentence, for any bound."""
     drawn = template(requirement.sentence, requirement.ticks or 0)
     trace = _trace(drawn)
-    found = windows(drawn, trace.m, trace.p, trace.s)
+    obligations = windows(drawn, trace.m, trace.p, trace.s)
     ticks = len(trace.m)
     ends = s.SHAPES[drawn.timing].extent.needs_end and s.ends_with_run(drawn.scope)
     return Diagram(
@@ -114,9 +115,9 @@ def diagram(requirement: FormalizedRequirement) -> Diagram:
         ticks=ticks,
         ends=ends,
         period=requirement.clock.period if requirement.clock else None,
-        lanes=tuple(_lanes(requirement, drawn, trace, found, ticks if ends else ticks - 1)),
+        lanes=tuple(_lanes(requirement, drawn, trace, obligations, ticks if ends else ticks - 1)),
         trace=trace,
-        windows=found,
+        windows=obligations,
     )
 
 
@@ -124,7 +125,7 @@ def diagram(requirement: FormalizedRequirement) -> Diagram:
 
 
 def _trace(drawn: Template) -> Trace:
-    """One on which every part of the sentence does something."""
+    """A trace on which every part of the sentence has an effect."""
     lead = 0 if drawn.scope in (None, ScopeKind.BEFORE, ScopeKind.ONLY_AFTER) else _LEAD
     if drawn.scope is ScopeKind.AFTER:
         lead += 1  # a first run of the mode, with a tick before it
@@ -141,7 +142,7 @@ def _trace(drawn: Template) -> Trace:
 
 
 def _reach(drawn: Template) -> int:
-    """How many ticks after a trigger something is asked for."""
+    """The number of ticks after a trigger for which its demand lasts."""
     extent = s.SHAPES[drawn.timing].extent
     match extent:
         case Extent.DURATION:
@@ -185,10 +186,10 @@ def _lanes(
     requirement: FormalizedRequirement,
     drawn: Template,
     trace: Trace,
-    found: Sequence[ObligationWindow],
+    obligations: Sequence[ObligationWindow],
     end: int,
 ) -> Iterator[Lane]:
-    """From above: where, when, until when, and what."""
+    """The lanes from top to bottom: scope, triggers, bound, response."""
     sentence = requirement.written
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
     if scope is not None:
@@ -200,19 +201,22 @@ def _lanes(
     yield Lane(Kind.SCOPE, "", "enforced", enforced)
     if condition is not None:
         yield Lane(Kind.CONDITION, expression(condition.expression), "true", _true(trace.p))
-    starts = tuple(Stretch(window.trigger, window.trigger) for window in found)
+    starts = tuple(Stretch(window.trigger, window.trigger) for window in obligations)
     yield Lane(Kind.TRIGGER, "", "triggers" if condition else "begins", starts)
     if stop is not None:
         yield Lane(Kind.STOP, expression(stop), "true", _true(trace.s))
-    yield from _needs(requirement, drawn, found, end)
+    yield from _needs(requirement, drawn, obligations, end)
 
 
 def _needs(
-    requirement: FormalizedRequirement, drawn: Template, found: Sequence[ObligationWindow], end: int
+    requirement: FormalizedRequirement,
+    drawn: Template,
+    obligations: Sequence[ObligationWindow],
+    end: int,
 ) -> Iterator[Lane]:
     q = expression(requirement.written.response)
-    several = len(found) > 1
-    for window in found:
+    several = len(obligations) > 1
+    for window in obligations:
         whose = window.trigger if several else None
         if s.duration(requirement.sentence.timing) is not None:
             reach = Stretch(window.trigger, window.trigger + drawn.ticks)
@@ -226,7 +230,7 @@ def _needs(
 
 
 def _goes_on(drawn: Template, last: int, end: int) -> bool:
-    """A demand as long as the interval, in one that lasts as long as the run."""
+    """Whether a demand lasts as long as an interval that lasts as long as the run."""
     extent = s.SHAPES[drawn.timing].extent
     match extent:
         case Extent.INTERVAL:
@@ -251,7 +255,7 @@ def _need(single: bool, need: Expectation) -> str:
 
 
 def _true(column: Column) -> tuple[Stretch, ...]:
-    """Where it is true."""
+    """The stretches at which the column is true."""
     return tuple(Stretch(left, right) for left, right in intervals(ScopeKind.IN, column))
 
 
@@ -259,7 +263,7 @@ def _true(column: Column) -> tuple[Stretch, ...]:
 
 
 def words(drawn: Diagram) -> str:
-    """The picture as sentences, for those who do not see it."""
+    """The diagram as sentences, for readers who cannot see it."""
     end = "The run ends with the last tick" if drawn.ends else "The run goes on"
     lanes = [_in_words(lane) for lane in drawn.lanes if lane.kind is not Kind.BOUND]
     return " ".join([f"A run of ticks 0 to {drawn.ticks - 1}.", *lanes, f"{end}."])

@@ -1,4 +1,4 @@
-"""A diagram laid out, as SVG and in characters for a terminal; long equal stretches are folded."""
+"""The layout of a diagram, as SVG and as text for a terminal; long equal stretches are folded."""
 
 from __future__ import annotations
 
@@ -22,31 +22,31 @@ class Slot:
 
 
 _PLAIN = 22
-"""So many ticks are drawn one by one."""
+"""Number of ticks up to which each tick is drawn."""
 _ALIKE = 4
-"""In a longer picture so many equal ticks still are."""
+"""Number of equal ticks that are drawn one by one in a longer picture."""
 
 
 def slots(drawn: Diagram) -> tuple[Slot, ...]:
-    """The columns; few, whatever the bound. Of a long stretch the first and last tick are kept."""
+    """The columns, few for any bound: a long stretch keeps its first and its last tick."""
     cuts = {0, drawn.ticks}
     for lane in drawn.lanes:
         for stretch in lane.stretches:
             cuts.update((stretch.first, stretch.last + 1))
     edges = sorted(cut for cut in cuts if 0 <= cut <= drawn.ticks)
-    found: list[Slot] = []
+    columns: list[Slot] = []
     for first, after in pairwise(edges):
         if drawn.ticks <= _PLAIN or after - first <= _ALIKE:
-            found.extend(Slot(t, t) for t in range(first, after))
+            columns.extend(Slot(t, t) for t in range(first, after))
         else:
-            found.extend(
+            columns.extend(
                 (Slot(first, first), Slot(first + 1, after - 2), Slot(after - 1, after - 1))
             )
-    return tuple(found)
+    return tuple(columns)
 
 
 def _places(columns: Sequence[Slot], stretch: Stretch) -> tuple[int, int] | None:
-    """The first and the last column of a stretch; None where it has no tick."""
+    """The first and the last column of a stretch; None if it contains no tick."""
     inside = [
         i
         for i, slot in enumerate(columns)
@@ -56,7 +56,7 @@ def _places(columns: Sequence[Slot], stretch: Stretch) -> tuple[int, int] | None
 
 
 def shortened(text: str, most: int) -> str:
-    """With an ellipsis in its middle, where it is longer than `most` characters."""
+    """The text, with an ellipsis in the middle if it is longer than `most` characters."""
     if len(text) <= most:
         return text
     head = (most - 1) // 2
@@ -72,7 +72,7 @@ _EMPTY = "·"
 
 
 def text(drawn: Diagram, indent: str = "") -> str:
-    """The picture in characters, a line for each lane."""
+    """The diagram as text, a line for each lane."""
     columns = slots(drawn)
     labels = [str(slot.first) if slot.first == slot.last else "…" for slot in columns]
     width = max(map(len, labels)) + 1
@@ -137,7 +137,7 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A lane laid out."""
+    """A lane in units of the drawing."""
 
     y: int
     name: str
@@ -158,7 +158,7 @@ class Fold:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """A diagram laid out; the template only places it."""
+    """A diagram in units of the drawing; the template only places it."""
 
     id: str
     title: str
@@ -172,19 +172,19 @@ class Drawing:
     rows: tuple[Row, ...]
     folds: tuple[Fold, ...]
     edges: tuple[float, ...]
-    """Where the scope begins and ends."""
+    """The positions at which the scope begins and ends."""
     labels: tuple[tuple[float, str], ...]
     ends: bool
     unit: str
-    """What a tick is."""
+    """The length of a tick in words."""
 
 
 def drawing(drawn: Diagram, id: str = "diagram") -> Drawing:
-    """The layout of a picture.
+    """The layout of a diagram.
 
     Args:
-        drawn: the picture.
-        id: what the names of its patterns begin with: another one for each picture in a page.
+        drawn: the diagram.
+        id: prefix of the names of its patterns; unique within a page.
     """
     columns = slots(drawn)
     axis = _TOP + _ROW * len(drawn.lanes)
@@ -209,7 +209,7 @@ def drawing(drawn: Diagram, id: str = "diagram") -> Drawing:
 
 
 def svg(drawn: Diagram) -> str:
-    """A file of its own, readable without any other."""
+    """The diagram as a self-contained SVG file."""
     return render("diagram/diagram.svg.j2", drawing=asdict(drawing(drawn)))
 
 
@@ -271,14 +271,14 @@ def _edges(drawn: Diagram, columns: Sequence[Slot]) -> Iterator[float]:
 
 
 def _labels(drawn: Diagram, columns: Sequence[Slot]) -> Iterator[tuple[float, str]]:
-    """Ticks at which something begins or ends come first, where there is no room for all."""
+    """Labels of ticks; if space is short, those at which a bar begins or ends are preferred."""
     changes = {0, drawn.ticks - 1}
     for lane in drawn.lanes:
         for stretch in lane.stretches:
             changes.update((stretch.first, stretch.last))
     plain = [(i, slot.first) for i, slot in enumerate(columns) if slot.first == slot.last]
     taken: list[tuple[float, float]] = []
-    for i, tick in sorted(plain, key=lambda each: each[1] not in changes):
+    for i, tick in sorted(plain, key=lambda label: label[1] not in changes):
         middle = _x(i, columns) + _step(columns) / 2
         half = len(str(tick)) * _DIGIT / 2 + 2
         if all(middle + half <= start or middle - half >= end for start, end in taken):

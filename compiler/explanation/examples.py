@@ -1,4 +1,4 @@
-"""Short traces that satisfy a sentence, and short ones that violate it, each in a way of its own.
+"""Short traces that satisfy or violate a sentence, each in a different way.
 
 They are shortest words of the reference automaton (`compiler.formalization.reference`), by breadth
 first search through waypoints: answered at once, at the deadline, cut off by the end of the scope;
@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from compiler.explanation.shortest_words import Move, Run, Waypoint, Words
-from compiler.explanation.windows import has_deadline, kept
+from compiler.explanation.shortest_words import Move, Run, ShortestWords, Waypoint
+from compiler.explanation.windows import has_deadline, is_satisfied
 from compiler.formalization import reference as counters
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import (
@@ -19,8 +19,8 @@ from compiler.formalization.letters import (
     Valuation,
     atoms_of,
     comparisons,
-    excluded,
-    meanings,
+    impossible_combinations,
+    letters_by_valuation,
     temporal_predicate,
 )
 from compiler.formalization.reference import (
@@ -33,9 +33,9 @@ from compiler.formalization.reference import (
 from compiler.logic.orders import Exclusion, only_possible
 
 MOST_STATES = 120_000
-"""Seconds of search; a longer bound gets no examples."""
+"""Automata with more states get no examples: the search would take seconds."""
 WANTED = 2
-"""Of either kind."""
+"""Default number of examples of either kind."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +46,8 @@ class Example:
     prefix: tuple[Valuation, ...]
     """At least one tick: the values of `Examples.atoms`."""
     loop: tuple[Valuation, ...]
-    """What comes again and again after the prefix, on a run without end; the verdict is the same
-    where the run ends after any of the rounds. Empty: what comes does not matter, or the run ends.
+    """The ticks that repeat for ever after the prefix, on an endless run; the verdict is the same
+    if the run ends after any round. Empty: the run ends, or what follows does not matter.
     """
     decided: int | None
     """The first tick after which no continuation can change the verdict. None: there is none."""
@@ -55,29 +55,34 @@ class Example:
 
 @dataclass(frozen=True, slots=True)
 class Examples:
-    """What could be found for a sentence."""
+    """The examples of a sentence, with the reasons for those that are missing."""
 
     atoms: tuple[str, ...]
     satisfied: tuple[Example, ...]
     violated: tuple[Example, ...]
     note: str = ""
-    """Why there are none, where there are none."""
+    """The reason if there are no examples."""
     rounded: Exclusion = ()
-    """Of what was left out because no real numbers make it; floats that round may."""
+    """A combination that was left out because no real numbers make it; rounded floats may."""
     is_undecided: bool = False
-    """Whether numbers make the traces was not decided."""
+    """Whether it was not decided that numbers exist for the traces."""
 
 
 def examples(requirement: FormalizedRequirement, wanted: int = WANTED) -> Examples:
-    """The traces of a requirement: at most so many of either kind, the shortest ones first."""
+    """The examples of a requirement: at most `wanted` of either kind, the shortest first."""
     predicate = temporal_predicate(requirement.sentence)
     if predicate is not None:
-        return Examples((), (), (), f"`{predicate}` speaks of other ticks, the automaton of one")
+        return Examples(
+            (),
+            (),
+            (),
+            f"`{predicate}` refers to other ticks, but the automaton reads one tick at a time",
+        )
     atoms = atoms_of(requirement.sentence)
     if len(atoms) > MOST_ATOMS:
         return Examples(atoms, (), (), f"{len(atoms)} propositions are more than {MOST_ATOMS}")
-    every = meanings(requirement.sentence, atoms)
-    possible = only_possible(tuple(every), atoms, excluded(requirement))
+    every = letters_by_valuation(requirement.sentence, atoms)
+    possible = only_possible(tuple(every), atoms, impossible_combinations(requirement))
     chosen = _chosen(requirement, atoms, {valuation: every[valuation] for valuation in possible})
     letters = chosen.letters
     counted = counters.template(requirement.sentence, requirement.ticks or 0)
@@ -86,9 +91,13 @@ def examples(requirement: FormalizedRequirement, wanted: int = WANTED) -> Exampl
     except TooManyStatesError:
         return Examples(atoms, (), (), f"its automaton has more than {MOST_STATES} states")
     search = _Search(automaton, letters)
-    satisfied = tuple(_different(search, search.satisfying(), wanted))
-    violated = tuple(_different(search, search.violating(), wanted))
-    shown = {each for found in (*satisfied, *violated) for each in (*found.prefix, *found.loop)}
+    satisfied = tuple(_different_examples(search, search.satisfying(), wanted))
+    violated = tuple(_different_examples(search, search.violating(), wanted))
+    shown = {
+        valuation
+        for example in (*satisfied, *violated)
+        for valuation in (*example.prefix, *example.loop)
+    }
     is_undecided = not chosen.undecided.isdisjoint(shown)
     return Examples(atoms, satisfied, violated, "", chosen.rounded, is_undecided)
 
@@ -97,26 +106,26 @@ def examples(requirement: FormalizedRequirement, wanted: int = WANTED) -> Exampl
 
 
 @dataclass(frozen=True, slots=True)
-class _Chosen:
-    """For each letter a valuation that shows it."""
+class _LetterValuations:
+    """A valuation of the atoms for each letter."""
 
     letters: Mapping[Letter, Valuation]
     undecided: frozenset[Valuation] = frozenset()
     rounded: Exclusion = ()
-    """Of a letter that no real numbers make."""
+    """The combination of a letter that no real numbers make."""
 
 
 def _chosen(
     requirement: FormalizedRequirement, atoms: Sequence[str], every: Mapping[Valuation, Letter]
-) -> _Chosen:
-    """For each letter the one with the fewest true atoms that real numbers make."""
+) -> _LetterValuations:
+    """For each letter the valuation with the fewest true atoms that real numbers make."""
     if not comparisons(requirement):
-        return _Chosen(_quiet_first(every))
+        return _LetterValuations(_fewest_true_first(every))
     from compiler.formalization.numbers.reals import Impossible, Possible, Reals
 
     reals, excluded = Reals(requirement), dict[Letter, Exclusion]()
     possible, undecided = dict[Valuation, Letter](), dict[Valuation, Letter]()
-    for valuation, letter in _by_noise(every):
+    for valuation, letter in _by_true_atoms(every):
         if letter in possible.values():
             continue
         match reals.answer(dict(zip(atoms, valuation, strict=True))):
@@ -127,21 +136,21 @@ def _chosen(
             case _:
                 undecided.setdefault(valuation, letter)
     spare = {v: letter for v, letter in undecided.items() if letter not in possible.values()}
-    letters = _quiet_first({**possible, **spare})
+    letters = _fewest_true_first({**possible, **spare})
     gone = (exclusion for letter, exclusion in excluded.items() if letter not in letters)
-    return _Chosen(letters, frozenset(spare), next(gone, ()))
+    return _LetterValuations(letters, frozenset(spare), next(gone, ()))
 
 
-def _quiet_first(found: Mapping[Valuation, Letter]) -> dict[Letter, Valuation]:
+def _fewest_true_first(letter_of: Mapping[Valuation, Letter]) -> dict[Letter, Valuation]:
     """For each letter the valuation with the fewest true atoms; the quietest letters first."""
     chosen: dict[Letter, Valuation] = {}
-    for valuation, letter in _by_noise(found):
+    for valuation, letter in _by_true_atoms(letter_of):
         chosen.setdefault(letter, valuation)
     return chosen
 
 
-def _by_noise(found: Mapping[Valuation, Letter]) -> Sequence[tuple[Valuation, Letter]]:
-    return sorted(found.items(), key=lambda pair: (sum(pair[0]), pair[0][::-1]))
+def _by_true_atoms(letter_of: Mapping[Valuation, Letter]) -> Sequence[tuple[Valuation, Letter]]:
+    return sorted(letter_of.items(), key=lambda pair: (sum(pair[0]), pair[0][::-1]))
 
 
 # The search -------------------------------------------------------------------------------------
@@ -156,13 +165,13 @@ def _waiting(move: Move) -> bool:
 
 
 def _answered(move: Move) -> bool:
-    """No demand is open after it; one was, or began; and not because the interval ends."""
+    """Whether a demand is met at this tick, not ended by its interval."""
     begun = move.triggered or move.before.counted != 0
     return begun and move.enforced and move.after is not None and not move.waits
 
 
 def _cut(move: Move) -> bool:
-    """The interval ends while a demand is open, and nothing is broken by that."""
+    """Whether the interval ends with an open demand, without a violation."""
     return move.before.counted != 0 and move.after is not None and not move.enforced
 
 
@@ -178,13 +187,13 @@ class _Search:
     """Candidates for examples, as words of an automaton."""
 
     def __init__(self, automaton: Automaton, letters: Mapping[Letter, Valuation]) -> None:
-        self.words = Words(automaton)
+        self.words = ShortestWords(automaton)
         self.letters = letters
         self.template = automaton.template
         self.satisfiable = automaton.verdicts[0] != "violated"
 
     def satisfying(self) -> Iterator[Run]:
-        """Candidates, the instructive ones first."""
+        """Candidates for satisfying examples, the instructive ones first."""
         closed = self._closed
         ways: tuple[tuple[Waypoint, ...], ...] = (
             (_triggered, _answered),
@@ -198,9 +207,9 @@ class _Search:
             (_triggered, _triggered),
         )
         for way in ways:
-            found = self.words.shortest(way, closed)
-            if found is not None:
-                yield self.words.followed(found, accepted=True)
+            run = self.words.shortest(way, closed)
+            if run is not None:
+                yield self.words.followed(run, accepted=True)
         silent = self.words.shortest((), closed, among=lambda move: not move.triggered)
         if silent is not None:
             yield self.words.followed(silent, accepted=True)
@@ -209,7 +218,7 @@ class _Search:
             yield self.words.followed(several, accepted=True)
 
     def violating(self) -> Iterator[Run]:
-        """Candidates: broken demands, then those that nobody ever answers, then ends."""
+        """Candidates for violating examples: broken demands, unanswered demands, ends."""
         ways: tuple[tuple[Waypoint, ...], ...] = (
             (_broken,),
             (self._deadline, _broken),
@@ -220,11 +229,11 @@ class _Search:
         )
         first = True
         for way in ways:
-            found = self.words.shortest(way, lambda move: True)
-            if found is None:
+            run = self.words.shortest(way, lambda move: True)
+            if run is None:
                 continue
-            yield found
-            late = self._too_late(found) if first else None
+            yield run
+            late = self._too_late(run) if first else None
             first = False
             if late is not None:
                 yield late
@@ -243,19 +252,19 @@ class _Search:
             (lambda move: not move.triggered, unanswered),
         )
         for way in ways:
-            found = self.words.shortest(way, lambda move: True)
-            if found is not None:
-                yield self.words.followed(found, accepted=False)
+            run = self.words.shortest(way, lambda move: True)
+            if run is not None:
+                yield self.words.followed(run, accepted=False)
 
     def _deadline(self, move: Move) -> bool:
         return move.after is not None and 0 < self.words.most == abs(move.after.counted)
 
     def _closed(self, move: Move) -> bool:
-        """FRET's verdict would be `satisfied`, were it the last tick."""
+        """Whether FRET's verdict is `satisfied` if the run ends with this tick."""
         return move.target != BROKEN and self.words.final[move.target]
 
     def _too_late(self, broken: Run) -> Run | None:
-        """The same with the response one tick after the deadline, where there is one."""
+        """The run with the response one tick after the deadline; None if there is no such run."""
         if not has_deadline(self.template):
             return None
         negated = self.template.scope is not None and self.template.scope.negates
@@ -280,29 +289,32 @@ class _Search:
         )
 
 
-def _different(search: _Search, runs: Iterator[Run], wanted: int) -> Iterator[Example]:
-    """The first ones that behave differently, each checked by the definition."""
+def _different_examples(search: _Search, runs: Iterator[Run], wanted: int) -> Iterator[Example]:
+    """The first runs that behave differently, each checked by the definition."""
     seen: set[tuple[object, ...]] = set()
     spare: Example | None = None
     for run in runs:
         if len(seen) == wanted:
             return
-        found = search.example(run)
-        left_open = run.is_open and not search.words.needs_end and found.decided is None
+        example = search.example(run)
+        left_open = run.is_open and not search.words.needs_end and example.decided is None
         if left_open:
-            spare = spare or found
+            spare = spare or example
         elif run.behaviour not in seen:
             seen.add(run.behaviour)
-            _check(search, run, found)
-            yield found
+            _check(search, run, example)
+            yield example
     if not seen and spare is not None and search.satisfiable:
         yield spare
 
 
-def _check(search: _Search, run: Run, found: Example) -> None:
-    """The automaton and the definition agree on the trace, and on each round after it."""
+def _check(search: _Search, run: Run, example: Example) -> None:
+    """Check that automaton and definition agree on the trace and on each round after it."""
     word = [move.letter for move in run.moves]
-    for _ in range(3 if found.loop else 1):
+    for _ in range(3 if example.loop else 1):
         m, p, q, stop = zip(*word, strict=True)
-        assert kept(search.template, m, p, q, stop) is found.satisfied, (search.template, word)
+        assert is_satisfied(search.template, m, p, q, stop) is example.satisfied, (
+            search.template,
+            word,
+        )
         word += [move.letter for move in run.loop]

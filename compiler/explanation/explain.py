@@ -13,7 +13,7 @@ from compiler.explanation.examples import Example, Examples, examples
 from compiler.explanation.reasons import why
 from compiler.formalization import record
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import Valuation, meanings
+from compiler.formalization.letters import Valuation, letters_by_valuation
 from compiler.logic.definition import holds
 from compiler.logic.formula import longest_bound
 from compiler.targets import ltl
@@ -33,13 +33,13 @@ class Row:
     last: int
     values: Valuation
     repeats: bool
-    """Whether it belongs to what comes again and again."""
+    """Whether the row is part of the loop."""
     decides: bool
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
-    """A trace as it is shown."""
+class ExplainedTrace:
+    """A trace with its verdict and reason, in rows."""
 
     satisfied: bool
     rows: tuple[Row, ...]
@@ -50,42 +50,42 @@ class Shown:
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """Everything about a requirement, in words."""
+    """Everything about a requirement that `fretc explain` shows."""
 
     requirement: FormalizedRequirement
     picture: Diagram
     propositions: tuple[str, ...]
-    """In the order of the values of a row."""
-    traces: tuple[Shown, ...]
+    """The propositions, in the order of the values of a row."""
+    traces: tuple[ExplainedTrace, ...]
     notes: tuple[str, ...]
 
 
 @with_recursion_limit
 def explanation(requirement: FormalizedRequirement) -> Explanation:
     """Explain a formalized requirement; every trace in it has been checked."""
-    found = examples(requirement)
-    every = (*found.satisfied, *found.violated)
-    letters = meanings(requirement.sentence, found.atoms) if every else {}
+    traces = examples(requirement)
+    every = (*traces.satisfied, *traces.violated)
+    letters = letters_by_valuation(requirement.sentence, traces.atoms) if every else {}
     for example in every:
-        _check(requirement, found.atoms, example)
+        _check(requirement, traces.atoms, example)
     shown = tuple(_shown(requirement, letters, example) for example in every)
-    notes = tuple(_notes(requirement, found))
-    return Explanation(requirement, diagram(requirement), found.atoms, shown, notes)
+    notes = tuple(_notes(requirement, traces))
+    return Explanation(requirement, diagram(requirement), traces.atoms, shown, notes)
 
 
-def _notes(requirement: FormalizedRequirement, found: Examples) -> Iterator[str]:
-    if found.note:
-        yield f"no traces are shown: {found.note}"
+def _notes(requirement: FormalizedRequirement, traces: Examples) -> Iterator[str]:
+    if traces.note:
+        yield f"no traces are shown: {traces.note}"
         return
-    satisfied, violated = len(found.satisfied), len(found.violated)
-    if found.rounded or found.is_undecided:
-        from compiler.formalization.numbers.reals import NOT_DECIDED, only_rounded
+    satisfied, violated = len(traces.satisfied), len(traces.violated)
+    if traces.rounded or traces.is_undecided:
+        from compiler.formalization.numbers.reals import NOT_DECIDED, rounding_note
 
-        if found.rounded:
-            yield only_rounded(found.rounded)
-        if found.is_undecided:
+        if traces.rounded:
+            yield rounding_note(traces.rounded)
+        if traces.is_undecided:
             yield NOT_DECIDED
-    exactly = ", computed exactly" if found.rounded else ""
+    exactly = ", computed exactly" if traces.rounded else ""
     if not satisfied:
         yield f"no run that goes on satisfies the sentence{exactly}"
     if not violated:
@@ -105,13 +105,13 @@ def _notes(requirement: FormalizedRequirement, found: Examples) -> Iterator[str]
 # Traces -----------------------------------------------------------------------------------------
 
 _CHECKED = 30
-"""Ticks up to which the slow definition of the operators checks a trace, too."""
+"""Traces up to this number of ticks are also checked by the slow definition of the operators."""
 
 
 def _check(requirement: FormalizedRequirement, atoms: Sequence[str], example: Example) -> None:
-    """The formulas say of the trace what the automaton does.
+    """Check that the formulas agree with the automaton on the trace.
 
-    Spot has the word of the endless trace, where the bound is small enough for it.
+    Spot evaluates the endless trace, if the bound is small enough.
     """
     prefix = [dict(zip(atoms, values, strict=True)) for values in example.prefix]
     loop = [dict(zip(atoms, values, strict=True)) for values in example.loop]
@@ -132,11 +132,11 @@ def _check(requirement: FormalizedRequirement, atoms: Sequence[str], example: Ex
 
 def _shown(
     requirement: FormalizedRequirement, letters: Mapping[Valuation, Any], example: Example
-) -> Shown:
+) -> ExplainedTrace:
     prefix = [letters[values] for values in example.prefix]
     loop = [letters[values] for values in example.loop]
     ends = not loop and example.decided is None
-    return Shown(
+    return ExplainedTrace(
         example.satisfied,
         tuple(_rows(example)),
         example.decided,
@@ -145,11 +145,11 @@ def _shown(
 
 
 _FOLDED = 4
-"""So many equal ticks are one row."""
+"""Number of equal ticks from which they are shown as one row."""
 
 
 def _rows(example: Example) -> Iterator[Row]:
-    """The ticks, long stretches of equal ones as one; the deciding tick stands for itself."""
+    """The ticks as rows; equal ticks share a row, but the deciding tick has its own."""
     start = len(example.prefix)
     ticks = [
         (values, tick >= start, tick == example.decided)
@@ -173,7 +173,7 @@ _UNDECIDED = "decided at the end only"
 
 
 def text(explained: Explanation) -> str:
-    """What the terminal shows."""
+    """The explanation as text for a terminal."""
     requirement = explained.requirement
     blocks = [visible_lines(ltl.text(requirement)), drawing.text(explained.picture, "    ")]
     blocks[1] = f"  one run, drawn\n{blocks[1]}\n"
@@ -184,11 +184,11 @@ def text(explained: Explanation) -> str:
 
 
 def visible_lines(block: str) -> str:
-    """No text of the user's can turn or hide another one."""
+    """The lines with control characters made visible: no user's text can hide another."""
     return "".join(f"{visible(line)}\n" for line in block.splitlines())
 
 
-def _table(explained: Explanation, shown: Shown) -> str:
+def _table(explained: Explanation, shown: ExplainedTrace) -> str:
     wordings = explained.requirement.wordings
     names = [
         drawing.shortened(visible(wordings.get(name, name)), _NAME)
@@ -216,7 +216,7 @@ def _label(row: Row) -> str:
 
 
 def as_record(explained: Explanation) -> dict[str, Any]:
-    """Plain values, in a fixed order of keys."""
+    """The explanation as plain values for JSON, in a fixed order of keys."""
     requirement, picture = explained.requirement, explained.picture
     everything = record.record(requirement)
     kept = ("id", "title", "sentence", "meaning", "ft_infinite", "ft_finite", "pt", "tick_ns")
@@ -237,12 +237,13 @@ def as_record(explained: Explanation) -> dict[str, Any]:
 
 def _lane(lane: Lane) -> dict[str, Any]:
     stretches = [
-        {"first": each.first, "last": each.last, "goes_on": each.goes_on} for each in lane.stretches
+        {"first": stretch.first, "last": stretch.last, "goes_on": stretch.goes_on}
+        for stretch in lane.stretches
     ]
     return {"kind": lane.kind.value, "name": lane.name, "note": lane.remark, "ticks": stretches}
 
 
-def _trace(propositions: Sequence[str], shown: Shown) -> dict[str, Any]:
+def _trace(propositions: Sequence[str], shown: ExplainedTrace) -> dict[str, Any]:
     rows = [
         {
             "first": row.first,

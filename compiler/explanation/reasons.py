@@ -1,4 +1,4 @@
-"""Why a trace satisfies or violates a sentence, in words: which trigger, and what came of it."""
+"""The reason why a trace satisfies or violates a sentence, in words."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from fretish.printer import expression
 from fretish.syntax import Extent
 
 _MOST = 2
-"""Triggers that get a sentence each."""
+"""Number of triggers that are explained one by one."""
 
 
 def why(
@@ -34,37 +34,37 @@ def why(
     ends: bool = False,
     satisfied: bool | None = None,
 ) -> str:
-    """One line.
+    """The reason on one line.
 
     Args:
         requirement: the sentence.
         prefix: mode, condition, response and stop condition at each tick, at least one.
-        loop: what comes again and again after it.
-        ends: whether the run ends with the prefix. If it does not, and nothing loops, then what
-            follows does not change the verdict: the last tick is taken to last.
-        satisfied: the verdict, where it is known; it is a mistake of ours if the reason differs.
+        loop: the ticks that repeat for ever after the prefix.
+        ends: whether the run ends with the prefix. If it does not, and there is no loop, then what
+            follows does not change the verdict, and the last tick is taken to repeat.
+        satisfied: the verdict, if known; a contradicting reason is an internal error.
     """
     counted = template(requirement.sentence, requirement.ticks or 0)
     more = () if ends else tuple(loop or prefix[-1:]) * (counted.ticks + 3)
     m, p, q, stop = (tuple(column) for column in zip(*prefix, *more, strict=True))
     shown = len(prefix) + len(loop)
     every = [w for w in windows(counted, m, p, stop) if w.trigger < shown]
-    found = [w for w in every if w.trigger < len(prefix)] or every
-    teller = _Teller(requirement, counted, q, len(prefix) - 1, endless=bool(loop))
-    broken = [window for window in every if not window.kept(q)]
+    displayed = [w for w in every if w.trigger < len(prefix)] or every
+    writer = _ReasonWriter(requirement, counted, q, len(prefix) - 1, endless=bool(loop))
+    broken = [window for window in every if not window.is_met(q)]
     assert satisfied is None or satisfied is not bool(broken), (counted, prefix, loop)
     if broken:
-        return f"{teller.sentence(broken[0], kept=False)}{teller.bound()}"
-    if not found:
-        return _nothing(requirement, counted, m)
-    sentences = [teller.sentence(window, kept=True) for window in found[:_MOST]]
-    left = len(found) - _MOST
+        return f"{writer.sentence(broken[0], met=False)}{writer.bound()}"
+    if not displayed:
+        return _nothing_demanded(requirement, counted, m)
+    sentences = [writer.sentence(window, met=True) for window in displayed[:_MOST]]
+    left = len(displayed) - _MOST
     rest = [f"and so on, {left} more time{'s' * (left > 1)}"] if left > 0 else []
-    return f"{'; '.join([*sentences, *rest])}{teller.bound()}"
+    return f"{'; '.join([*sentences, *rest])}{writer.bound()}"
 
 
-def _nothing(requirement: FormalizedRequirement, counted: Template, m: Column) -> str:
-    """No demand begins."""
+def _nothing_demanded(requirement: FormalizedRequirement, counted: Template, m: Column) -> str:
+    """The reason if no demand begins."""
     scope, condition = requirement.written.scope, requirement.written.condition
     if not intervals(counted.scope, m):
         return "the sentence is enforced at none of these ticks: nothing is demanded"
@@ -74,37 +74,39 @@ def _nothing(requirement: FormalizedRequirement, counted: Template, m: Column) -
 
 
 @dataclass(frozen=True, slots=True)
-class _Teller:
-    """What is known of one trace."""
+class _ReasonWriter:
+    """The words for one trace."""
 
     requirement: FormalizedRequirement
     counted: Template
     q: Column
-    """Of the ticks that are shown, and of those that follow."""
+    """The response at the ticks that are shown, and at those that follow."""
     shown: int
-    """The last tick that is shown."""
+    """The last displayed tick."""
     endless: bool
-    """Whether what follows is a loop that matters."""
+    """Whether a loop that matters follows."""
 
-    def sentence(self, window: ObligationWindow, *, kept: bool) -> str:
+    def sentence(self, window: ObligationWindow, *, met: bool) -> str:
         """`triggered at tick 1, ...`."""
         begun = "triggered" if self.requirement.sentence.condition else "begins"
         start = f"{begun} at tick {window.trigger}"
         if not window.parts:
-            return f"{start}, {self._spared(window)}"
-        if window.either and not kept:
+            return f"{start}, {self._no_demand_reason(window)}"
+        if window.either and not met:
             early, late = window.parts
             return (
                 f"{start}, {self._name} is false at {_ticks(early.first, early.last)} and comes at "
                 f"tick {late.first}, at which it is then forbidden"
             )
-        chosen = [part for part in window.parts if part.kept(self.q) is kept]
-        say = self._kept if kept else self._broken
-        clauses = " and ".join(say(part, window) for part in chosen[: 1 if window.either else None])
+        chosen = [part for part in window.parts if part.is_met(self.q) is met]
+        clause = self._met_clause if met else self._violation_clause
+        clauses = " and ".join(
+            clause(part, window) for part in chosen[: 1 if window.either else None]
+        )
         return f"{start}, {clauses}"
 
     def bound(self) -> str:
-        """What the duration counts."""
+        """The bound of the sentence in words."""
         if not self._extent.counts:
             return ""
         return f"; the bound is {in_ticks(self.counted.ticks, self.requirement.clock)}"
@@ -130,7 +132,7 @@ class _Teller:
     def _hit(self, first: int, *, value: bool) -> int | None:
         return next((t for t in range(first, len(self.q)) if self.q[t] is value), None)
 
-    def _kept(self, part: TickRange, window: ObligationWindow) -> str:
+    def _met_clause(self, part: TickRange, window: ObligationWindow) -> str:
         value = _wanted(part)
         clause = f"{self._name} is {str(value).lower()}"
         if part.need in (Expectation.SOME, Expectation.MISS):
@@ -142,7 +144,7 @@ class _Teller:
         return f"{clause} at {_ticks(part.first, part.last)}{self._end(part, window)}"
 
     def _end(self, part: TickRange, window: ObligationWindow) -> str:
-        """What ends a demand that is not counted."""
+        """The event that ends a demand without a duration."""
         if part.last < window.right:
             return f", until {self._stop}" if self._stops else ""
         if self._is_complete(part, window):
@@ -150,7 +152,7 @@ class _Teller:
         return f", where the {'scope' if self._is_closed(window) else 'run'} ends"
 
     def _is_complete(self, part: TickRange, window: ObligationWindow) -> bool:
-        """Whether the demand would end there in a longer interval, too."""
+        """Whether the demand would end at the same tick in a longer interval."""
         match self._extent:
             case Extent.TRIGGER | Extent.NEXT:
                 return True
@@ -164,7 +166,7 @@ class _Teller:
     def _is_closed(self, window: ObligationWindow) -> bool:
         return window.right < len(self.q) - 1
 
-    def _broken(self, part: TickRange, window: ObligationWindow) -> str:
+    def _violation_clause(self, part: TickRange, window: ObligationWindow) -> str:
         value = _wanted(part)
         wanted, opposite = str(value).lower(), str(not value).lower()
         clause = f"{self._name} is {opposite}"
@@ -194,17 +196,17 @@ class _Teller:
             case Extent.INTERVAL:
                 return f"; it must be {wanted} from tick {part.first} on"
             case Extent.TRIGGER | Extent.NEXT | Extent.DURATION | Extent.BEYOND:
-                one = part.first == part.last
-                where = "there" if one else f"at {_ticks(part.first, part.last)}"
+                is_one_tick = part.first == part.last
+                where = "there" if is_one_tick else f"at {_ticks(part.first, part.last)}"
                 return f"; it must be {wanted} {where}"
             case _:
                 assert_never(self._extent)
 
-    def _spared(self, window: ObligationWindow) -> str:
-        """Why a trigger asks for nothing, or for nothing more."""
+    def _no_demand_reason(self, window: ObligationWindow) -> str:
+        """The reason why a trigger demands nothing, or nothing more."""
         match self._extent:
             case Extent.STOP:
-                return self._unstopped(window)
+                return self._stop_reason(window)
             case Extent.NEXT:
                 return "the last tick of the scope: nothing is required"
             case Extent.DURATION:
@@ -217,8 +219,8 @@ class _Teller:
             case _:
                 assert_never(self._extent)
 
-    def _unstopped(self, window: ObligationWindow) -> str:
-        """The stop condition comes at once, or not at all, or after the response."""
+    def _stop_reason(self, window: ObligationWindow) -> str:
+        """The reason if the stop condition comes at once, not at all, or after the response."""
         negated = self.counted.scope is not None and self.counted.scope.negates
         if need(self.counted) in (Expectation.ALL, Expectation.NONE):
             return f"{self._stop} is true at that same tick: nothing is required"
@@ -230,7 +232,7 @@ class _Teller:
         return f"{self._name} is {value} at tick {hit}, {later}, and {self._stop} not before"
 
     def _too_short(self, window: ObligationWindow, ticks: int, *, wanted: bool) -> str:
-        """The interval ends before the deadline, with the response or without it."""
+        """The reason if the interval ends before the deadline."""
         hit = self._hit(window.trigger, value=wanted)
         if hit is not None and hit <= window.right:
             later = _later(hit - window.trigger)

@@ -1,4 +1,4 @@
-"""Shortest words of the reference automaton that come by given events, and loops after them."""
+"""Shortest words of the reference automaton that pass given events, and loops after them."""
 
 from __future__ import annotations
 
@@ -26,45 +26,45 @@ class Move(NamedTuple):
 
     @property
     def waits(self) -> bool:
-        """A demand is open after it."""
+        """Whether a demand is open after the tick."""
         return self.after is not None and self.after.counted != 0
 
 
 _Place = tuple[int, int]
-"""A state, and how many waypoints lie behind."""
+"""A state, and the number of waypoints that were passed."""
 Waypoint = Callable[[Move], bool]
-"""An event that a run comes by."""
+"""A predicate for an event that a run must pass."""
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A word with what it does."""
+    """A word with its moves in the automaton."""
 
     moves: tuple[Move, ...]
     loop: tuple[Move, ...] = ()
 
     @property
     def behaviour(self) -> tuple[object, ...]:
-        """What happens, equal ticks once: two runs that differ in nothing else are alike."""
+        """The events of the run with equal ticks merged; runs with equal events are alike."""
         moves = (*self.moves, *self.loop)
         steps = [(m.enforced, m.triggered, m.waits, m.letter[2], m.letter[3]) for m in moves]
         return tuple(step for step, _ in groupby(steps))
 
     @property
     def is_open(self) -> bool:
-        """Whether it stops in the middle of a demand."""
+        """Whether the run ends with an open demand."""
         goes_on = self.loop and all(move.waits for move in self.loop)
         return self.moves[-1].waits and not goes_on
 
 
-class Words:
-    """The words of an automaton; letters that come first in it are preferred."""
+class ShortestWords:
+    """The words of an automaton; earlier letters are preferred."""
 
     def __init__(self, automaton: Automaton) -> None:
         self.automaton = automaton
         self.template = automaton.template
         self.most = max(abs(state.counted) for state in automaton.states)
-        """The largest count: the deadline, where there is one."""
+        """The largest count, which is the deadline if there is one."""
         self.final = [accepts(automaton.template, state) for state in automaton.states]
         """For each state FRET's verdict on a run that ends there."""
 
@@ -74,10 +74,10 @@ class Words:
         ending: Waypoint,
         among: Waypoint = lambda move: True,
     ) -> Run | None:
-        """The first shortest run that comes by all waypoints in their order, one tick for each.
+        """The first shortest run that passes all waypoints in order, each at a tick.
 
-        Two different waypoints may be one tick. The run ends with the first tick from the last
-        waypoint on that `ending` holds of.
+        Two waypoints may be passed at the same tick. The run ends with the first tick from the last
+        waypoint on for which `ending` is true.
         """
         start = (0, 0)
         origins: dict[_Place, tuple[_Place, Move] | None] = {start: None}
@@ -106,31 +106,31 @@ class Words:
         automaton = self.automaton
         state = automaton.states[number]
         for letter, target in zip(automaton.letters, automaton.moves[number], strict=True):
-            happens = counters.happening(self.template, state, letter[0], letter[1])
+            happens = counters.tick_role(self.template, state, letter[0], letter[1])
             after = None if target == BROKEN else automaton.states[target]
             yield Move(state, letter, after, target, happens.enforced, happens.triggered)
 
-    def followed(self, found: Run, *, accepted: bool) -> Run:
-        """With a tick that can come again and again, without a change of the verdict."""
-        start = found.moves[-1].target
-        if self.decided(found, satisfied=accepted) is not None:
-            return found
+    def followed(self, run: Run, *, accepted: bool) -> Run:
+        """The run with a tick appended that can repeat for ever without changing the verdict."""
+        start = run.moves[-1].target
+        if self.decided(run, satisfied=accepted) is not None:
+            return run
         if self.needs_end and not accepted:
-            return found  # an interval that never ends has no last tick
+            return run  # an interval that never ends has no last tick
         for first in self._moves(start):
             second = self._after(first)
             if second is not None and self._stays(first, second, accepted=accepted):
-                return Run(found.moves, (first,))
-        return found
+                return Run(run.moves, (first,))
+        return run
 
     def _after(self, move: Move) -> Move | None:
-        """The same letter once more."""
+        """The move with the same letter once more."""
         if move.target == BROKEN:
             return None
         return next(again for again in self._moves(move.target) if again.letter == move.letter)
 
     def _stays(self, first: Move, second: Move, *, accepted: bool) -> bool:
-        """Whether the letter leads into a loop of its own with that verdict."""
+        """Whether repeating the letter stays in a loop with that verdict."""
         return first.target == second.target and self.final[first.target] is accepted
 
     @property
@@ -141,7 +141,8 @@ class Words:
     def decided(self, run: Run, *, satisfied: bool) -> int | None:
         """The first tick after which no continuation changes the verdict; None: there is none.
 
-        Of a satisfied run no end may change it either: `finally` needs nothing of endless runs.
+        For a satisfied run, no end of the run may change the verdict either: `finally` demands
+        nothing of endless runs.
         """
         for tick, move in enumerate(run.moves):
             if move.target == BROKEN:
@@ -155,24 +156,24 @@ class Words:
 
     @cached_property
     def _may_fail(self) -> set[int]:
-        """The states from which a run can come to an end that FRET judges as violated."""
+        """The states from which a run can reach an end that FRET judges as violated."""
         before: list[list[int]] = [[] for _ in self.automaton.moves]
         for state, row in enumerate(self.automaton.moves):
             for after in set(row) - {BROKEN}:
                 before[after].append(state)
         rows = enumerate(self.automaton.moves)
         waiting = [state for state, row in rows if BROKEN in row or not self.final[state]]
-        found = set(waiting)
+        states = set(waiting)
         while waiting:
             for state in before[waiting.pop()]:
-                if state not in found:
-                    found.add(state)
+                if state not in states:
+                    states.add(state)
                     waiting.append(state)
-        return found
+        return states
 
 
 def _path(origins: Mapping[_Place, tuple[_Place, Move] | None], place: _Place) -> list[Move]:
-    """The moves that led to a place."""
+    """The moves that led to a search node."""
     moves: list[Move] = []
     origin = origins[place]
     while origin is not None:

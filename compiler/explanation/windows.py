@@ -1,8 +1,8 @@
-"""What each trigger asks for: the ticks at which the response matters, and what it must be there.
+"""The demand of each trigger: the ticks at which the response matters, and its value there.
 
-The definition of FRETish read trigger by trigger, for drawings and for saying why a trace satisfies
-or violates a sentence. Source: Giannakopoulou, Pressburger, Mavridou, Schumann, Automated
-formalization of structured natural language requirements, IST 137 (2021), sections 3 and 4.
+This is the definition of FRETish read trigger by trigger, for diagrams and for the reasons of
+verdicts. Source: Giannakopoulou, Pressburger, Mavridou, Schumann, Automated formalization of
+structured natural language requirements, IST 137 (2021), sections 3 and 4.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Column = Sequence[bool]
 
 
 class Expectation(StrEnum):
-    """What the response must be on a stretch of ticks."""
+    """The required value of the response on a stretch of ticks."""
 
     ALL = "true at each of these ticks"
     SOME = "true at one of these ticks, at least"
@@ -31,17 +31,17 @@ class Expectation(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class TickRange:
-    """A stretch of ticks, both ends included, and what the response must be there.
+    """A stretch of ticks, both ends included, and the required response there.
 
-    `last < first`: there is no such tick, so that nothing can be true at one of them.
+    `last < first`: the stretch is empty, so nothing is true at one of its ticks.
     """
 
     first: int
     last: int
     need: Expectation
 
-    def kept(self, q: Column) -> bool:
-        """Whether the response is as it must be."""
+    def is_met(self, q: Column) -> bool:
+        """Whether the response has the required value."""
         values = q[self.first : self.last + 1]
         match self.need:
             case Expectation.ALL:
@@ -58,27 +58,27 @@ class TickRange:
 
 @dataclass(frozen=True, slots=True)
 class ObligationWindow:
-    """What one trigger asks for."""
+    """The demand of one trigger."""
 
     trigger: int
     right: int
-    """The last tick of its interval."""
+    """The last tick of the trigger's interval."""
     parts: tuple[TickRange, ...]
-    """Empty: nothing."""
+    """The parts of the demand; empty if there is none."""
     either: bool = False
-    """Whether one of the parts is enough."""
+    """Whether meeting one of the parts is enough."""
 
-    def kept(self, q: Column) -> bool:
-        """Whether the response is as the trigger asks."""
-        kept = [part.kept(q) for part in self.parts]
-        return not kept or (any(kept) if self.either else all(kept))
+    def is_met(self, q: Column) -> bool:
+        """Whether the response meets the demand."""
+        met = [part.is_met(q) for part in self.parts]
+        return not met or (any(met) if self.either else all(met))
 
 
 def windows(template: Template, m: Column, p: Column, s: Column) -> tuple[ObligationWindow, ...]:
-    """What all triggers of a finite trace ask for, in their order.
+    """The demands of all triggers of a finite trace, in order.
 
     Args:
-        template: what the sentence is.
+        template: the template of the sentence.
         m: the mode, shape (ticks,); any values where the template has none, as for p and s.
         p: the condition.
         s: the stop condition.
@@ -90,9 +90,9 @@ def windows(template: Template, m: Column, p: Column, s: Column) -> tuple[Obliga
     )
 
 
-def kept(template: Template, m: Column, p: Column, q: Column, s: Column) -> bool:
-    """FRET's verdict on a finite trace: every trigger gets what it asks for."""
-    return all(window.kept(q) for window in windows(template, m, p, s))
+def is_satisfied(template: Template, m: Column, p: Column, q: Column, s: Column) -> bool:
+    """FRET's verdict on a finite trace: whether every trigger's demand is met."""
+    return all(window.is_met(q) for window in windows(template, m, p, s))
 
 
 def intervals(scope: ScopeKind | None, m: Column) -> list[tuple[int, int]]:
@@ -107,16 +107,16 @@ def intervals(scope: ScopeKind | None, m: Column) -> list[tuple[int, int]]:
         case ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
             return _runs([not value for value in m])
         case ScopeKind.BEFORE:
-            found = (0, runs[0][0] - 1) if runs else (0, last)
+            interval = (0, runs[0][0] - 1) if runs else (0, last)
         case ScopeKind.AFTER:
-            found = (runs[0][1] + 1, last) if runs else (1, 0)
+            interval = (runs[0][1] + 1, last) if runs else (1, 0)
         case ScopeKind.ONLY_BEFORE:
-            found = (runs[0][0], last) if runs else (1, 0)
+            interval = (runs[0][0], last) if runs else (1, 0)
         case ScopeKind.ONLY_AFTER:
-            found = (0, runs[0][1]) if runs else (0, last)
+            interval = (0, runs[0][1]) if runs else (0, last)
         case _:
             assert_never(scope)
-    return [found] if found[0] <= found[1] else []
+    return [interval] if interval[0] <= interval[1] else []
 
 
 def _runs(column: Column) -> list[tuple[int, int]]:
@@ -139,9 +139,9 @@ def triggers(condition: ConditionKind | None, p: Column, left: int, right: int) 
 
 
 def window(template: Template, t: int, right: int, stops: Column) -> ObligationWindow:
-    """What the trigger at tick `t` asks for, in an interval that ends with tick `right`."""
+    """The demand of the trigger at tick `t`, in an interval that ends with tick `right`."""
     negated = template.scope is not None and template.scope.negates
-    each = Expectation.NONE if negated else Expectation.ALL
+    throughout = Expectation.NONE if negated else Expectation.ALL
     whole, n = need(template), template.ticks
     waits = whole in (Expectation.SOME, Expectation.MISS)
 
@@ -151,11 +151,11 @@ def window(template: Template, t: int, right: int, stops: Column) -> ObligationW
     extent = s.SHAPES[template.timing].extent
     match extent:
         case Extent.TRIGGER:
-            return asks((t, t, each))
+            return asks((t, t, throughout))
         case Extent.NEXT:
-            return asks((t + 1, t + 1, each)) if t < right else asks()
+            return asks((t + 1, t + 1, throughout)) if t < right else asks()
         case Extent.LAST:
-            return asks((right, right, each))
+            return asks((right, right, throughout))
         case Extent.INTERVAL:
             return asks((t, right, whole))
         case Extent.DURATION if waits:  # a short interval asks for nothing
@@ -163,7 +163,7 @@ def window(template: Template, t: int, right: int, stops: Column) -> ObligationW
         case Extent.DURATION:
             return asks((t, min(t + n, right), whole))
         case Extent.BEYOND:
-            late = (t + n + 1, t + n + 1, each)
+            late = (t + n + 1, t + n + 1, throughout)
             if negated:
                 return (
                     asks((t, t + n, Expectation.SOME), late, either=True)
@@ -197,7 +197,7 @@ def has_deadline(template: Template) -> bool:
 
 
 def need(template: Template) -> Expectation:
-    """What the response must be on the ticks that the timing is about."""
+    """The required response on the ticks that the timing is about."""
     negated = template.scope is not None and template.scope.negates
     quantifier = s.SHAPES[template.timing].quantifier
     match quantifier:

@@ -1,4 +1,4 @@
-"""A file to be written: pure text with a place, until the command writes it."""
+"""A generated file as text with a relative path; nothing is written yet."""
 
 from __future__ import annotations
 

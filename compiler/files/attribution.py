@@ -1,7 +1,6 @@
-"""`[project]` of `fretc.toml`: who answers for what is made of a project, and under which license.
+"""`[project]` of `fretc.toml`: maintainer and license of what is generated from a project.
 
-The fields go into manifests of packages (`package.xml`, `setup.py`), which have no other source for
-them.
+The fields go into manifests of packages (`package.xml`, `setup.py`).
 """
 
 from __future__ import annotations
@@ -12,11 +11,12 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 LONGEST = 500
-"""Characters of a field."""
+"""Maximum number of characters of a field."""
 _EMAIL = re.compile(
     r"[-\w%+]+(?:\.[-\w%+]+)*@[-a-zA-Z0-9%]+(?:\.[-a-zA-Z0-9%]+)*\.[a-zA-Z]{2,}", re.ASCII
 )
-"""Source: catkin_pkg, `Person.validate`, which colcon and catkin refuse a manifest by."""
+"""An e-mail address that manifests accept. Source: catkin_pkg, `Person.validate`; colcon and catkin
+refuse a manifest with any other."""
 EXAMPLE = """\
 [project]
 maintainer  = "NAME"
@@ -28,7 +28,7 @@ description = "WHAT THE PACKAGE IS FOR, IN ONE LINE"
 
 @dataclass(frozen=True, slots=True)
 class Attribution:
-    """Who answers for a project; a field that is not given is empty."""
+    """Maintainer, license and description of a project; a missing field is empty."""
 
     maintainer: str = ""
     email: str = ""
@@ -38,7 +38,7 @@ class Attribution:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """The fields that are not given."""
+        """The names of the missing fields."""
         return tuple(name for name in FIELDS if not getattr(self, name))
 
 
@@ -47,26 +47,26 @@ FIELDS = tuple(each.name for each in fields(Attribution))
 
 
 @dataclass(frozen=True, slots=True)
-class Unfit:
-    """A field that no manifest can have, and what to write."""
+class InvalidField:
+    """A field with a value that no manifest accepts, and the fix."""
 
     field: str
     what: str
     fix: str
 
 
-def attribution(table: Mapping[str, Any]) -> Attribution | Unfit:
-    """Read a table that has no other fields."""
+def attribution(table: Mapping[str, Any]) -> Attribution | InvalidField:
+    """The attribution in a table without other fields."""
     for name, value in table.items():
         if not isinstance(value, str) or not value.strip():
-            return Unfit(name, "must be a text", f'write `{name} = "..."`, or leave it out')
+            return InvalidField(name, "must be a text", f'write `{name} = "..."`, or leave it out')
         if not value.isprintable() or len(value) > LONGEST:
             fix = f"manifests take up to {LONGEST} printable characters"
-            return Unfit(name, "must be one line of text", fix)
+            return InvalidField(name, "must be one line of text", fix)
         if f'"{value.strip()}"' in EXAMPLE:
-            return Unfit(name, "still is the example", "put your own in its place")
+            return InvalidField(name, "is still the example", "replace it with your own")
     email = table.get("email")
     if email is not None and _EMAIL.fullmatch(email.strip()) is None:
         fix = "write one such as `ada@robots.org`: manifests take no other form"
-        return Unfit("email", "must be one e-mail address", fix)
+        return InvalidField("email", "must be one e-mail address", fix)
     return Attribution(**{name: value.strip() for name, value in table.items()})

@@ -1,4 +1,4 @@
-"""The identity of a build of fretc: one build makes the same evidence of the same bytes."""
+"""The identity of a build of fretc: equal builds make equal evidence from equal bytes."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ PACKAGE = f"pkg:pypi/fretc@{__version__}"
 _SITE = Path(__file__).parents[2]
 _ROOMS = ("fretish", "monitors", "compiler", "fretc")
 _LIBRARIES = ("lz4", "mcap", "mcap-ros1-support", "mcap-ros2-support", "numpy", "zstandard")
-"""That have a part in a verdict: they read logs."""
+"""The libraries that affect verdicts, since they read logs."""
 
 
 @cache
 def build_id() -> str:
-    """SHA-256 of the program's text, its version, and the versions of what reads logs for it.
+    """SHA-256 of fretc's source text, its version, and the versions of the log-reading libraries.
 
-    Of the text too: that of a checkout changes without its version.
+    The source text is included because a checkout changes without a new version.
     """
     digest = hashlib.sha256(f"{__version__} {platform.python_version()}".encode())
     for library in _LIBRARIES:

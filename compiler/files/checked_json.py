@@ -1,7 +1,7 @@
-"""A value of a JSON file together with its path: every access to it is checked.
+"""Checked access to values of a JSON file: errors name the path of the value.
 
-What is not as it must be raises `SchemaError` with the path. Files whose types are known are
-read by `compiler/files/records.py`.
+An invalid value raises `SchemaError` with the path. Files whose types are known are read by
+`compiler/files/records.py`.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from math import isfinite
 from typing import NoReturn
 
 LEAST, GREATEST = -(2**63), 2**64 - 1
-"""Whole numbers of 64 bits, with or without a sign: times of logs are both."""
+"""Range of integers: 64 bits, signed or unsigned, as times in logs are."""
 LARGEST_COUNT = 2**63 - 1
-"""Of what is counted: 64 bits with a sign, as columns of tables have."""
+"""Largest count: 64 bits with a sign, as in columns of tables."""
 _DIGITS = 21
 _EXCERPT = 40
 
@@ -24,13 +24,13 @@ class SchemaError(ValueError):
     """A value is missing or of the wrong kind; the message says which and where."""
 
 
-def parsed(text: str) -> Shape:
-    """A JSON text that all readers read alike: each key once, and finite numbers only.
+def parsed(text: str) -> JsonValue:
+    """The value of a strict JSON text: each key appears once, and numbers are finite.
 
     Raises:
-        json.JSONDecodeError: it is no JSON.
-        ValueError: it is JSON that may be read in two ways, or that Python does not read.
-        RecursionError: it is nested too deeply.
+        json.JSONDecodeError: the text is not JSON.
+        ValueError: the text is ambiguous JSON, or Python cannot read it.
+        RecursionError: the text is nested too deeply.
     """
     value = json.loads(
         text,
@@ -39,14 +39,14 @@ def parsed(text: str) -> Shape:
         parse_float=_finite,
         parse_constant=_no_number,
     )
-    return Shape(value)
+    return JsonValue(value)
 
 
 def plain(text: str) -> object:
     """The value of a JSON text.
 
     Raises:
-        SchemaError: it is no such text.
+        SchemaError: the text is not strict JSON.
     """
     try:
         return parsed(text).value
@@ -60,13 +60,13 @@ def _distinct(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
     fields: dict[str, object] = {}
     for key, value in pairs:
         if key in fields:
-            raise ValueError(f"`{key[:_EXCERPT]}` is there twice in one object")
+            raise ValueError(f"`{key[:_EXCERPT]}` appears twice in one object")
         fields[key] = value
     return fields
 
 
 def _whole(word: str) -> float:
-    """Beyond 64 bits it is a number like `1e30`, as JSON Schema has it, and no whole one."""
+    """An integer of at most 64 bits, or a float such as `1e30` for a larger one."""
     if len(word) > _DIGITS or not LEAST <= int(word) <= GREATEST:
         return _finite(word)
     return int(word)
@@ -79,12 +79,12 @@ def _finite(word: str) -> float:
 
 
 def _no_number(word: str) -> NoReturn:
-    raise ValueError(f"`{word}` is no number of JSON")
+    raise ValueError(f"`{word}` is not a JSON number")
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
-    """A value, and how to get there: `results[3].verdict`."""
+class JsonValue:
+    """A JSON value with its path, such as `results[3].verdict`."""
 
     value: object
     path: str = ""
@@ -94,48 +94,48 @@ class Shape:
         """The path, for messages."""
         return f"`{self.path}`" if self.path else "the whole file"
 
-    def field(self, key: str) -> Shape:
+    def field(self, key: str) -> JsonValue:
         """The value of a key of an object."""
         fields = self._object()
         if key not in fields:
             raise SchemaError(f"{self.name} has no `{key}`")
-        return Shape(fields[key], f"{self.path}.{key}".removeprefix("."))
+        return JsonValue(fields[key], f"{self.path}.{key}".removeprefix("."))
 
     def has(self, key: str) -> bool:
         """Whether an object has a key."""
         return key in self._object()
 
-    def fields(self) -> dict[str, Shape]:
+    def fields(self) -> dict[str, JsonValue]:
         """All values of an object, in the order of their keys."""
         fields = self._object()
-        return {key: Shape(fields[key], f'{self.path}["{key}"]') for key in sorted(fields)}
+        return {key: JsonValue(fields[key], f'{self.path}["{key}"]') for key in sorted(fields)}
 
-    def items(self) -> tuple[Shape, ...]:
+    def items(self) -> tuple[JsonValue, ...]:
         """The values of an array."""
         if not isinstance(self.value, list):
             raise self.wrong("an array")
-        return tuple(Shape(value, f"{self.path}[{i}]") for i, value in enumerate(self.value))
+        return tuple(JsonValue(value, f"{self.path}[{i}]") for i, value in enumerate(self.value))
 
     def text(self) -> str:
-        """A text."""
+        """The value as a text."""
         if not isinstance(self.value, str):
             raise self.wrong("a text")
         return self.value
 
     def one_of(self, words: Collection[str]) -> str:
-        """One of these texts."""
+        """The value as one of `words`."""
         if self.value not in words or not isinstance(self.value, str):
             raise self.wrong(f"one of {', '.join(words)}")
         return self.value
 
     def flag(self) -> bool:
-        """True or false."""
+        """The value as a truth value."""
         if not isinstance(self.value, bool):
             raise self.wrong("true or false")
         return self.value
 
     def whole(self) -> int:
-        """A whole number that fits into 64 bits."""
+        """The value as an integer of at most 64 bits."""
         if not isinstance(self.value, int) or isinstance(self.value, bool):
             raise self.wrong("a whole number")
         if abs(self.value) > LARGEST_COUNT:
@@ -143,13 +143,13 @@ class Shape:
         return self.value
 
     def count(self) -> int:
-        """A whole number that is not negative."""
+        """The value as a non-negative integer."""
         if self.whole() < 0:
             raise self.wrong("a whole number from 0 on")
         return self.whole()
 
     def number(self) -> float:
-        """A finite number."""
+        """The value as a finite number."""
         if not isinstance(self.value, int | float) or isinstance(self.value, bool):
             raise self.wrong("a number")
         if isinstance(self.value, int):
@@ -159,7 +159,7 @@ class Shape:
         return self.value
 
     def only(self, *keys: str) -> None:
-        """Nothing else may be in an object."""
+        """Check that an object has no keys but these."""
         for key in self._object():
             if key not in keys:
                 raise SchemaError(f"{self.name} may not have `{key[:_EXCERPT]}`")

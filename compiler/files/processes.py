@@ -1,4 +1,4 @@
-"""Processes that we start: where they look for their libraries, and what they reply."""
+"""Child processes: their import path, their signals, and their replies."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from typing import Any
 _STOPS = (signal.SIGINT, signal.SIGTERM)
 
 
-def shield() -> None:
-    """Python processes that begin from now on import nothing from where they happen to run.
+def isolate_imports() -> None:
+    """Keep Python child processes from importing modules of the current folder.
 
-    Python would put the current folder first for `-c` and `-m`, which is how children are started:
-    a `multiprocessing.py` beside a supplier's logs would be executed. Options such as `-P` are
-    handed on by multiprocessing, the environment by every program in between.
+    Python puts the current folder first for `-c` and `-m`, by which children are started: a
+    `multiprocessing.py` beside a supplier's logs would be executed. An environment variable is used
+    because every program in between passes it on, unlike options such as `-P`.
     """
     os.environ["PYTHONSAFEPATH"] = "1"
 
 
 @contextmanager
 def stops_blocked() -> Iterator[None]:
-    """Block the signals that stop a process, for a child that starts in here until it ignores them.
+    """Block stop signals for a child that starts in this context, until it ignores them.
 
-    It would print a traceback for a Ctrl-C that comes while it imports. `ignore_interrupts` ends
-    this in the child.
+    Without this, a child prints a traceback for a Ctrl-C that comes while it imports.
+    `ignore_interrupts` ends the block in the child.
     """
     before = signal.pthread_sigmask(signal.SIG_BLOCK, _STOPS)
     try:
@@ -38,14 +38,14 @@ def stops_blocked() -> Iterator[None]:
 
 
 def ignore_interrupts() -> None:
-    """Ignore Ctrl-C in a child: it goes to all, and the parent decides. SIGTERM ends the child."""
+    """Ignore Ctrl-C in a child: the parent receives it, too, and ends the child by SIGTERM."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _STOPS)
 
 
 def reply(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> tuple[bool, Any]:
-    """What a process sends to the one that started it: the result of a function, or its error.
+    """The result of a function, or its error, for the process that started this one.
 
     Returns:
         True and the result; or False and the exception, with a note of its traceback.
@@ -60,7 +60,7 @@ def reply(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> tuple[b
 
 
 def _sendable(error: Exception) -> Exception:
-    """The error, or one with the same text where it cannot be sent."""
+    """The error, or a RuntimeError with its text if the error cannot be pickled."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:

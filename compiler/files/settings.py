@@ -1,8 +1,8 @@
 """`fretc.toml`, or `[tool.fretc]` of `pyproject.toml`: settings of a whole project.
 
-The nearest file upwards counts alone; in one folder it is `fretc.toml`. The search goes up to the
-root of the repository (`.git`) and no further: a folder above it may belong to somebody else.
-Outside of a repository it ends at the current folder.
+Only the nearest file upwards counts; within one folder it is `fretc.toml`. The search ends at the
+root of the repository (`.git`), because a folder above it may belong to somebody else. Outside of a
+repository it ends at the current folder.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from compiler.files.attribution import FIELDS, NOBODY, Attribution, Unfit, attribution
+from compiler.files.attribution import FIELDS, NOBODY, Attribution, InvalidField, attribution
 from compiler.files.text_files import read as read_text
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
@@ -22,10 +22,10 @@ from fretish.reading.toml_text import read as read_tables
 
 NAME, SHARED = "fretc.toml", "pyproject.toml"
 _TABLE = ("tool", "fretc")
-"""Of the settings in `pyproject.toml`, which is that of other tools, too."""
+"""The table of the settings in `pyproject.toml`, which other tools share."""
 _FIELDS = ("parents", "accept", "project")
 OUTSIDE: ContextVar[tuple[str, ...]] = ContextVar("OUTSIDE", default=())
-"""Folders outside of the project in which parents may be, as the command line names them."""
+"""Folders outside of the project that may contain parents, named on the command line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,36 +33,36 @@ class Settings:
     """The settings of one project."""
 
     folder: Path
-    """Where the file is; paths in it start there."""
+    """The folder of the file; paths in it are relative to that."""
     parents: tuple[str, ...] = ()
-    """Documents of other tools in which parents of requirements live."""
+    """Documents of other tools that contain parents of requirements."""
     accept: Mapping[str, str | Mapping[str, str]] = field(default_factory=dict)
-    """Code of a warning → why it is accepted: wherever it comes, or by what it is about."""
+    """Code of a warning → the reason for accepting it, for all of them or by subject."""
     project: Attribution = NOBODY
-    """Who answers for what is made of the project."""
+    """Maintainer and license of the project."""
     tables: Tables | None = None
     table: tuple[str, ...] = ()
-    """The table of the file that the settings are in."""
+    """The table of the file that contains the settings."""
     root: Path | None = None
-    """The project's outermost folder, which parents do not leave; None: `folder` is."""
+    """The outermost folder of the project, within which parents must lie; None: `folder`."""
 
     def place(self, *path: str) -> Span:
-        """Where the value of a setting stands."""
+        """The span of the value of a setting."""
         assert self.tables is not None
         return self.tables.value(*self.table, *path)
 
     def holds(self, path: Path) -> bool:
-        """Whether a document is the project's, or in a folder that the command line names."""
+        """Whether a document is in the project, or in a folder that the command line names."""
         allowed = (self.root or self.folder, *map(Path, OUTSIDE.get()))
         real = path.resolve()
         return any(real.is_relative_to(folder.resolve()) for folder in allowed)
 
 
 def settings(folder: str) -> Settings | Diagnostic:
-    """The settings that hold for a folder of requirements: the nearest upwards that there are.
+    """The settings of a folder of requirements: the nearest upwards.
 
     Returns:
-        Empty settings where no file speaks of fretc; or what is wrong with them.
+        Empty settings if there is no file; or a diagnostic of the settings.
     """
     start = Path(folder).resolve()
     places = list(_project(start))
@@ -76,13 +76,13 @@ def settings(folder: str) -> Settings | Diagnostic:
 
 
 def repository(folder: Path) -> Path | None:
-    """The root of the repository that a folder is in; None where it is in none."""
+    """The root of the repository that contains a folder; None if there is none."""
     around = (folder, *folder.parents)
     return next((place for place in around if (place / ".git").exists()), None)
 
 
 def _project(start: Path) -> Iterator[Path]:
-    """The folder and those above it, as far as they are one project."""
+    """The folder and the folders above it that belong to the same project."""
     around = (start, *start.parents)
     root = repository(start)
     if root is None:
@@ -92,7 +92,7 @@ def _project(start: Path) -> Iterator[Path]:
 
 
 def _read(path: Path, root: Path, table: tuple[str, ...]) -> Settings | Diagnostic | None:
-    """None where the file has no such table."""
+    """The settings in a file; None if it has no such table."""
     source = read_text(_display_path(path))
     if isinstance(source, Diagnostic):
         return source
@@ -101,16 +101,16 @@ def _read(path: Path, root: Path, table: tuple[str, ...]) -> Settings | Diagnost
     tables = read_tables(source.span(), Code.BAD_SETTINGS, path.name)
     if isinstance(tables, Diagnostic):
         return tables
-    found: Any = tables.data
+    table_value: Any = tables.data
     for key in table:
-        found = found.get(key)
-        if found is None:
+        table_value = table_value.get(key)
+        if table_value is None:
             return None
-    return _settings(Settings(path.parent, tables=tables, table=table, root=root), found)
+    return _settings(Settings(path.parent, tables=tables, table=table, root=root), table_value)
 
 
 def _display_path(path: Path) -> str:
-    """The path as a user would write it."""
+    """The path as shown to users."""
     try:
         return str(path.relative_to(Path.cwd()))
     except ValueError:
@@ -121,8 +121,8 @@ def _settings(empty: Settings, table: Any) -> Settings | Diagnostic:
     """The settings of the table.
 
     Args:
-        empty: with the file that the table is in.
-        table: its value.
+        empty: empty settings of the file that the table is in.
+        table: the value of the table.
     """
     if not isinstance(table, dict):
         return _bad_settings(empty, "`fretc` must be a table", "write `[tool.fretc]`")
@@ -140,7 +140,7 @@ def _settings(empty: Settings, table: Any) -> Settings | Diagnostic:
         return _bad_settings(empty, "`accept` must be a table", f"write {_ACCEPT}", "accept")
     for code, reason in accept.items():
         reasons = reason.values() if isinstance(reason, dict) else [reason]
-        if not all(isinstance(each, str) for each in reasons):
+        if not all(isinstance(text, str) for text in reasons):
             message = f"`{code}` must have a reason, or a table of reasons"
             return _bad_settings(empty, message, f"write {_ACCEPT}", "accept", code)
     project = _project_table(empty, table.get("project", {}))
@@ -150,7 +150,7 @@ def _settings(empty: Settings, table: Any) -> Settings | Diagnostic:
 
 
 def _project_table(empty: Settings, table: Any) -> Attribution | Diagnostic:
-    """`[project]`."""
+    """The attribution in `[project]`."""
     assert empty.tables is not None
     if not isinstance(table, dict):
         return _bad_settings(empty, "`project` must be a table", "write `[project]`", "project")
@@ -159,11 +159,11 @@ def _project_table(empty: Settings, table: Any) -> Attribution | Diagnostic:
             span = empty.tables.place(*empty.table, "project", key)
             where = f"[{'.'.join((*empty.table, 'project'))}]"
             return unknown_key(Code.BAD_SETTINGS, key, FIELDS, span, where)
-    found = attribution(table)
-    if isinstance(found, Unfit):
-        message = f"`{found.field}` {found.what}"
-        return _bad_settings(empty, message, found.fix, "project", found.field)
-    return found
+    project = attribution(table)
+    if isinstance(project, InvalidField):
+        message = f"`{project.field}` {project.what}"
+        return _bad_settings(empty, message, project.fix, "project", project.field)
+    return project
 
 
 _ACCEPT = '`F631 = "the reason"`, or `F315 = { "/battery" = "the reason" }`, under `[accept]`'

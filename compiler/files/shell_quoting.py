@@ -1,4 +1,4 @@
-"""Quotes of file names in commands for users to paste: no name becomes an option or a command."""
+"""Shell quoting of file names: no name becomes an option or a command when it is pasted."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
 class UnencodableNameError(Exception):
-    """A name with characters that are no text: what is pasted from a page would be another one."""
+    """A name with characters that cannot be pasted faithfully from a page."""
 
 
 def word(name: str) -> str:
-    """The name of a file as a shell reads it; never an option.
+    """The name of a file quoted for a shell; never an option.
 
     Raises:
-        UnencodableNameError: it has a line break, or a character that is not seen.
+        UnencodableNameError: the name has a line break, or an invisible character.
     """
     if not name.isprintable() or not name:
         raise UnencodableNameError(name)
@@ -25,12 +25,12 @@ def word(name: str) -> str:
 
 
 def words(names: Iterable[str]) -> str:
-    """Names, one after the other."""
+    """The quoted names, separated by spaces."""
     return " ".join(map(word, names))
 
 
-def unsayable(name: str) -> str:
-    """In the place of a command: a comment, on one line."""
+def unquotable_comment(name: str) -> str:
+    """A comment on one line that replaces a command which cannot be quoted."""
     return f"# no command: a name has characters that cannot be pasted: {name!a}"
 
 
@@ -38,7 +38,7 @@ def check_of(hashes: Iterable[tuple[str, str]]) -> str:
     """The command that compares files with their hashes.
 
     Args:
-        hashes: SHA-256 and name; what is no SHA-256 is left out.
+        hashes: SHA-256 and name; entries without a valid SHA-256 are left out.
 
     Raises:
         UnencodableNameError: as `word` does.
@@ -48,12 +48,12 @@ def check_of(hashes: Iterable[tuple[str, str]]) -> str:
 
 
 def _line(sha256: str, name: str) -> str:
-    """As `sha256sum` writes it: where a name has a backslash, the line begins with one."""
+    """A line of `sha256sum`: it begins with a backslash if the name contains one."""
     word(name)
     escaped = name.replace("\\", "\\\\")
     return f"{'' if escaped == name else chr(92)}{sha256}  {escaped}"
 
 
 def is_sha256(text: str) -> bool:
-    """Whether it is one, in hexadecimal."""
+    """Whether the text is a SHA-256 in hexadecimal."""
     return _SHA256.fullmatch(text) is not None

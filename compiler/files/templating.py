@@ -1,4 +1,4 @@
-"""Templates: where they live, and how text from outside is quoted in them.
+"""Rendering of templates, and quoting of untrusted text in them.
 
 The only module that imports jinja2.
 """
@@ -27,18 +27,18 @@ from fretish.diagnostics import status_symbols as signs
 
 
 def template_root() -> Path:
-    """`compiler/templates` in an installed wheel, `templates` beside us in a checkout."""
+    """The templates' folder: `compiler/templates` in a wheel, `templates` in a checkout."""
     package = Path(__file__).parents[1]
     installed = package / "templates"
     return installed if installed.is_dir() else package.parent / "templates"
 
 
 def render(name: str, **values: Any) -> str:
-    """Render one template; a name that it uses and does not get is a mistake, never an empty text.
+    """Render one template; an undefined name is an error, never an empty text.
 
     Args:
-        name: its path below the templates; `.html.j2` and `.svg.j2` are autoescaped.
-        values: what it places.
+        name: the path below the templates; `.html.j2` and `.svg.j2` are autoescaped.
+        values: the variables of the template.
     """
     return _environment().get_template(name).render(**values)
 
@@ -70,9 +70,10 @@ def _environment() -> Environment:
 
 
 class _Compiled(FileSystemBytecodeCache):
-    """Compiled templates, where Python keeps the compiled modules of a folder, and when it does.
+    """Cache of compiled templates in Python's own cache folder, if that is writable.
 
-    To compile those of the report takes 0.2 s. Anyone who can write there can write our own text.
+    Compiling the templates of the report takes 0.2 s. Anyone who can write there can also change
+    fretc's own code.
     """
 
     def __init__(self) -> None:
@@ -81,16 +82,16 @@ class _Compiled(FileSystemBytecodeCache):
         self._maker = f"{jinja2.__version__} {Path(__file__).read_text(encoding='utf-8')}"
 
     def get_source_checksum(self, source: str) -> str:
-        """Of all that the compiled template depends on: another Jinja compiles it anew."""
+        """A checksum of the template and of everything that compiles it, with Jinja's version."""
         return hashlib.sha256(f"{self._maker}\n{source}".encode()).hexdigest()
 
     def load_bytecode(self, bucket: Bucket) -> None:
-        """Where the file is whole."""
+        """Load the compiled template if its file is intact."""
         with suppress(OSError, EOFError, UnpicklingError):
             super().load_bytecode(bucket)
 
     def dump_bytecode(self, bucket: Bucket) -> None:
-        """Where the folder can be written."""
+        """Save the compiled template if the folder can be written."""
         if not sys.dont_write_bytecode:
             with suppress(OSError):
                 Path(self.directory).mkdir(parents=True, exist_ok=True)
@@ -104,18 +105,18 @@ def python(value: object) -> str:
     return ascii(value)
 
 
-def _character(one: str) -> str:
-    """It in a Python string; beyond 16 bits JSON would write two, which Python does not join."""
-    return json.dumps(one)[1:-1] if ord(one) < 0x10000 else f"\\U{ord(one):08x}"
+def _character(character: str) -> str:
+    """The character in a Python string; JSON would write a surrogate pair beyond 16 bits."""
+    return json.dumps(character)[1:-1] if ord(character) < 0x10000 else f"\\U{ord(character):08x}"
 
 
 def script(text: str) -> str:
-    """The text as a JavaScript string, in ASCII; it ends no `<script>` that it stands in."""
+    """The text as a JavaScript string, in ASCII, that cannot end its `<script>`."""
     return json.dumps(text).replace("<", "\\u003c")
 
 
 def comment(text: str, mark: str = "#") -> str:
-    """One line that cannot end the comment it stands in, in printable ASCII."""
+    """A comment on one line, in printable ASCII, that its text cannot end."""
     flat = " ".join(text.split())
     if not (flat.isascii() and flat.isprintable()):
         flat = "".join(map(_safe, flat))
@@ -128,7 +129,7 @@ def _safe(sign: str) -> str:
 
 
 def c_comment(text: str, indent: str = "") -> str:
-    """One line of a comment of C that is open, which no text in it can end."""
+    """A line within a C comment that its text cannot end."""
     return f" * {indent}{_harmless(text)}"
 
 
@@ -138,19 +139,19 @@ def c_remark(text: str) -> str:
 
 
 def _harmless(text: str) -> str:
-    """In printable ASCII, without the signs that begin or end a comment of C, and no trigraphs."""
+    """The text in printable ASCII, without delimiters of C comments and without trigraphs."""
     flat = comment(text, "").strip()
     return re.sub(r"\?(?=\?)", "? ", flat.replace("*/", "* /").replace("/*", "/ *"))
 
 
 def quoted(text: str) -> str:
-    """The text in double quotes, on one line: a string of HOA, and of DOT where it is no label."""
+    """The text in double quotes, on one line: a string of HOA, or of DOT if it is not a label."""
     escaped = " ".join(text.split()).replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'
 
 
 def data(value: object) -> Markup:
-    """JSON in a `<script>` of data, which no text in it can end."""
+    """JSON for a data `<script>`, which no text in it can end."""
     text = json.dumps(value, separators=(",", ":"))
     return Markup(text.replace("<", "\\u003c"))
 
@@ -161,7 +162,7 @@ def toml(text: str) -> str:
 
 
 def key(name: str) -> str:
-    """The name as a TOML key, in quotes where it needs them."""
+    """The name as a TOML key, in quotes if needed."""
     return _line(name, True).rpartition(" = ")[0]
 
 
@@ -170,16 +171,16 @@ def _line(name: str, value: object) -> str:
 
 
 _WIDTH = 100
-"""Columns of a line of JSON, for what fits on one."""
+"""Maximum width of a JSON array or object on one line."""
 _encode = json.JSONEncoder(allow_nan=False).encode
 
 
 def to_json(value: object, indent: str = "") -> str:
-    """JSON with a fixed order of keys, in ASCII; indented, and what fits on a line stands on one.
+    """JSON in ASCII with a fixed order of keys, indented; short values stand on one line.
 
     Args:
-        value: of JSON.
-        indent: what the lines after the first begin with.
+        value: a JSON value.
+        indent: prefix of the lines after the first.
 
     Raises:
         ValueError: a number is infinite or not a number.
@@ -201,7 +202,7 @@ def to_json(value: object, indent: str = "") -> str:
 
 
 def _scalar(value: object) -> str:
-    """JSON of what has no parts; most of it is of three kinds."""
+    """JSON of a scalar; the three most frequent kinds come first."""
     if type(value) is str:
         return encode_basestring_ascii(value)
     return repr(value) if type(value) is int else _encode(value)

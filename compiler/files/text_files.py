@@ -1,4 +1,4 @@
-"""Files in and out: text with diagnostics where it cannot be read, output complete or absent."""
+"""Reading text files with diagnostics, and writing outputs completely or not at all."""
 
 from __future__ import annotations
 
@@ -18,15 +18,16 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from fretish.diagnostics.source import Source
 
 MOST = 2**30
-"""Bytes of a text, or of any other file that is read at once."""
+"""Maximum size in bytes of a file that is read at once."""
 
 
 def read(path: str, errors: Literal["strict", "surrogateescape"] = "strict") -> Source | Diagnostic:
-    """The text of a file (`-`: standard input), or what keeps it from being read.
+    """The text of a file (`-`: standard input), or the diagnostic why it cannot be read.
 
     Args:
-        path: of the file.
-        errors: as of `bytes.decode`: a text that names files may have names that are no text.
+        path: the path of the file.
+        errors: as for `bytes.decode`; a file that lists file names may contain names that are not
+            UTF-8.
     """
     try:
         if not path:
@@ -45,23 +46,23 @@ def content(path: str | Path) -> bytes:
     """The bytes of a regular file.
 
     Raises:
-        OSError: it cannot be read, is a pipe or a device, or is larger than `MOST`.
+        OSError: the file cannot be read, is a pipe or a device, or is larger than `MOST`.
     """
-    with regular(path) as file:
+    with open_regular(path) as file:
         data = file.read(MOST + 1)
     if len(data) > MOST:
         raise OSError(None, f"it is larger than {MOST // 2**20} MiB")
     return data
 
 
-def regular(path: str | Path) -> BinaryIO:
-    """The file, open: no pipe, which may never say anything, and no device, which may never end.
+def open_regular(path: str | Path) -> BinaryIO:
+    """An open regular file: never a pipe, which may block, or a device, which may be endless.
 
-    What lies in /dev is the user's own word where it is named so, as by `<(...)` of a shell; a link
-    to it in a folder of somebody else is not.
+    A path in /dev counts as the user's choice if the user names it so, as `<(...)` of a shell does;
+    a link to it in somebody else's folder does not.
 
     Raises:
-        OSError: it cannot be opened, or is something else.
+        OSError: the file cannot be opened, or is not a regular file.
     """
     own = str(path).startswith("/dev/")
     flags = os.O_RDONLY | os.O_CLOEXEC | os.O_NOCTTY
@@ -72,11 +73,11 @@ def regular(path: str | Path) -> BinaryIO:
     os.close(descriptor)
     if stat.S_ISDIR(mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-    raise OSError(None, "it is no regular file")
+    raise OSError(None, "it is not a regular file")
 
 
 def not_text(path: str, at: int) -> Diagnostic:
-    """F904."""
+    """F904 for a file that is not UTF-8."""
     return Diagnostic(
         Code.NOT_TEXT,
         f"`{path}` is not UTF-8 text: byte {at} does not fit",
@@ -86,7 +87,7 @@ def not_text(path: str, at: int) -> Diagnostic:
 
 
 def unreadable(path: str, error: OSError) -> Diagnostic:
-    """F901, F902 or F903, as the operating system says."""
+    """F901, F902 or F903, depending on the error of the operating system."""
     span = Source(path, "").span()
     if isinstance(error, FileNotFoundError):
         return Diagnostic(Code.NO_SUCH_FILE, f"there is no file `{path}`", span, _nearest(path))
@@ -101,7 +102,7 @@ def unreadable(path: str, error: OSError) -> Diagnostic:
         Code.UNREADABLE,
         f"`{path}` cannot be read: {error.strerror or error}",
         span,
-        help="check what it is, and its permissions",
+        help="check that it is a regular file, and its permissions",
     )
 
 
@@ -117,12 +118,12 @@ def _nearest(path: str) -> str:
 
 
 def write(files: Mapping[Path, str | bytes | Iterable[str]]) -> Diagnostic | None:
-    """Write all of them, whole or in pieces: each under a temporary name first, then renamed.
+    """Write all files: each under a temporary name first, then renamed.
 
-    Nothing half-written stays behind: when one cannot be written, none is put in place. A file
-    keeps its permissions, and what is no regular file is never replaced. A link is followed where
-    it stays in its folder. Until it is renamed, nobody else can read what is written. A text that
-    begins with `#!` may also be run by those who may read it.
+    No partly written file is left: if one file cannot be written, none is replaced. A file keeps
+    its permissions, and only a regular file is replaced. A link is followed if it stays in its
+    folder. Until the rename, no other user can read the content. A text that begins with `#!`
+    becomes executable for those who may read it.
     """
     waiting: list[tuple[Path, Path]] = []
     path = Path()
@@ -143,7 +144,7 @@ def write(files: Mapping[Path, str | bytes | Iterable[str]]) -> Diagnostic | Non
         return Diagnostic(
             Code.NOT_WRITTEN,
             f"`{path}` cannot be written: {error.strerror or error}",
-            help="name another place, or fix this one",
+            help="write to another path, or fix this one",
         )
     finally:
         for temporary, _ in waiting:
@@ -155,9 +156,9 @@ def write(files: Mapping[Path, str | bytes | Iterable[str]]) -> Diagnostic | Non
 def _fill(temporary: Path, content: str | bytes | Iterable[str], *, like: Path) -> None:
     """Write a new file, with the permissions of the one that it will replace, if there is one."""
     whole = (content,) if isinstance(content, str | bytes) else content
-    pieces = (each.encode() if isinstance(each, str) else each for each in whole)
+    pieces = (piece.encode() if isinstance(piece, str) else piece for piece in whole)
     data = next(pieces, b"")
-    mode = stat.S_IMODE(like.stat().st_mode) if like.exists() else _usual()
+    mode = stat.S_IMODE(like.stat().st_mode) if like.exists() else _default_permissions()
     if data.startswith(b"#!"):
         mode |= (mode & _READABLE) >> 2
     descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_WRONLY, 0o600)
@@ -168,21 +169,22 @@ def _fill(temporary: Path, content: str | bytes | Iterable[str], *, like: Path) 
         os.fchmod(descriptor, mode)
 
 
-def _usual() -> int:
-    """The permissions of a new file."""
+def _default_permissions() -> int:
+    """The permissions of a new file under the present umask."""
     mask = os.umask(0o077)
     os.umask(mask)
     return 0o666 & ~mask
 
 
 def destination(path: Path) -> Path:
-    """Where an output goes, once links are followed.
+    """The path of an output after following links.
 
-    What lies in the current folder may have come from somebody else, links too. A relative path is
-    one below that folder (or the one above that it names by `..`), an absolute one is the user's.
+    The content of the current folder, links included, may come from somebody else. A relative path
+    must stay below that folder (or the one above that it names by `..`); an absolute path is the
+    user's choice.
 
     Raises:
-        OSError: a link leads out of there.
+        OSError: a link leads outside.
     """
     folder, real = Path(os.path.realpath(path.parent)), Path(os.path.realpath(path))
     if not path.is_absolute():
@@ -193,24 +195,24 @@ def destination(path: Path) -> Path:
             base = base.parent
         if not folder.is_relative_to(os.path.realpath(base)):
             raise OSError(
-                None, f"`{path.parent}` is a link to `{folder}`: name that, if it is meant"
+                None, f"`{path.parent}` is a link to `{folder}`: name `{folder}` if you mean it"
             )
     if not real.is_relative_to(folder):
-        raise OSError(None, f"it is a link to `{real}`: name that, if it is meant")
+        raise OSError(None, f"it is a link to `{real}`: name `{real}` if you mean it")
     return real
 
 
 _READABLE = stat.S_IRUSR | stat.S_IRGRP | stat.S_IROTH
-"""Two bits above those by which a file may be run."""
+"""Read permissions; each lies two bits above the permission to execute."""
 
 
 def sha256(text: str) -> str:
-    """Of the text in UTF-8, in hexadecimal."""
+    """SHA-256 of the text in UTF-8, in hexadecimal."""
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def file_sha256(path: str) -> str | None:
-    """Of the bytes of a regular file, in hexadecimal; None where it is none or cannot be read."""
+    """SHA-256 of a regular file, in hexadecimal; None if it is not regular or cannot be read."""
     if not Path(path).is_file():
         return None
     try:
@@ -222,9 +224,9 @@ def file_sha256(path: str) -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class Stamp:
-    """The file system's record of a regular file: while it is the same, so are the bytes.
+    """Identity of a regular file (size, times, inode): while it is equal, so are the bytes.
 
-    `mtime_ns` can be set back by anybody, `ctime_ns` by the clock of the machine only.
+    Anybody can set `mtime_ns` back; `ctime_ns` changes only with the clock of the machine.
     """
 
     size: int
@@ -232,12 +234,12 @@ class Stamp:
     ctime_ns: int
     inode: int
     settled: bool = field(compare=False)
-    """False where the file had just been changed: if that happened again within the same tick of
-    its file system's clock, no stamp would show it."""
+    """False if the file had just been changed: another change within the same tick of the file
+    system's clock would not show in the stamp."""
 
 
 def stamp(path: str) -> Stamp | None:
-    """The stamp of a file; None where there is none, or no regular one."""
+    """The stamp of a file; None if the path is missing or not a regular file."""
     try:
         status = os.stat(path)
     except OSError:
@@ -255,4 +257,4 @@ def stamp(path: str) -> Stamp | None:
 
 
 _COARSEST = 2 * 10**9
-"""Nanoseconds: the clock of FAT ticks every two seconds."""
+"""Nanoseconds: the coarsest clock of a file system is FAT's, with ticks of two seconds."""

@@ -1,4 +1,4 @@
-"""A secret key of the user, which shows that fretc wrote a file for this user."""
+"""The user's secret key, by which fretc recognizes files that it wrote for this user."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from pathlib import Path
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 _LENGTH = 32
-"""Bytes."""
+"""Length of the key in bytes."""
 
 
 def user_key() -> bytes | Diagnostic:
-    """The key; the first call creates it. F920 where there can be none.
+    """The key, which the first call creates; F920 if that fails.
 
-    It lies in the folder for the state of programs, readable by the user only. Source: XDG Base
+    The key lies in the folder for program state, readable by the user only. Source: XDG Base
     Directory Specification 0.8.
     """
     path = _folder() / "journal.key"
@@ -29,7 +29,7 @@ def user_key() -> bytes | Diagnostic:
         return Diagnostic(
             Code.NO_KEY,
             f"`{path}` cannot be used: {error.strerror or error}",
-            help="remove it, or name a folder of your own in XDG_STATE_HOME",
+            help="remove it, or set XDG_STATE_HOME to a folder that only you can write",
             severity=Severity.WARNING,
         )
 
@@ -43,7 +43,7 @@ def _folder() -> Path:
 
 
 def _make(path: Path) -> None:
-    """Write a complete key or none, and never replace another one."""
+    """Write a complete key or none; an existing key is never replaced."""
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     temporary = path.with_name(f".{secrets.token_hex(8)}.tmp")
     file = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_WRONLY, 0o600)
@@ -61,10 +61,10 @@ def _read(path: Path) -> bytes:
     with os.fdopen(file, "rb") as stream:
         about = os.fstat(file)
         if not stat.S_ISREG(about.st_mode) or about.st_uid != os.geteuid():
-            raise OSError(None, "it is no file of yours")
+            raise OSError(None, "it belongs to another user")
         if about.st_mode & 0o077:
-            raise OSError(None, "others may read or write it")
+            raise OSError(None, "other users may read or write it")
         key = stream.read(_LENGTH + 1)
     if len(key) != _LENGTH:
-        raise OSError(None, "it is no key")
+        raise OSError(None, "it is not a key")
     return key

@@ -1,13 +1,12 @@
-"""Verdicts that are certain early, where the parts of a sentence share atoms.
+"""Earlier certain verdicts for sentences whose parts share atoms.
 
-`compiler.formalization.past` knows when demands of any sentence contradict each other. Parts that
-share atoms have more to tell: `whenever !p the sw shall after 3 ticks satisfy p` is lost at its
-first trigger. So the reference automaton is explored over the letters that can occur, and the
-states from which no endless trace satisfies (or none violates) the sentence are written as a
-past-time formula.
+`compiler.formalization.past` detects contradicting demands of any sentence. If parts share atoms,
+more can be derived: `whenever !p the sw shall after 3 ticks satisfy p` is violated at its first
+trigger. So the reference automaton is explored over the possible letters, and the states from which
+no endless trace satisfies (or none violates) the sentence are expressed as a past-time formula.
 
-A long duration is shortened first: only the ticks at its beginning and at its end matter, for in
-between a trace can do what it likes. Source of the verdicts: Bauer, Leucker, Schallhart, TOSEM 20
+A long duration is shortened first: only the ticks at its beginning and its end matter, because a
+trace is unconstrained in between. Source of the verdicts: Bauer, Leucker, Schallhart, TOSEM 20
 (2011).
 """
 
@@ -17,7 +16,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import assert_never
 
-from compiler.formalization.letters import MOST_ATOMS, letters, temporal_predicate
+from compiler.formalization.letters import MOST_ATOMS, all_letters, temporal_predicate
 from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait
 from compiler.formalization.past import MonitorSpec, ScopeFormulas, scope_formulas
 from compiler.formalization.reference import (
@@ -35,19 +34,19 @@ from fretish import syntax as s
 from fretish.syntax import ConditionKind, ScopeKind
 
 SHORT = 6
-"""Ticks that a longer duration is shortened to."""
+"""Number of ticks to which a longer duration is shortened."""
 _EDGE = 2
 """Ticks at either end of a duration that are distinguished."""
 _MOST_STATES = 500
 
 
 def anticipated(sentence: s.Sentence, obligation: Obligation, watch: MonitorSpec) -> MonitorSpec:
-    """The watch, with all that the letters of the sentence tell in advance.
+    """The monitor specification with the early verdicts of this sentence.
 
     Args:
         sentence: a checked sentence.
-        obligation: what it demands.
-        watch: its signals, as any sentence of that form has them.
+        obligation: the demand of the sentence.
+        watch: the specification for any sentence of this form.
     """
     automaton = _automaton(sentence, obligation)
     if automaton is None:
@@ -58,25 +57,25 @@ def anticipated(sentence: s.Sentence, obligation: Obligation, watch: MonitorSpec
     return replace(watch, doom=_more(watch.doom, lost), settled=_more(watch.settled, safe))
 
 
-def _more(known: f.Formula, found: f.Formula) -> f.Formula:
-    return known if found == f.FALSE else f.or_(known, found)
+def _more(given: f.Formula, derived: f.Formula) -> f.Formula:
+    return given if derived == f.FALSE else f.or_(given, derived)
 
 
 def _automaton(sentence: s.Sentence, obligation: Obligation) -> Automaton | None:
-    """Over the letters that can occur; None where these are all, or cannot be told."""
+    """The automaton over the possible letters; None if all are possible, or they are unknown."""
     parts = tuple(_parts(obligation))
     names = tuple(dict.fromkeys(name for part in parts for name in f.atoms(part)))
     if _independent(parts, names) or len(names) > MOST_ATOMS or temporal_predicate(sentence):
         return None
     ticks = min(obligation.demand.ticks, SHORT)
     try:
-        return explore(template(sentence, ticks), letters(sentence, names), _MOST_STATES)
+        return explore(template(sentence, ticks), all_letters(sentence, names), _MOST_STATES)
     except TooManyStatesError:
         return None
 
 
 def _parts(obligation: Obligation) -> Iterable[f.Formula]:
-    """Mode, condition, response and stop condition, as far as the sentence has them."""
+    """The mode, condition, response and stop condition that the sentence has."""
     if obligation.scope is not None:
         yield obligation.mode
     if obligation.condition is not None:
@@ -87,7 +86,7 @@ def _parts(obligation: Obligation) -> Iterable[f.Formula]:
 
 
 def _independent(parts: Sequence[f.Formula], names: Sequence[str]) -> bool:
-    """Each part is an atom of its own, or the negation of one: then all letters can occur."""
+    """Whether each part is a different atom or its negation, so that all letters are possible."""
     bare = [part.arg if isinstance(part, f.Not) else part for part in parts]
     return len(names) == len(parts) and all(isinstance(part, f.Atom) for part in bare)
 
@@ -97,14 +96,14 @@ def _independent(parts: Sequence[f.Formula], names: Sequence[str]) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Observable:
-    """What can be told of a state: by the automaton, and by a formula about the ticks so far."""
+    """A property of states, as a function of the automaton's state and as a formula of the past."""
 
     formula: f.Formula
     holds: Callable[[State], bool]
 
 
 def _observables(obligation: Obligation, automaton: Automaton) -> Iterable[_Observable]:
-    """The cheap ones come first."""
+    """The observable properties, cheap ones first."""
     stage = scope_formulas(obligation)
     enforced = (Phase.INSIDE, Phase.LAST_RUN)
     yield _Observable(stage.inside, lambda state: state.phase in enforced)
@@ -119,7 +118,7 @@ def _observables(obligation: Obligation, automaton: Automaton) -> Iterable[_Obse
 
 
 def _counted(demand: Demand, stage: ScopeFormulas, short: int) -> Iterable[_Observable]:
-    """What the counter of the timing tells; `short` is what the automaton counts to."""
+    """Properties of the timing's counter; `short` is the automaton's largest count."""
     q, n = demand.response, demand.ticks
     waits = stage.open(f.not_(q))
     match demand.kind:
@@ -154,12 +153,12 @@ def _counted(demand: Demand, stage: ScopeFormulas, short: int) -> Iterable[_Obse
 
 
 def _open_for(q: f.Formula, age: int, stage: ScopeFormulas) -> f.Formula:
-    """The oldest open trigger lies `age` ticks back, or more."""
+    """Formula: the oldest open trigger lies `age` ticks back, or more."""
     return stage.open(f.not_(q), f.Interval(age, None))
 
 
 def _ages(n: int, short: int, older: Callable[[int], f.Formula]) -> Iterable[_Observable]:
-    """Whether the counter is above each of its values up to n; in between they are one."""
+    """Whether the counter exceeds each of its values up to n; the middle values are merged."""
     for age in range(short):
         if n == short or age < _EDGE:
             real = age
@@ -175,7 +174,7 @@ def _ages(n: int, short: int, older: Callable[[int], f.Formula]) -> Iterable[_Ob
 
 
 def _formula(automaton: Automaton, observables: Sequence[_Observable], verdict: str) -> f.Formula:
-    """What holds at the states with the verdict, and at no state without it."""
+    """A formula that is true at the states with the verdict, and at no other."""
     with_it: dict[Vector, None] = {}
     others: set[Vector] = set()
     for number in {after for row in automaton.moves for after in row if after != BROKEN}:

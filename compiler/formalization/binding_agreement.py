@@ -1,9 +1,9 @@
-"""Whether what a requirement states is what its bindings make of it.
+"""Checks that a requirement and its bindings mean the same.
 
-A proposition needs a binding.
+Every proposition needs a binding.
 
-`[proposition."(speed <= 1.5)"]` binds a comparison by its text. Nothing else holds the two
-together: a binding that compares with another number would be audited in its place.
+`[proposition."(speed <= 1.5)"]` binds a comparison by its text. Without this check, a binding that
+compares with another number would be audited instead.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _MIRRORED: Mapping[str, e.ComparisonOperator] = {**e.MIRRORED, "=": "=", "!=": "
 def check_binding_consistency(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[Diagnostic]:
-    """F524 for each comparison of the sentence that is bound to another one."""
+    """F524 for each comparison of the sentence that is bound to a different comparison."""
     stated = requirement.stated
     terms = _Terms.of_signals(declarations)
     for name in requirement.watched:
@@ -46,7 +46,7 @@ def check_binding_consistency(
 def _agreed(
     stated: e.Expression, declared: e.Expression, declarations: Declarations, terms: _Terms
 ) -> _Terms | None:
-    """What the names of the sentence stand for, this comparison included; None: it is another."""
+    """The terms extended by this comparison; None if the bound comparison differs."""
     if not isinstance(stated, e.Comparison):
         return None if any(_constant(part) is not None for part in e.parts(stated)) else terms
     if not isinstance(declared, e.Comparison):
@@ -55,9 +55,9 @@ def _agreed(
         return terms if _is_same(stated, declared, declarations) else None
     sided = _constant(stated.left) is not None or _constant(stated.right) is not None
     if stated.op == declared.op:
-        found = terms.fit(stated, declared.left, declared.right)
-        if found is not None:
-            return found
+        extended = terms.fit(stated, declared.left, declared.right)
+        if extended is not None:
+            return extended
     turned = sided or stated.op in ("=", "!=")  # of two names nothing says which is which
     if turned and _MIRRORED[stated.op] == declared.op:
         return terms.fit(stated, declared.right, declared.left)
@@ -65,7 +65,7 @@ def _agreed(
 
 
 def _is_same(stated: e.Comparison, declared: e.Comparison, declarations: Declarations) -> bool:
-    """Whether a comparison of signals means what is declared for it, each number in its unit."""
+    """Whether a comparison of signals equals its declaration, each number in its unit."""
     own = bound(stated, declarations.signals, declarations.source.span(0, 0))
     if isinstance(own, Diagnostic):
         return False
@@ -74,22 +74,22 @@ def _is_same(stated: e.Comparison, declared: e.Comparison, declarations: Declara
 
 
 class _Terms:
-    """What each name of a sentence stands for in the bindings: one term, without a number."""
+    """The term in the bindings for each name of a sentence; a term has no number."""
 
     def __init__(self, terms: Mapping[str, e.Expression], units: Mapping[_Kind, Fraction]) -> None:
         self._terms = dict(terms)
         self._units = dict(units)
-        """Of the bare numbers beside each name."""
+        """The unit of numbers without a unit that are compared with each name."""
         self._names: tuple[str, ...] = ()
-        """Those of the comparison that is looked at."""
+        """The names of the present comparison."""
 
     @classmethod
     def of_signals(cls, declarations: Declarations) -> _Terms:
-        """A signal is itself, even one with a mistake."""
+        """Terms in which each signal stands for itself, even if its table has an error."""
         return cls({name: e.Name(name) for name in declarations.signal_names}, {})
 
     def fit(self, stated: e.Comparison, left: e.Expression, right: e.Expression) -> _Terms | None:
-        """These and those of the comparison, if it has the shape and the numbers of the sides."""
+        """The terms extended by the comparison's, if shape and numbers of the sides agree."""
         terms = _Terms(self._terms, self._units)
         terms._names = tuple(name.id for name in e.names(stated))
         both = terms._fits(stated.left, left) and terms._fits(stated.right, right)
@@ -119,7 +119,7 @@ class _Terms:
         return len(left) == len(right) and all(map(self._fits, left, right))
 
     def _is_number(self, stated: e.Expression, number: Fraction, bound: e.Expression) -> bool:
-        """Whether a number is bound to itself; a bare one in the unit of the others beside it."""
+        """Whether a number is bound to an equal one; without a unit it has that of the others."""
         if _units(stated):
             return bool(meaning(stated) == meaning(bound))
         if number != _constant(bound):
@@ -133,12 +133,12 @@ _Kind = tuple[str, units.Dimension]
 
 def _units(number: e.Expression) -> list[units.Unit]:
     """The unit of a number, if it has one."""
-    found = (units.unit(p.unit) for p in e.parts(number) if isinstance(p, e.Quantity))
-    return [unit for unit in found if unit is not None]
+    candidates = (units.unit(p.unit) for p in e.parts(number) if isinstance(p, e.Quantity))
+    return [unit for unit in candidates if unit is not None]
 
 
 def _constant(expression: e.Expression) -> Fraction | None:
-    """The number as it is written, whatever its unit; None for anything else."""
+    """The number as written, without its unit; None for any other expression."""
     match expression:
         case e.Number(digits) | e.Quantity(digits, _):
             return _number(digits)
@@ -150,7 +150,7 @@ def _constant(expression: e.Expression) -> Fraction | None:
 
 
 def _number(digits: str) -> Fraction | None:
-    """None where it has more digits than any binding can have: nothing is equal to it."""
+    """The number; None if it has more digits than any binding can have."""
     try:
         return units.number(digits)
     except ValueError:
@@ -176,11 +176,13 @@ def _drifted(
 # What has no binding ------------------------------------------
 
 
-def unbound(requirement: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
-    """F304 for every proposition of the sentence that the bindings do not have.
+def unbound_propositions(
+    requirement: FormalizedRequirement, declarations: Declarations
+) -> Iterator[Diagnostic]:
+    """F304 for every proposition of the sentence without a binding.
 
-    Where they have one that cannot be used, it is the mistakes in its tables. No other proposition
-    is proposed in its place: the nearest name may be another safety claim.
+    If a binding exists but has errors, those errors are reported instead. No similar name is
+    proposed: the nearest name may be another safety claim.
     """
     for name in requirement.watched:
         mistakes = _mistakes(name, requirement.stated.get(name), declarations)
@@ -190,15 +192,15 @@ def unbound(requirement: FormalizedRequirement, declarations: Declarations) -> I
         yield Diagnostic(
             Code.UNBOUND,
             f"`{name}` of {requirement.id} has no binding in {declarations.source.name}",
-            place(requirement, name),
-            help=way_out(requirement, name, declarations),
+            first_use(requirement, name),
+            help=binding_fix(requirement, name, declarations),
         )
 
 
 def broken_tables(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[Diagnostic]:
-    """The mistakes in the tables of propositions and signals that a requirement reads."""
+    """The errors in the tables of propositions and signals that a requirement reads."""
     for name in requirement.watched:
         yield from _mistakes(name, requirement.stated.get(name), declarations)
 
@@ -206,8 +208,8 @@ def broken_tables(
 def _mistakes(
     name: str, stated: e.Expression | None, declarations: Declarations
 ) -> list[Diagnostic]:
-    """Those of its own table, and of the signals that it compares."""
-    read = [("signal", each.id) for each in e.names(stated)] if stated is not None else []
+    """The errors in the table of a proposition, and in those of the signals that it compares."""
+    read = [("signal", name_node.id) for name_node in e.names(stated)] if stated is not None else []
     parts = [("proposition", name), *read]
     return [mistake for part in parts for mistake in declarations.mistakes.get(part, ())]
 
@@ -215,9 +217,9 @@ def _mistakes(
 def missing_signals(
     requirement: FormalizedRequirement, name: str, signals: Mapping[str, Signal]
 ) -> tuple[str, ...]:
-    """The signals that a comparison of the sentence lacks, without which it must be bound itself.
+    """The undeclared signals of a comparison, without which the comparison needs its own binding.
 
-    Beside `=` and `!=` a second name is taken for a word of the first.
+    With `=` and `!=`, a second name counts as a value of the first.
     """
     stated = requirement.stated.get(name)
     if not isinstance(stated, e.Comparison) or atom(stated) != name:
@@ -228,18 +230,18 @@ def missing_signals(
         return ()
     words = stated.op in ("=", "!=") and isinstance(stated.left, e.Name)
     read = stated.left if words and isinstance(stated.right, e.Name) else stated
-    return tuple(dict.fromkeys(each.id for each in e.names(read) if each.id not in signals))
+    return tuple(dict.fromkeys(part.id for part in e.names(read) if part.id not in signals))
 
 
-def way_out(requirement: FormalizedRequirement, name: str, declarations: Declarations) -> str:
-    """What to write in the bindings so that they give `name` a meaning.
+def binding_fix(requirement: FormalizedRequirement, name: str, declarations: Declarations) -> str:
+    """The fix for an unbound `name`: what to write in the bindings.
 
-    Signals for a comparison; a comparison for the word of a signal; else a proposition.
+    That is signals for a comparison, a comparison for a value of a signal, else a proposition.
     """
     file = declarations.source.name
     missing = missing_signals(requirement, name, declarations.signals)
     if missing:
-        tables = " and ".join(f"`[signal.{as_key(each)}]`" for each in missing)
+        tables = " and ".join(f"`[signal.{as_key(signal_name)}]`" for signal_name in missing)
         return f"add {tables} with its `path` to {file}; `fretc bind --from LOG` drafts signals"
     bind = f"add `[proposition.{as_key(name)}]` with its `expr` to {file}"
     signal = next((s.name for s in declarations.signals.values() if name in s.values), None)
@@ -251,8 +253,8 @@ def way_out(requirement: FormalizedRequirement, name: str, declarations: Declara
     )
 
 
-def place(requirement: FormalizedRequirement, name: str) -> Span:
-    """Where the sentence names it first: the name, or the comparison or the call that it is of."""
+def first_use(requirement: FormalizedRequirement, name: str) -> Span:
+    """The span of the first use in the sentence: the name, or its comparison or call."""
     compared: Span | None = getattr(requirement.stated.get(name), "span", None)
     if compared is not None and compared.source is requirement.entry.wording.source:
         return compared

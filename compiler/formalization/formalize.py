@@ -1,4 +1,4 @@
-"""The order of everything: from a requirement as written to a requirement, by way of its tree."""
+"""Formalization of one requirement: parsing, checks, and the formulas."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from itertools import chain
 
 from compiler.formalization import predicates
 from compiler.formalization.anticipation import anticipated
-from compiler.formalization.binding_agreement import check_binding_consistency, place
+from compiler.formalization.binding_agreement import check_binding_consistency, first_use
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.future import future, probabilistic
 from compiler.formalization.obligation import obligation
-from compiler.formalization.past import past, watch
-from compiler.formalization.resolution import in_own_units, resolved
+from compiler.formalization.past import monitor_spec, past
+from compiler.formalization.resolution import in_own_units, with_signal_atoms
 from compiler.logic.formula import endless
 from compiler.logic.printing import identifier
 from fretish.ambiguities import ambiguity_warnings
@@ -42,12 +42,12 @@ def formalize(
     """Parse, check and formalize one requirement.
 
     Returns:
-        The requirement, or None where there is an error; and all that there is to say.
+        The formalized requirement, or None if there is an error; and all diagnostics.
     """
     wording = requirement.wording
     reading = partial(_formalized, requirement, declarations)
-    found = with_budget(wording.end - wording.start, wording, reading)
-    return (None, (found,)) if isinstance(found, Diagnostic) else found
+    result = with_budget(wording.end - wording.start, wording, reading)
+    return (None, (result,)) if isinstance(result, Diagnostic) else result
 
 
 def _formalized(
@@ -81,7 +81,7 @@ def _formalized(
     )
     if wrong:
         return None, wrong
-    bound = resolved(requirement, declarations) if declarations else requirement
+    bound = with_signal_atoms(requirement, declarations) if declarations else requirement
     if isinstance(bound, Diagnostic):
         return None, (bound,)
     return bound, tuple(_remarks(sentence, declarations))
@@ -90,11 +90,11 @@ def _formalized(
 def _misuses(
     written: Sentence, definitions: Definitions, declarations: Declarations | None, place: Span
 ) -> tuple[Diagnostic, ...]:
-    """F344 in the sentence, and in what its names stand for."""
+    """F344 in the sentence, and in the definitions of its names."""
     if declarations is None:
         return ()
     variables = declarations.variables
-    inside = [type_errors(each, variables, place) for each in conditions(written)]
+    inside = [type_errors(expression, variables, place) for expression in conditions(written)]
     values = [value_type_errors(variables[name], variables) for name in definitions]
     return tuple(dict.fromkeys(chain(*inside, *values)))
 
@@ -102,7 +102,7 @@ def _misuses(
 def _judged(
     written: Sentence, definitions: Definitions, declarations: Declarations | None, place: Span
 ) -> Sentence | Diagnostic:
-    """The sentence that formulas are of: with what its names stand for, in the signals' units."""
+    """The sentence to formalize: names expanded, numbers in the signals' units."""
     sentence = expanded(written, definitions)
     if isinstance(sentence, Diagnostic) or declarations is None:
         return sentence
@@ -112,17 +112,17 @@ def _judged(
 
 @with_recursion_limit
 def unreadable_sentence(requirement: RequirementEntry) -> tuple[Diagnostic, ...]:
-    """The mistakes of the sentence of a requirement whose header has some, too.
+    """The errors of the sentence of a requirement whose header has errors, too.
 
-    None where the header does not end, or the file cannot be read: nothing says what the sentence
-    is.
+    The result is empty if the header does not end, or the file cannot be read: then the sentence is
+    unknown.
     """
     wording = requirement.wording
     codes = {mistake.code for mistake in requirement.mistakes}
     if not codes or codes & _WITHOUT_SENTENCE or requirement.is_free_text:
         return ()
-    found = with_budget(wording.end - wording.start, wording, partial(find_errors, wording))
-    return (found,) if isinstance(found, Diagnostic) else found
+    diagnostics = with_budget(wording.end - wording.start, wording, partial(find_errors, wording))
+    return (diagnostics,) if isinstance(diagnostics, Diagnostic) else diagnostics
 
 
 _WITHOUT_SENTENCE = {
@@ -135,7 +135,7 @@ _WITHOUT_SENTENCE = {
 
 
 def name_collisions(requirements: Sequence[FormalizedRequirement]) -> Iterator[Diagnostic]:
-    """F116: formulas spell `a.b` as `a_DOT_b`, and another name is spelt so already."""
+    """F116 for two names with the same spelling in formulas, such as `a.b` and `a_DOT_b`."""
     spelt: dict[str, str] = {}
     for requirement in requirements:
         for name in requirement.variables:
@@ -143,8 +143,9 @@ def name_collisions(requirements: Sequence[FormalizedRequirement]) -> Iterator[D
             if first != name:
                 yield Diagnostic(
                     Code.NAME_CLASH,
-                    f"`{first}` and `{name}` would be one name in formulas: `{identifier(name)}`",
-                    place(requirement, name),
+                    f"`{first}` and `{name}` would have the same name in formulas: "
+                    f"`{identifier(name)}`",
+                    first_use(requirement, name),
                     help="rename one of them",
                 )
 
@@ -157,7 +158,7 @@ def _rule(
     declarations: Declarations | None,
     definitions: Definitions,
 ) -> FormalizedRequirement:
-    """The three formulas and the watch, each from the same obligation."""
+    """The three formulas and the monitor specification, all from the same obligation."""
     ahead = obligation(sentence, ticks or 0, predicates.Future())
     back = obligation(sentence, ticks or 0, predicates.Past())
     finite = future(ahead)
@@ -171,7 +172,7 @@ def _rule(
         ft_infinite=endless(finite),
         ft_finite=finite,
         pt=past(back),
-        watch=anticipated(sentence, back, watch(back)),
+        watch=anticipated(sentence, back, monitor_spec(back)),
         pctl=probabilistic(ahead, odds.op, odds.digits) if odds else None,
         glossary=_glossary(declarations),
         declarations=declarations,
@@ -180,9 +181,9 @@ def _rule(
 
 
 def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
-    """What is declared of each variable; a bound proposition tells its role and its text.
+    """The declaration of each variable; a bound proposition has its binding's role and text.
 
-    A modality other than belief counts wherever it is declared.
+    A modality other than belief has priority wherever it is declared.
     """
     if declarations is None:
         return {}
@@ -210,7 +211,7 @@ def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
 
 
 def _with_bound(variable: Variable, bound: Variable) -> Variable:
-    """What FRET's glossary says of a name, and what only its binding says."""
+    """The variable of FRET's glossary, completed by its binding."""
     modality = bound.modality if variable.modality is Modality.BELIEF else variable.modality
     action, role = variable.action or bound.action, variable.role or bound.role
     return replace(variable, modality=modality, action=action, role=role)
@@ -240,7 +241,7 @@ def _remarks(sentence: Sentence, declarations: Declarations | None) -> Iterator[
 
 
 def _without_signals(sentence: Sentence, declarations: Declarations | None) -> Sentence:
-    """The sentence without the comparisons that are judged as they stand: by signals."""
+    """The sentence without the comparisons that are evaluated directly over signals."""
     signals = declarations.signals if declarations else {}
 
     def answered(comparison: Comparison) -> Expression:
@@ -250,22 +251,22 @@ def _without_signals(sentence: Sentence, declarations: Declarations | None) -> S
 
 
 def duplicate_ids(requirements: Sequence[RequirementEntry]) -> Mapping[int, Diagnostic]:
-    """F201 for every id that comes again; capitals, `-`, `_` and `.` do not tell files apart.
+    """F201 for every repeated id; case, `-`, `_` and `.` do not distinguish ids.
 
     Returns:
-        By the `id()` of each requirement whose id is not its own, the first one's too.
+        The diagnostic by the `id()` of each requirement with a repeated id, the first one included.
     """
     first: dict[str, RequirementEntry] = {}
-    found: dict[int, Diagnostic] = {}
+    diagnostics: dict[int, Diagnostic] = {}
     for requirement in requirements:
         earlier = first.setdefault(re.sub(r"[-.]", "_", requirement.id.lower()), requirement)
         if earlier is not requirement:
             place = earlier.place("id")
-            found[id(requirement)] = Diagnostic(
+            diagnostics[id(requirement)] = Diagnostic(
                 Code.DUPLICATE_ID,
                 f"the id `{requirement.id}` is taken: {place.source.name}:{place.line}",
                 requirement.place("id"),
-                help="give each an id of its own; capitals, `-`, `_` and `.` do not count",
+                help="give each requirement another id; case, `-`, `_` and `.` do not count",
             )
-            found.setdefault(id(earlier), found[id(requirement)])
-    return found
+            diagnostics.setdefault(id(earlier), diagnostics[id(requirement)])
+    return diagnostics

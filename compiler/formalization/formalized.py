@@ -1,4 +1,4 @@
-"""One requirement with everything that is known of its meaning."""
+"""One requirement with its formulas, bindings and definitions."""
 
 from __future__ import annotations
 
@@ -29,33 +29,33 @@ from fretish.syntax import Sentence
 
 @dataclass(frozen=True)
 class FormalizedRequirement:
-    """A requirement, formalized: one meaning in three formulas, and as signals to watch."""
+    """A formalized requirement: its meaning as three formulas, and as signals to monitor."""
 
     entry: RequirementEntry
     written: Sentence
-    """As it was written, with units, and with names that stand for something else."""
+    """The sentence as written: with units, and with defined names."""
     sentence: Sentence
-    """With what names stand for, and with bare numbers, in the units of the signals; a unit stays
-    where no signal is declared."""
+    """The sentence with names replaced by their definitions, and numbers in the units of the
+    signals. A unit stays if no signal is declared."""
     ticks: int | None
-    """What the duration counts; None where the sentence has none."""
+    """The duration in ticks; None if the sentence has none."""
     clock: Clock | None
-    """None where no bindings are at hand."""
+    """The clock; None if there are no bindings."""
     ft_infinite: Formula
-    """Future-time, on infinite traces."""
+    """Future-time formula on infinite traces."""
     ft_finite: Formula
-    """Future-time, on finite traces, with `LAST`; at the first tick."""
+    """Future-time formula on finite traces, with `LAST`; evaluated at the first tick."""
     pt: Formula
-    """Past-time; at the last tick."""
+    """Past-time formula; evaluated at the last tick."""
     watch: MonitorSpec
     pctl: Formula | None
-    """PCTL*; None where the sentence gives no probability."""
+    """PCTL* formula; None if the sentence has no probability."""
     glossary: Mapping[str, Variable]
     """Every variable that the bindings declare, bound or not."""
     declarations: Declarations | None = None
-    """The bindings as a whole; None where none are at hand."""
+    """All bindings; None if there are none."""
     definitions: Definitions = field(default_factory=dict)
-    """What names of the sentence as written stand for, each after those that it needs."""
+    """The definitions of names in `written`, each after those that it uses."""
 
     @property
     def id(self) -> str:
@@ -73,88 +73,88 @@ class FormalizedRequirement:
 
     @cached_property
     def watched(self) -> tuple[str, ...]:
-        """The propositions that a monitor needs: predicates that look back are none of them.
+        """The propositions that a monitor needs, without predicates that look back.
 
-        Where triggers are counted, each on its own, those of all parts of the sentence are needed.
+        If each trigger is counted separately, the propositions of all parts are needed.
         """
         needed = {name for signal in self.watch.signals for name in atoms(signal)}
         counted: tuple[str, ...] = ()
         if self.sentence.probability is not None:
             counted = self.demanded.atoms
-        known = dict.fromkeys((*self.propositions, *counted))
-        return tuple(name for name in known if name in needed or name in counted)
+        names = dict.fromkeys((*self.propositions, *counted))
+        return tuple(name for name in names if name in needed or name in counted)
 
     @cached_property
     def demanded(self) -> Obligation:
-        """What the sentence demands, in formulas of the past."""
+        """The demand of the sentence, as formulas of the past."""
         return obligation(self.sentence, self.ticks or 0, Past())
 
     @cached_property
     def variables(self) -> tuple[str, ...]:
-        """Every variable of the sentence, also those within comparisons, as they come in it."""
-        found = [
+        """Every variable of the sentence, in order of appearance, also within comparisons."""
+        occurrences = [
             name
             for expression in conditions(self.sentence)
             for name in names(expression)
             if name.id != "FTP"
         ]
-        return tuple(dict.fromkeys(name.id for name in sorted(found, key=_place)))
+        return tuple(dict.fromkeys(name.id for name in sorted(occurrences, key=_place)))
 
     @cached_property
     @with_recursion_limit
     def stated(self) -> Mapping[str, e.Expression]:
         """The comparisons and calls of the sentence, by the names that formulas give them.
 
-        So is a name in quotes that reads as a comparison. A predicate that looks back is none of
-        them within another call: it is never an atom there.
+        A quoted name that reads as a comparison counts as one. A predicate that looks back, within
+        another call, is left out: it is never an atom there.
         """
-        found: dict[str, e.Expression] = {}
+        expressions: dict[str, e.Expression] = {}
         waiting = [(expression, False) for expression in conditions(self.sentence)]
         while waiting:
             part, inside = waiting.pop()
             expanded = inside and isinstance(part, e.Call) and part.name in LOOK_BACK
             if isinstance(part, e.Comparison | e.Call) and not expanded:
-                found[atom(part)] = part
+                expressions[atom(part)] = part
             elif isinstance(part, e.Name):
                 quoted = _quoted(part)
-                found |= {variable(part.id): quoted} if quoted is not None else {}
+                expressions |= {variable(part.id): quoted} if quoted is not None else {}
             inside |= isinstance(part, e.Call)
-            waiting.extend((each, inside) for each in e.children(part))
-        return found
+            waiting.extend((child, inside) for child in e.children(part))
+        return expressions
 
     @cached_property
     @with_recursion_limit
     def wordings(self) -> Mapping[str, str]:
-        """How atoms are shown to people: with the numbers and units that the sentence has.
+        """The display text of atoms, with the numbers and units of the sentence.
 
-        By the names that formulas give them; those that are written so already are left out.
+        The keys are the names in formulas; atoms whose text is their name are left out.
         """
         whole = expanded(self.written, self.definitions)
         assert isinstance(whole, Sentence), "the requirement has been made of it"
-        found: dict[str, str] = {}
+        texts: dict[str, str] = {}
         waiting = [*zip(conditions(self.sentence), conditions(whole), strict=True)]
         while waiting:
             own, part = waiting.pop()
             if isinstance(own, e.Comparison | e.Call) and expression(own) != expression(part):
-                found.setdefault(atom(own), f"({expression(part)})")
+                texts.setdefault(atom(own), f"({expression(part)})")
             if not isinstance(own, e.Comparison):
                 waiting.extend(zip(e.children(own), e.children(part), strict=True))
-        return found
+        return texts
 
     @cached_property
     def mentions(self) -> Mapping[str, Span]:
-        """Where the sentence first has each variable."""
-        found: dict[str, Span] = {}
+        """The first occurrence of each variable in the sentence."""
+        spans: dict[str, Span] = {}
         for name in chain.from_iterable(map(names, conditions(self.sentence))):
             if name.span is not None:
-                found.setdefault(name.id, name.span)
-        return found
+                spans.setdefault(name.id, name.span)
+        return spans
 
     @cached_property
     def fingerprint(self) -> str:
-        """SHA-256 of the canonical sentence: white space and wording of key words do not count.
+        """SHA-256 of the canonical sentence, without white space and variants of key words.
 
-        What its names stand for counts.
+        The definitions of its names are included.
         """
         lines = [canonical(self.written)]
         lines += [f"{name} = {expression(value)}" for name, value in self.definitions.items()]
@@ -162,7 +162,7 @@ class FormalizedRequirement:
 
 
 def _quoted(name: Name) -> e.Comparison | None:
-    """What the letters of a name in quotes say, where that is a comparison."""
+    """The comparison that a quoted name spells; None if it does not."""
     if not any(sign in name.id for sign in "<>="):
         return None
     read = parse(Source("name", f"the component shall satisfy ({name.id})").span())
@@ -174,8 +174,8 @@ def _place(name: Name) -> int:
     return name.span.start if name.span else 0
 
 
-def plain(requirement: FormalizedRequirement) -> FormalizedRequirement:
-    """The requirement of the same sentence without its probability, under the same id."""
+def without_probability(requirement: FormalizedRequirement) -> FormalizedRequirement:
+    """The requirement without its probability, under the same id."""
     if requirement.sentence.probability is None:
         return requirement
     sentence = replace(requirement.sentence, probability=None)

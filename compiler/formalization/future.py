@@ -1,4 +1,4 @@
-"""Future-time logic: what a sentence says about the ticks ahead of tick 0.
+"""The future-time formula of a sentence, evaluated at tick 0.
 
 One construction serves both kinds of trace: the formula about finite traces mentions `LAST`; on
 infinite traces `LAST` is false, and the same formula folds to the other (`formula.endless`).
@@ -92,7 +92,7 @@ def end_marker(scope: ScopeKind | None, m: Formula) -> Formula:
 
 
 def _on_runs(inside: Formula, end: Formula, enforced: Formula) -> Formula:
-    """`enforced` at the first tick of every maximal run of `inside`.
+    """Formula: `enforced` holds at the first tick of every maximal run of `inside`.
 
     A part `end R x` says x at every tick of the run: then it is claimed of every tick inside.
     """
@@ -115,7 +115,7 @@ def _given(inside: Formula, claim: Formula) -> Formula:
 
 
 def _enforced(obligation: Obligation, end: Formula, form: Callable[[Formula], Formula]) -> Formula:
-    """At the first tick of an interval: the demand, in that form, at every trigger of it."""
+    """At the first tick of an interval: the demand, in the given form, at every trigger."""
     met = form(demanded_at(obligation.demand, end))
     p = obligation.trigger
     match obligation.condition:
@@ -134,7 +134,7 @@ def _enforced(obligation: Obligation, end: Formula, form: Callable[[Formula], Fo
 
 
 def demanded_at(demand: Demand, end: Formula) -> Formula:
-    """The demand at a trigger, here and now; `end` is true at the last tick of the interval."""
+    """The demand at a trigger at the present tick; `end` marks the last tick of the interval."""
     q, s, n = demand.response, demand.stop, demand.ticks
     match demand.kind:
         case Kind.IMMEDIATELY:

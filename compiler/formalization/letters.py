@@ -1,4 +1,4 @@
-"""The letters of a sentence: what the truth of its atoms at one tick makes of its parts.
+"""The letters of a sentence: the values of its parts for each valuation of its atoms.
 
 Parts may share atoms, so not every combination of their values can occur. Nor can every combination
 of atoms, where they compare the same signals: `battery < 20` and `battery > 30`.
@@ -24,14 +24,15 @@ from fretish.checking import LOOK_AHEAD, LOOK_BACK, calls, conditions
 from fretish.reading.recursion import with_recursion_limit
 
 MOST_ATOMS = 12
-"""Each doubles the letters: 4 096 steps for each pair of states."""
+"""Maximum number of atoms: each doubles the letters, and 12 mean 4 096 steps for each pair of
+states."""
 
 Valuation = tuple[bool, ...]
 """The truth values of the atoms at one tick, in a given order."""
 
 
 def temporal_predicate(sentence: s.Sentence) -> str | None:
-    """The first predicate that speaks of other ticks: letters tell too little of it."""
+    """The first predicate that refers to other ticks; letters cannot express it."""
     for expression in conditions(sentence):
         for name in calls(expression):
             if name in LOOK_BACK | LOOK_AHEAD:
@@ -42,10 +43,11 @@ def temporal_predicate(sentence: s.Sentence) -> str | None:
 
 
 @with_recursion_limit
-def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, Letter]:
-    """What each valuation of the atoms makes of mode, condition, response and stop condition.
+def letters_by_valuation(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, Letter]:
+    """The letter (mode, condition, response, stop condition) of each valuation of the atoms.
 
-    Each expression is read once, as a column of bits: bit k is its value in the k-th valuation.
+    Each expression is evaluated once, as a column of bits: bit k is its value in the k-th
+    valuation.
     """
     m, p, q, stop = _columns(sentence, atoms)
     return {
@@ -55,17 +57,17 @@ def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, L
 
 
 @with_recursion_limit
-def letters(sentence: s.Sentence, atoms: Sequence[str]) -> tuple[Letter, ...]:
-    """The letters that some valuation of the atoms makes, sorted."""
+def all_letters(sentence: s.Sentence, atoms: Sequence[str]) -> tuple[Letter, ...]:
+    """The letters of all valuations of the atoms, sorted."""
     every = (1 << 2 ** len(atoms)) - 1
-    found: list[tuple[tuple[bool, ...], int]] = [((), every)]
+    groups: list[tuple[tuple[bool, ...], int]] = [((), every)]
     for column in _columns(sentence, atoms):
-        found = [
+        groups = [
             ((*letter, value), where & half)
-            for letter, where in found
+            for letter, where in groups
             for value, half in ((False, every ^ column), (True, column))
         ]
-    return tuple((m, p, q, stop) for (m, p, q, stop), where in found if where)
+    return tuple((m, p, q, stop) for (m, p, q, stop), where in groups if where)
 
 
 def _columns(sentence: s.Sentence, atoms: Sequence[str]) -> list[int]:
@@ -79,20 +81,20 @@ def _columns(sentence: s.Sentence, atoms: Sequence[str]) -> list[int]:
 
 
 def atoms_of(sentence: s.Sentence) -> tuple[str, ...]:
-    """The atoms of the sentence, by the names that formulas have for them."""
+    """The names in formulas of the atoms of the sentence."""
     formulas = [part for part in parts(sentence) if part is not None]
     return tuple(dict.fromkeys(name for formula in formulas for name in f.atoms(formula)))
 
 
 @with_recursion_limit
-def occurring(sentence: s.Sentence) -> tuple[Letter, ...]:
-    """The letters that can occur; with more than `MOST_ATOMS` atoms, those that might.
+def possible_letters(sentence: s.Sentence) -> tuple[Letter, ...]:
+    """The possible letters; with more than `MOST_ATOMS` atoms, a superset of them.
 
-    A letter too many changes no language: no valuation of the atoms has it.
+    An extra letter does not change the language, since no valuation of the atoms has it.
     """
     atoms = atoms_of(sentence)
     if len(atoms) <= MOST_ATOMS:
-        return letters(sentence, atoms)
+        return all_letters(sentence, atoms)
     m, p, q, stop = (_values(part) for part in parts(sentence))
     return tuple(product(m, p, q, stop))
 
@@ -111,7 +113,7 @@ Parts = tuple[f.Formula | None, f.Formula | None, f.Formula | None, f.Formula | 
 
 
 def parts(sentence: s.Sentence) -> Parts:
-    """Mode, condition, response and stop condition; None where it has none."""
+    """The mode, condition, response and stop condition; None for a missing part."""
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
     return (
         _formula(scope.mode) if scope else None,
@@ -128,7 +130,7 @@ def _formula(expression: e.Expression) -> f.Formula:
 # Valuations that cannot occur ------------------------------------------------------------------
 
 
-def excluded(requirement: FormalizedRequirement) -> tuple[Exclusion, ...]:
+def impossible_combinations(requirement: FormalizedRequirement) -> tuple[Exclusion, ...]:
     """The comparisons of a requirement that exclude each other, whatever is measured."""
     signals = requirement.declarations.signals if requirement.declarations else {}
     scales = {name: signal.scale for name, signal in signals.items()}
@@ -142,10 +144,10 @@ def exclusion_in_words(exclusion: Exclusion) -> str:
 
 
 def comparisons(requirement: FormalizedRequirement) -> Mapping[str, e.Comparison]:
-    """The atoms that compare numbers of one moment, by their names.
+    """The atoms that compare numbers of one instant, by their names.
 
-    A proposition that is declared for a comparison may be more than that: true where a sample of
-    the tick makes it true, or where nothing is known.
+    A comparison with its own declared proposition is left out: that may also be true if any sample
+    of the tick makes it true, or if the value is unknown.
     """
     written = dict(candidates(requirement.sentence))
     return {
@@ -161,7 +163,7 @@ def comparisons(requirement: FormalizedRequirement) -> Mapping[str, e.Comparison
 
 def _is_of_one_moment(name: str, part: e.Comparison, declarations: Declarations) -> bool:
     signals = declarations.signals
-    read = [signals[each.id] for each in e.names(part) if each.id in signals]
+    read = [signals[node.id] for node in e.names(part) if node.id in signals]
     if any(signal.scale != signal.unit.factor for signal in read):
         return False  # its numbers are not compared in the unit of the sentence
     declared = declarations.propositions.get(name)

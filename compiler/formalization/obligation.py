@@ -1,9 +1,9 @@
-"""What a sentence demands at each trigger, as formulas without any time in them.
+"""The demand of a sentence at each trigger, as formulas without time.
 
-Between the tree and the temporal formulas: expressions have become Boolean formulas, durations
-ticks, and the `only` scopes their negated timing (SEMANTICS: the negated forms are duals).
-Source: Giannakopoulou, Pressburger, Mavridou, Schumann, Automated formalization of structured
-natural language requirements, IST 137 (2021), section 4.
+This is the step between syntax tree and temporal formulas: expressions become Boolean formulas,
+durations become ticks, and `only` scopes get their negated timing (SEMANTICS: the negated forms are
+duals). Source: Giannakopoulou, Pressburger, Mavridou, Schumann, Automated formalization of
+structured natural language requirements, IST 137 (2021), section 4.
 """
 
 from __future__ import annotations
@@ -39,24 +39,24 @@ class Kind(Enum):
 
 
 class Trait(Flag):
-    """What is true of some kinds of demand and not of others."""
+    """Properties of kinds of demand."""
 
     STEPS = auto()
     """Its verdict may change where a trace stutters."""
     COUNTS = auto()
-    """A counter of ticks tells how long it has been open."""
+    """A counter of ticks records how long the demand has been open."""
     DOWN = auto()
     """The counter counts down to where the demand ends."""
     REGISTERS = auto()
     """The counter is a register with a bit for each trigger."""
     WAITS = auto()
-    """One response settles it."""
+    """One response meets the demand."""
     RENEWED = auto()
     """A trigger replaces the demand of the trigger before it."""
     STOPS = auto()
     """It has a stop condition."""
     FORBIDS = auto()
-    """It only forbids, with no deadline: it is met where nothing has broken it."""
+    """It only forbids, without a deadline: it is met unless it is broken."""
     OPPOSITES = auto()
     """It asks for the response at a tick and for its opposite at others: so does its dual."""
     LAST = auto()
@@ -105,48 +105,49 @@ class Obligation:
 
     @property
     def atoms(self) -> tuple[str, ...]:
-        """Of all its parts, each once."""
+        """The atoms of all parts, each once."""
         parts = (self.mode, self.trigger, self.demand.response, self.demand.stop)
         return tuple(dict.fromkeys(name for part in parts for name in f.atoms(part)))
 
 
 Expand = Callable[[str, tuple[e.Expression, ...], "Read"], f.Formula | None]
-"""A call (name, arguments, how to read them) as a formula; None leaves it a proposition."""
+"""Expands a call (name, arguments, reader of arguments) into a formula; None keeps it a
+proposition."""
 
 Read = Callable[[e.Expression], f.Formula]
 
 
 class Vocabulary(Protocol):
-    """What the temporal predicates mean, in the past or in the future."""
+    """The meaning of temporal predicates, in the past or in the future."""
 
     def alone(self) -> Expand:
-        """Within the expression of a scope, where there is no interval yet."""
+        """The expansion in the expression of a scope, where no interval exists yet."""
 
     def inside(self, scope: s.ScopeKind | None, mode: f.Formula) -> Expand:
-        """Within condition, stop condition and response: relative to the scope's interval."""
+        """The expansion in condition, stop condition and response, within the interval."""
 
 
 class Uninterpreted:
-    """Every predicate stays a proposition."""
+    """A vocabulary in which every predicate stays a proposition."""
 
     def alone(self) -> Expand:
-        """None is expanded."""
+        """Expand nothing."""
         return lambda name, args, read: None
 
     def inside(self, scope: s.ScopeKind | None, mode: f.Formula) -> Expand:
-        """None is expanded."""
+        """Expand nothing."""
         return self.alone()
 
 
 def obligation(
     sentence: s.Sentence, ticks: int, vocabulary: Vocabulary | None = None
 ) -> Obligation:
-    """The sentence without its words.
+    """The obligation of a sentence.
 
     Args:
         sentence: a checked sentence.
-        ticks: what its duration counts; 0 where it has none.
-        vocabulary: what the temporal predicates mean; None leaves all of them propositions.
+        ticks: the duration in ticks; 0 if there is none.
+        vocabulary: the meaning of temporal predicates; None leaves them propositions.
     """
     words = vocabulary or Uninterpreted()
     scope, condition = sentence.scope, sentence.condition
@@ -208,7 +209,7 @@ _DUALS: Mapping[Kind, Kind] = {
 
 
 def dual(demand: Demand) -> Demand:
-    """The negated timing: what an `only` scope demands outside of itself."""
+    """The negated timing, which an `only` scope demands outside of the scope."""
     kind = _DUALS[demand.kind]
     response = demand.response if Trait.OPPOSITES in TRAITS[kind] else f.not_(demand.response)
     return Demand(kind, response, demand.ticks, demand.stop)

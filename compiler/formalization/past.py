@@ -1,8 +1,8 @@
-"""Past-time logic: what a sentence says about the ticks up to now.
+"""The past-time formula of a sentence, and its monitor specification.
 
-`past` is true at the last tick of a finite trace exactly when the trace satisfies the sentence,
-and at every tick before it for the trace up to there. `watch` says the same as signals that a
-monitor steps: where a demand is triggered, broken and still owed.
+`past` is true at the last tick of a finite trace exactly if the trace satisfies the sentence, and
+at every earlier tick for the trace up to there. `monitor_spec` expresses the same as signals that a
+monitor computes at each tick: where a demand is triggered, broken and still open.
 
 Source: SEMANTICS of FRETish, section 3; the shapes follow Giannakopoulou et al., IST 137 (2021),
 section 5, rebuilt from the meaning.
@@ -49,27 +49,27 @@ class MonitorSpec:
     """
 
     trigger: Formula
-    """A demand begins here."""
+    """A demand begins at this tick."""
     breach: Formula
-    """A demand is broken here: nothing that follows can repair it."""
+    """A demand is broken at this tick, and nothing later can repair it."""
     doom: Formula
-    """Demands are open here that no endless trace meets, though none of them is broken yet."""
+    """Open demands that no endless trace can meet, though none of them is broken yet."""
     owed: Formula
-    """A demand is open here: what follows decides it, where none has been broken before."""
+    """A demand is open: later ticks decide it, unless a demand was broken before."""
     fails: Formula
-    """The trace would violate the sentence if it ended here, though nothing is broken yet."""
+    """The trace violates the sentence if it ends at this tick, though nothing is broken yet."""
     settled: Formula
-    """Nothing that follows on an infinite trace can break a demand, where none has been broken."""
+    """No continuation on an infinite trace can break a demand, unless one was broken before."""
     answer: Formula | None
-    """The response that settles a demand, where a demand waits for one."""
+    """The response that meets a demand, if a demand waits for one."""
     horizon: int | None
-    """Ticks from a trigger to its deadline; None: there is no deadline."""
+    """Ticks from a trigger to its deadline; None if there is no deadline."""
     renewed: bool
     """A trigger replaces the demand of the trigger before it: only the latest one is open."""
 
     @property
     def signals(self) -> Signals[Formula]:
-        """What a monitor tells at each tick."""
+        """The signals that a monitor reports at each tick."""
         return Signals(
             self.trigger,
             self.breach,
@@ -83,7 +83,7 @@ class MonitorSpec:
 
 @dataclass(frozen=True, slots=True)
 class ScopeFormulas:
-    """Where a sentence is enforced, and where its demands begin."""
+    """Formulas for the ticks at which a sentence is enforced, and at which demands begin."""
 
     inside: Formula
     """The present tick lies in an interval of the scope."""
@@ -96,15 +96,15 @@ class ScopeFormulas:
     over: Formula
     """No interval is here or follows."""
     recurs: bool
-    """Demands can begin at more than one tick."""
+    """Whether demands can begin at more than one tick."""
 
     @property
     def endless(self) -> bool:
-        """The interval lasts for ever once it has begun."""
+        """Whether an interval lasts for ever once it has begun."""
         return self.leaves == FALSE
 
     def open(self, kept: Formula, ago: Interval = EVER) -> Formula:
-        """A trigger of this interval, `ago` ticks back, since which `kept` has held."""
+        """Formula: this interval had a trigger `ago` ticks back, and `kept` has held since."""
         if self.trigger == self.left and ago == EVER:
             if kept == TRUE:
                 return self.inside  # every tick inside has the first of its interval behind it
@@ -114,13 +114,13 @@ class ScopeFormulas:
 
 
 def past(obligation: Obligation) -> Formula:
-    """The formula about the trace up to now, with the operators that FRET has."""
+    """The formula about the trace up to now, in FRET's operators."""
     stage, demand = scope_formulas(obligation), obligation.demand
     broken = or_(_broken_plainly(demand, stage), _broken_at_end(demand, stage))
     return and_(historically(_unless(broken)), _unless(_fails(demand, stage)))
 
 
-def watch(obligation: Obligation) -> MonitorSpec:
+def monitor_spec(obligation: Obligation) -> MonitorSpec:
     """The signals of a monitor; counting operators look back from now, never from a deadline."""
     stage, demand = scope_formulas(obligation), obligation.demand
     breach = or_(_broken(demand, stage), _broken_at_end(demand, stage))
@@ -163,7 +163,7 @@ def scope_formulas(obligation: Obligation) -> ScopeFormulas:
 
 
 _REPEATED = (ScopeKind.IN, ScopeKind.NOT_IN, ScopeKind.ONLY_IN)
-"""Scopes with an interval for each stretch of the mode."""
+"""Scopes that have an interval for each stretch of the mode."""
 
 
 def _over(scope: ScopeKind | None, m: Formula) -> Formula:

@@ -1,10 +1,9 @@
-"""FRETish's temporal predicates: what each means at a tick k of an interval [L, R].
+"""The meaning of FRETish's temporal predicates at a tick k of an interval [L, R].
 
-`persisted`, `occurred`, `prevOcc`, `preBool` and `FTP` look back and `persists`, `occurs`,
-`nextOcc` look ahead; in a formula that looks the other way they stay propositions. None looks
-past the ends of the interval, except `preBool`, which knows the whole trace, and except inside of
-the expression of a scope, where there is no interval yet.
-Source: SEMANTICS of FRETish, section 3, built-in predicates.
+`persisted`, `occurred`, `prevOcc`, `preBool` and `FTP` look back; `persists`, `occurs` and
+`nextOcc` look ahead. In a formula of the other direction they stay propositions. None looks beyond
+the interval, with two exceptions: `preBool` reads the whole trace, and the expression of a scope
+has no interval yet. Source: SEMANTICS of FRETish, section 3, built-in predicates.
 """
 
 from __future__ import annotations
@@ -104,8 +103,8 @@ class Future:
             return _ahead(lo, hi, p, LAST)
 
         def next_occurrence(p: Formula, q: Formula) -> Formula:
-            found = until(and_(not_(LAST), not_(p)), and_(p, q))
-            return and_(not_(LAST), next_(found))
+            occurrence = until(and_(not_(LAST), not_(p)), and_(p, q))
+            return and_(not_(LAST), next_(occurrence))
 
         return _expand(
             {"persists": lambda lo, hi, p: not_(occurs(lo, hi, not_(p))), "occurs": occurs},

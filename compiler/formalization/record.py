@@ -1,4 +1,4 @@
-"""Everything that is known of a requirement, as plain values for JSON."""
+"""A requirement with its formulas, as plain values for JSON."""
 
 from __future__ import annotations
 

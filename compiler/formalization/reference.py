@@ -1,9 +1,9 @@
-"""The reference automaton of a sentence: what FRETish means, as a counter stepped tick by tick.
+"""The reference automaton of a sentence: the meaning of FRETish as a counter stepped tick by tick.
 
-Built by hand from the definition: the interval of the scope, the trigger of the condition, the
-counter of the timing. It shares nothing with our formulas, so that monitors made from these can be
-proved against it (`fretc.verification.monitor.equivalence`). A bound is a number that is compared,
-never unrolled.
+The automaton is written by hand from the definition: the interval of the scope, the trigger of the
+condition, the counter of the timing. It shares nothing with the formulas of fretc, so monitors made
+from these can be proved against it (`fretc.verification.monitor.equivalence`). A bound is a number
+that is compared, never unrolled.
 
 Sources: Giannakopoulou, Pressburger, Mavridou, Schumann, Automated formalization of structured
 natural language requirements, IST 137 (2021), sections 3 and 4; for the three verdicts Bauer,
@@ -26,9 +26,9 @@ class Template:
     """A sentence without its expressions: one of FRET's 288 templates, and what it counts."""
 
     scope: ScopeKind | None
-    """None: the whole trace."""
+    """The scope; None: the whole trace."""
     condition: ConditionKind | None
-    """None: one trigger, at the first tick of each interval."""
+    """The condition; None: one trigger, at the first tick of each interval."""
     timing: type[s.Timing]
     ticks: int = 0
 
@@ -41,7 +41,7 @@ def template(sentence: s.Sentence, ticks: int) -> Template:
 
     Args:
         sentence: a checked sentence; a probability is not part of its template.
-        ticks: what its duration counts; without meaning where it has none.
+        ticks: the duration in ticks; ignored if the sentence has none.
     """
     counted = ticks if s.duration(sentence.timing) else 0
     scope, condition = sentence.scope, sentence.condition
@@ -57,7 +57,7 @@ def template(sentence: s.Sentence, ticks: int) -> Template:
 
 
 class Phase(IntEnum):
-    """Where a tick lies, as far as the ticks up to it tell."""
+    """The position of a tick relative to the intervals, derived from the ticks up to it."""
 
     OUTSIDE = auto()
     """In no interval; one may begin."""
@@ -133,9 +133,9 @@ def _always(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None
 
 
 def _within(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None:
-    """Q at some tick of t..t+n; the count is the ticks that the oldest open trigger t has seen.
+    """Q at some tick of t..t+n; the count is the ticks of the oldest open trigger t so far.
 
-    An interval that ends before t+n asks for nothing: then nobody looks at the count any more.
+    An interval that ends before t+n demands nothing; the count is not read any more.
     """
     if q or not (count or triggered):
         return 0
@@ -143,7 +143,7 @@ def _within(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None
 
 
 def _for(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None:
-    """Q throughout t..t+n; the count is the ticks that the newest trigger t is still owed."""
+    """Q throughout t..t+n; the count is the ticks left of the newest trigger t."""
     owed = n + 1 if triggered else count
     return None if owed and not q else max(owed - 1, 0)
 
@@ -151,8 +151,9 @@ def _for(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None:
 def _after(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None:
     """No q throughout t..t+n, then q at t+n+1.
 
-    The count is the ticks that the oldest open trigger t has seen, negative once another trigger
-    has come: that one forbids q at t+n+1, so only the end of the interval can keep the demand.
+    The count is the ticks since the oldest open trigger, with its own. It is negative once another
+    trigger has come: that one forbids q at t+n+1, so only the end of the interval can meet the
+    demand.
     """
     seen, clashes = abs(count), count < 0 or (count > 0 and triggered)
     if not (seen or triggered):
@@ -167,10 +168,10 @@ def _after(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None:
 def _not_after(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None:
     """Q at some tick of t..t+n, or none at t+n+1; what `only` scopes demand for `after`.
 
-    Broken where q comes at t+n+1 for the first time since t: each trigger has an instant of its
-    own at which q is forbidden, and any q before it lifts that. So the count is a register of
-    the triggers since the last q, bit k for the one k ticks ago. With a condition there are up to
-    2^(n+1) registers; that is inherent: each forbids q at other instants.
+    The demand is broken if q comes at t+n+1 for the first time since t: each trigger forbids q at a
+    different instant, and an earlier q lifts that. So the count is a register of the triggers since
+    the last q, bit k for the one k ticks ago. With a condition there are up to 2^(n+1) registers,
+    which is inherent.
     """
     triggers = count << 1 | triggered
     forbidden = triggers >> (n + 1)
@@ -194,7 +195,7 @@ def _before(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None
 
 
 _OWED_AT_THE_END = (_finally, _eventually)
-"""The counters that fail with a positive count where the interval ends; the others do not."""
+"""The counters that violate with a positive count if the interval ends."""
 
 _DEMANDS: Mapping[type[s.Timing], tuple[Counter, bool]] = {
     s.Immediately: (_immediately, True),
@@ -224,7 +225,7 @@ _NEGATED: Mapping[type[s.Timing], tuple[Counter, bool]] = {
     s.Until: (_before, False),
     s.Before: (_until, False),
 }
-"""What `only` scopes demand outside of themselves: the duals, not the complements."""
+"""The demands of `only` scopes outside of the scope: the duals, not the complements."""
 
 
 def _demand(template: Template) -> tuple[Counter, bool]:
@@ -236,22 +237,23 @@ def _demand(template: Template) -> tuple[Counter, bool]:
 
 
 class State(NamedTuple):
-    """What the past has left, after a tick; small, and hashable."""
+    """The state after a tick; small and hashable."""
 
     phase: Phase
     held: bool
-    """The condition held at this tick of an interval; false where its next tick does not ask."""
+    """Whether the condition held at this tick of an interval; false if the next tick does not need
+    it."""
     counted: int
-    """What the counter of the timing says; 0 outside of intervals."""
+    """The counter of the timing; 0 outside of intervals."""
 
 
 def initial(template: Template) -> State:
-    """Before the first tick."""
+    """The state before the first tick."""
     return State(Phase.OUTSIDE, held=False, counted=0)
 
 
 def step(template: Template, state: State, m: bool, p: bool, q: bool, s: bool) -> State | None:
-    """After one more tick; None where a demand is broken, so that nothing can repair it.
+    """The state after one more tick; None if a demand is broken, which nothing can repair.
 
     Args:
         template: what the sentence is.
@@ -276,8 +278,8 @@ def step(template: Template, state: State, m: bool, p: bool, q: bool, s: bool) -
 def _triggers(condition: ConditionKind | None, p: bool, *, first: bool, held: bool) -> bool:
     """Whether a demand begins at a tick of an interval.
 
-    A condition that was true before the interval, too, triggers at its first tick: `held` only
-    tells of ticks of the same interval.
+    A condition that was already true before the interval triggers at its first tick: `held` refers
+    only to ticks of the same interval.
     """
     match condition:
         case None:
@@ -290,8 +292,8 @@ def _triggers(condition: ConditionKind | None, p: bool, *, first: bool, held: bo
             assert_never(condition)
 
 
-class Happening(NamedTuple):
-    """What one tick is, to the sentence."""
+class TickRole(NamedTuple):
+    """Whether a tick is enforced, and whether it is a trigger."""
 
     enforced: bool
     """The tick lies in an interval."""
@@ -299,12 +301,12 @@ class Happening(NamedTuple):
     """A demand begins at it."""
 
 
-def happening(template: Template, state: State, m: bool, p: bool) -> Happening:
-    """What a tick with mode `m` and condition `p` is, after `state`."""
+def tick_role(template: Template, state: State, m: bool, p: bool) -> TickRole:
+    """The properties of a tick with mode `m` and condition `p`, after `state`."""
     if _entered(template.scope, state.phase, m) not in _ENFORCED:
-        return Happening(enforced=False, triggered=False)
+        return TickRole(enforced=False, triggered=False)
     first = state.phase not in _ENFORCED
-    return Happening(True, _triggers(template.condition, p, first=first, held=state.held))
+    return TickRole(True, _triggers(template.condition, p, first=first, held=state.held))
 
 
 def accepts(template: Template, state: State) -> bool:
@@ -313,9 +315,9 @@ def accepts(template: Template, state: State) -> bool:
 
 
 def accepting(template: Template, state: State) -> bool:
-    """Büchi acceptance: an infinite trace that breaks nothing satisfies by such states for ever.
+    """Büchi acceptance: an unbroken infinite trace satisfies if it visits such states for ever.
 
-    An interval without end has no last tick, so `finally` asks for nothing there.
+    An endless interval has no last tick, so `finally` demands nothing there.
     """
     return accepts(template, state) or _demand(template)[0] is _finally
 
@@ -326,7 +328,7 @@ Verdict = Literal["violated", "satisfied", "pending"]
 Letter = tuple[bool, bool, bool, bool]
 """Mode, condition, response and stop condition at one tick."""
 BROKEN = -1
-"""Where a broken demand leads: no state, but the end of all."""
+"""Target of a move that breaks a demand: not a state, but the end of the run."""
 
 
 class TooManyStatesError(Exception):
@@ -357,8 +359,8 @@ def explore(template: Template, letters: Iterable[Letter], limit: int = 10**6) -
 
     Args:
         template: what the sentence is.
-        letters: at least one; the expressions of a sentence may share variables, so not every
-            combination of their values need be there.
+        letters: at least one; parts of a sentence may share variables, so not all combinations need
+            occur.
         limit: the most states.
 
     Raises:
@@ -367,7 +369,7 @@ def explore(template: Template, letters: Iterable[Letter], limit: int = 10**6) -
     alphabet = tuple(dict.fromkeys(letters))
     assert alphabet
     start = initial(template)
-    found = {start: 0}
+    numbers = {start: 0}
     states, moves = [start], []
     for state in states:  # grows while it is read: breadth first
         row = []
@@ -376,7 +378,7 @@ def explore(template: Template, letters: Iterable[Letter], limit: int = 10**6) -
             if after is None:
                 row.append(BROKEN)
                 continue
-            index = found.setdefault(after, len(states))
+            index = numbers.setdefault(after, len(states))
             if index == len(states):
                 states.append(after)
             row.append(index)
@@ -421,7 +423,7 @@ def _reversed(edges: Sequence[Sequence[int]]) -> list[list[int]]:
 
 
 def _reachable(edges: Sequence[Sequence[int]], starts: Collection[int]) -> set[int]:
-    """The starts and all that can be reached from them."""
+    """The starts and all states that are reachable from them."""
     seen = set(starts)
     waiting = list(starts)
     while waiting:

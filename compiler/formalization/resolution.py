@@ -1,7 +1,7 @@
-"""What the atoms of a sentence are in the logs: propositions that are declared, or signals.
+"""The atoms of a sentence in the logs: declared propositions, or expressions over signals.
 
-A comparison of signals needs no proposition of its own: it is one, evaluated where it stands. So
-is a signal that stands where a truth value does.
+A comparison of signals needs no declared proposition: it is evaluated directly. So is a signal that
+is used as a truth value.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from fretish.syntax import Sentence
 def in_own_units(
     sentence: Sentence, declarations: Declarations, place: Span
 ) -> Sentence | Diagnostic:
-    """The sentence with the words of its signals as words, and units as those of the signals."""
+    """The sentence with names resolved to signals' values, and with the signals' units."""
     signals = declarations.signals
     mistakes: list[Diagnostic] = []
 
@@ -45,12 +45,12 @@ def in_own_units(
     worded = _worded(sentence, declarations, place)
     if isinstance(worded, Diagnostic):
         return worded
-    own = s.with_expressions(worded, lambda each: e.with_comparisons(each, converted))
+    own = s.with_expressions(worded, lambda expression: e.with_comparisons(expression, converted))
     return mistakes[0] if mistakes else own
 
 
 def _worded(sentence: Sentence, declarations: Declarations, place: Span) -> Sentence | Diagnostic:
-    """The sentence as it is written, with the words of its signals as words."""
+    """The sentence as written, with names resolved to signals' values."""
     signals = _without(declarations.propositions, declarations.signals)
     mistakes: list[Diagnostic] = []
 
@@ -61,14 +61,14 @@ def _worded(sentence: Sentence, declarations: Declarations, place: Span) -> Sent
             return expression
         return worded
 
-    found = s.with_expressions(sentence, rewritten)
-    return mistakes[0] if mistakes else found
+    resolved_sentence = s.with_expressions(sentence, rewritten)
+    return mistakes[0] if mistakes else resolved_sentence
 
 
 def _without(
     propositions: Mapping[str, Proposition], signals: Mapping[str, Signal]
 ) -> Mapping[str, Signal]:
-    """The signals, but for numbers with the name of a proposition: that is the truth value."""
+    """The signals without numeric signals that share their name with a proposition."""
     return {
         name: signal
         for name, signal in signals.items()
@@ -76,10 +76,10 @@ def _without(
     }
 
 
-def resolved(
+def with_signal_atoms(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> FormalizedRequirement | Diagnostic:
-    """The requirement with declarations that hold each of its atoms which signals decide."""
+    """The requirement with declarations extended by its atoms over signals."""
     propositions: dict[str, Proposition] = {}
     mistakes: dict[Part, tuple[Diagnostic, ...]] = {}
     atoms = {*requirement.propositions, *requirement.watched}
@@ -104,13 +104,15 @@ def resolved(
             propositions[name] = Proposition(
                 name, bound, printed(own), aggregate=aggregate, span=span
             )
-    return replace(requirement, declarations=extended(declarations, propositions, mistakes))
+    return replace(
+        requirement, declarations=with_propositions(declarations, propositions, mistakes)
+    )
 
 
 def _aggregate(
     expression: e.Expression, signals: Mapping[str, Signal], place: Span
 ) -> Aggregate | Diagnostic:
-    """How several samples in one tick combine: as the signals that are read declare it."""
+    """The aggregation of several samples in one tick, as the signals declare it."""
     read = [signals[name.id] for name in e.names(expression) if name.id in signals]
     kinds = {signal.aggregate for signal in read} or {Aggregate.LAST}
     if len(kinds) > 1 or (ticks_back(expression) and kinds != {Aggregate.LAST}):
@@ -124,12 +126,12 @@ def _aggregate(
     return kinds.pop()
 
 
-def extended(
+def with_propositions(
     declarations: Declarations,
     propositions: Mapping[str, Proposition],
     mistakes: Mapping[Part, tuple[Diagnostic, ...]],
 ) -> Declarations:
-    """The declarations with propositions that sentences state."""
+    """The declarations extended by propositions of sentences."""
     if not propositions and not mistakes:
         return declarations
     return replace(
@@ -140,9 +142,9 @@ def extended(
 
 
 def _as_written(requirement: FormalizedRequirement, declarations: Declarations) -> Sentence:
-    """The sentence in the units in which it is written, with words, and with what names stand for.
+    """The sentence in its written units, with values of signals, and with definitions inserted.
 
-    It has the same comparisons in the same places as the one in the signals' units.
+    The comparisons are in the same places as in the sentence in the signals' units.
     """
     whole = expanded(requirement.written, requirement.definitions)
     assert isinstance(whole, Sentence), "the requirement has been made of it"
@@ -152,9 +154,9 @@ def _as_written(requirement: FormalizedRequirement, declarations: Declarations) 
 
 
 def candidates(sentence: Sentence) -> Iterator[tuple[str, e.Expression]]:
-    """Comparisons and variables, by the names that formulas give them.
+    """The comparisons and variables, with their names in formulas.
 
-    Those of a sentence in other units come in the same order.
+    A sentence in other units has the same order.
     """
     waiting = list(conditions(sentence))
     while waiting:
@@ -168,11 +170,11 @@ def candidates(sentence: Sentence) -> Iterator[tuple[str, e.Expression]]:
 
 
 def _mistakes(part: e.Expression, declarations: Declarations) -> tuple[Diagnostic, ...]:
-    """Those of the signals that it reads, where all that is not declared is one of them."""
+    """Errors of the signals that the part reads; empty if it also reads an undeclared name."""
     names = [name.id for name in e.names(part)]
     own = [declarations.mistakes.get(("signal", name), ()) for name in names]
-    known = all(name in declarations.signals or own[i] for i, name in enumerate(names))
-    return tuple(dict.fromkeys(chain.from_iterable(own))) if known else ()
+    all_declared = all(name in declarations.signals or own[i] for i, name in enumerate(names))
+    return tuple(dict.fromkeys(chain.from_iterable(own))) if all_declared else ()
 
 
 def _bound(

@@ -1,4 +1,4 @@
-"""The proofs of `fretc verify`: one for each claim, from any engine, as they are written.
+"""The proofs of `fretc verify`: one for each claim, whatever the engine.
 
 An engine answers a claim with an `Outcome`. The `Proof` adds the claim in words, the assumptions
 that the outcome holds under, the engine, and the SHA-256 of each text that was examined.
@@ -30,17 +30,18 @@ class Layer(StrEnum):
     """The object of a claim, from the monitor outwards; the values are those of `--layer`."""
 
     MONITOR = "monitor"
-    """The text of the monitor means what its sentence means."""
+    """The code of the monitor means the same as its sentence."""
     INTERCEPTOR = "interceptor"
-    """The text of the interceptor keeps its contracts."""
+    """The code of the interceptor satisfies its contracts."""
     LOOP = "loop"
-    """Monitor, interceptor and any environment under named assumptions keep the requirement."""
+    """Monitor, interceptor and any environment under named assumptions satisfy the requirement
+    together."""
     BOUNDS = "bounds"
-    """The same at every bound and latency, not only at the declared ones."""
+    """As `loop`, for every bound and latency, not only the declared ones."""
     AGENT = "agent"
-    """The text of the agent has the properties of its property file, in a model of our own."""
+    """The agent has the properties of its property file, in fretc's own model."""
     AJPF = "ajpf"
-    """The same by AJPF's own verdict, which the `run.py` of a bundle has recorded."""
+    """As `agent`, by AJPF's own verdict, which the `run.py` of a bundle recorded."""
 
 
 ALL, PROVERS = ("verify", "proof"), ("frama-c", "dafny", "crosshair")
@@ -52,14 +53,15 @@ class Trace(Record, frozen=True):
     """A run as a table: a row for each tick."""
 
     names: Annotated[
-        tuple[str, ...], about("propositions and whatever else helps to read it: heads of columns")
+        tuple[str, ...],
+        about("headings of the columns: propositions, and other values that help to read the run"),
     ]
     rows: Annotated[
         tuple[tuple[Truth, ...], ...],
-        about("a row for each tick, with a value for each name; null: unknown, or nothing to tell"),
+        about("a row for each tick, with a value for each name; null: unknown or not applicable"),
     ]
     actions: Annotated[
-        tuple[str, ...], about("what happened at each row, in words; or nothing")
+        tuple[str, ...], about("what happened at each row, in words; may be empty")
     ] = ()
     cycle: Annotated[
         Count | None,
@@ -67,7 +69,7 @@ class Trace(Record, frozen=True):
     ] = None
 
     def __post_init__(self) -> None:
-        """Raise ValueError where it is no table."""
+        """Raise ValueError if the rows do not form a table."""
         if any(len(row) != len(self.names) for row in self.rows):
             raise ValueError("Expected a value for each name in each row")
         if len(self.actions) not in (0, len(self.rows)):
@@ -77,7 +79,7 @@ class Trace(Record, frozen=True):
 
 
 class Result(StrEnum):
-    """What is known of a claim; the values are the words of files and of the terminal."""
+    """The result of a claim; the values are the words of files and of the terminal."""
 
     PROVED = "proved"
     """The claim holds, under the assumptions of its proof."""
@@ -86,52 +88,52 @@ class Result(StrEnum):
     VACUOUS = "vacuous"
     """The claim holds trivially: its condition cannot occur."""
     NOT_CHECKED = "not checked"
-    """Nothing is known."""
+    """No result is known."""
     NOT_APPLICABLE = "not applicable"
-    """The claim cannot be made about this requirement, and nobody has asked for it."""
+    """The claim cannot be made about this requirement, and was not requested."""
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What an engine answers to a claim."""
+    """An engine's answer to a claim."""
 
     result: Result
     detail: str
-    """How much was examined; of a vacuous claim, or one that is not checked, why."""
+    """How much was examined; for a vacuous or unchecked claim, the reason."""
     trace: Trace | None = None
-    """The run that refutes the claim; None: the engine gives none."""
+    """The run that refutes the claim; None if the engine gives none."""
 
     def __post_init__(self) -> None:
         assert self.trace is None or self.result is Result.COUNTEREXAMPLE
 
 
 def proved(detail: str) -> Outcome:
-    """The claim holds; the detail says how much was examined."""
+    """The outcome of a claim that holds; the detail says how much was examined."""
     return Outcome(Result.PROVED, detail)
 
 
 def refuted(detail: str, trace: Trace | None = None) -> Outcome:
-    """The claim is wrong, and the run shows it."""
+    """The outcome of a claim that is wrong, with the run that shows it."""
     return Outcome(Result.COUNTEREXAMPLE, detail, trace)
 
 
 def vacuous(reason: str) -> Outcome:
-    """The claim holds trivially, for this reason."""
+    """The outcome of a claim that holds trivially, with the reason."""
     return Outcome(Result.VACUOUS, reason)
 
 
 def not_checked(reason: str) -> Outcome:
-    """Nothing is known, for this reason."""
+    """The outcome of a claim without a result, with the reason."""
     return Outcome(Result.NOT_CHECKED, reason)
 
 
 def not_applicable(reason: str) -> Outcome:
-    """The claim cannot be made about this requirement, for this reason."""
+    """The outcome of a claim that cannot be made about this requirement, with the reason."""
     return Outcome(Result.NOT_APPLICABLE, reason)
 
 
 class Proof(Record, frozen=True):
-    """One claim and its outcome, with all that the outcome rests on."""
+    """One claim and its outcome, with the assumptions and texts on which the outcome rests."""
 
     requirement: Annotated[
         Name, about("its id; or interceptor or agent, where the claim is about those")
@@ -146,7 +148,7 @@ class Proof(Record, frozen=True):
     engine: Annotated[str, about("with its version where it is not fretc itself")]
     artefacts: Annotated[
         dict[str, Sha256],
-        about("SHA-256 of each text that was looked at, by the name of its file"),
+        about("SHA-256 of each text that was examined, by the name of its file"),
     ]
     trace: Trace | UnsetType = UNSET
 
@@ -168,12 +170,12 @@ def proof(
     """The proof of a claim.
 
     Args:
-        requirement: its id; or `interceptor` or `agent`, where the claim is about those.
+        requirement: the id of the requirement; or `interceptor` or `agent` for claims about those.
         layer: the object of the claim.
         claim: one sentence without a full stop.
         outcome: the answer of the engine.
-        engine: its name, with its version where it is not fretc itself.
-        assumptions: each in words that name its number and where it is declared.
+        engine: the name, with its version unless it is fretc.
+        assumptions: each in words, with its number and the place of its declaration.
         artefacts: name of a file → SHA-256 of the text that was examined.
     """
     return Proof(
@@ -190,7 +192,7 @@ def proof(
 
 
 class Document(Record, frozen=True):
-    """What `build/verification.json` holds; the same for the same texts, whenever it is made."""
+    """The content of `build/verification.json`; equal texts give equal files."""
 
     schema: Literal["fretc-verification-1"]
     fretc: Annotated[str, about("version of the tool")]

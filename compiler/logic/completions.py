@@ -1,8 +1,8 @@
-"""What a formula of the past shows in every run that a run with unknown values may have been.
+"""Exact verdicts of a past-time formula over all completions of a run with unknown values.
 
-`compiler.logic.evaluation` calls a formula unknown too often: `p | !p` where p is unknown. This is
-exact. The formula becomes an automaton, and all runs that are still possible are followed at once,
-as the set of the states that they are in.
+`compiler.logic.evaluation` reports unknown too often, such as for `p | !p` with p unknown. This
+module is exact: the formula becomes an automaton, and all possible runs are followed at once, as
+the set of their states.
 """
 
 from __future__ import annotations
@@ -16,44 +16,45 @@ from fretish.reading.recursion import with_recursion_limit
 from monitors.kernel.columns import Column
 
 MOST_STEPS = 1 << 16
-"""Steps of a search: ticks, and moves of a state that has not been moved so before."""
+"""Maximum number of steps of a search: ticks, and new moves of states."""
 
 State = tuple[int, ...]
 _Row = tuple[str, ...]
-"""Of a tick whether it counts, and the code of each proposition."""
+"""For a tick: whether it counts, and the code of each proposition."""
 _Values = list[int]
 _Node = Callable[[_Values, State, list[int]], int]
-"""The value of a part, from the values of parts before it and the memory of the tick before; it
-appends to what is remembered for the next tick."""
+"""Computes the value of a sub-formula from the values of earlier sub-formulas and the memory of the
+tick before, and appends to the memory for the next tick."""
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
-    """When the completions of a run show a formula; no tick: not all do, or none does."""
+class FirstTicks:
+    """The ticks at which completions of a run show a formula; None if not all do, or none does."""
 
     by_some: int | None
-    """The first tick at which a completion shows it."""
+    """The first tick at which a completion shows the formula."""
     by_all: int | None
-    """The first tick by which every completion has shown it, maybe at different ticks."""
+    """The first tick by which every completion has shown the formula, possibly at different
+    ticks."""
 
 
-def shown(
+def first_ticks(
     formula: f.Formula, columns: Mapping[str, Column], ticks: int, counted: int
-) -> Shown | None:
-    """When it is shown; None where more steps are needed than `MOST_STEPS`.
+) -> FirstTicks | None:
+    """The ticks at which completions show the formula; None if that needs more than `MOST_STEPS`.
 
     Args:
-        formula: of the past.
-        columns: one for each atom; each unknown value may be either, whatever the others are.
+        formula: a past-time formula.
+        columns: one for each atom; unknown values are independent of each other.
         ticks: the length of the run.
-        counted: a column: the formula shows nothing at other ticks.
+        counted: a column of the ticks that count; other ticks never show the formula.
     """
     automaton = _Automaton(formula)
-    known = [columns[name] for name in automaton.names]
+    inputs = [columns[name] for name in automaton.names]
     possible, by_some = frozenset([automaton.initial]), None
     moves: dict[tuple[frozenset[State], _Row], tuple[frozenset[State], bool]] = {}
     steps = 0
-    for tick, row in enumerate(_rows(known, counted, ticks)):
+    for tick, row in enumerate(_rows(inputs, counted, ticks)):
         step = possible, row
         if step not in moves:
             steps += len(possible) << row.count("2")
@@ -63,20 +64,20 @@ def shown(
         steps += 1
         if steps > MOST_STEPS:
             return None
-        possible, some = moves[step]
-        if some and by_some is None:
+        possible, is_shown = moves[step]
+        if is_shown and by_some is None:
             by_some = tick
         if not possible:
-            return Shown(by_some, tick)
-    return Shown(by_some, None)
+            return FirstTicks(by_some, tick)
+    return FirstTicks(by_some, None)
 
 
 _VALUES: Mapping[str, tuple[int, ...]] = {"0": (0,), "1": (1,), "2": (0, 1)}
-"""What a proposition may be: false, true, either."""
+"""The possible values of a proposition by its code: false, true, either."""
 
 
 def _rows(columns: Sequence[Column], counted: int, ticks: int) -> Iterator[_Row]:
-    """Of each tick whether it counts, and the code of each proposition."""
+    """For each tick: whether it counts, and the code of each proposition."""
     if not ticks:
         return
     texts = [_bits(counted & (1 << ticks) - 1, ticks)]
@@ -92,45 +93,46 @@ def _bits(column: int, ticks: int) -> str:
 
 
 class _Automaton:
-    """A formula of the past that is stepped tick by tick."""
+    """A past-time formula as an automaton that is stepped tick by tick."""
 
     def __init__(self, formula: f.Formula) -> None:
         self.names = [*f.atoms(formula)]
         self._nodes: list[_Node] = []
         self._first: list[int] = []
         self._moves: dict[tuple[State, _Row], tuple[set[State], bool]] = {}
-        """The sets of a run have most of their states in common."""
+        """Cache of moves: the sets of a run share most of their states."""
         self._places: dict[int, tuple[f.Formula, int]] = {}
-        """By identity: the hash of a tree takes as long as the tree is large."""
+        """The node of each sub-formula, by identity, because hashing a tree takes as long as the
+        tree is large."""
         self._whole = self._place(formula)
 
     @property
     def initial(self) -> State:
-        """Before the first tick."""
+        """The state before the first tick."""
         return tuple(self._first)
 
     def moved(self, states: frozenset[State], row: _Row) -> tuple[frozenset[State], bool]:
-        """The states after a tick of what has not shown the formula; whether something did."""
-        after, some = set[State](), False
+        """The states after a tick in which nothing was shown yet; and whether something was."""
+        after, is_shown = set[State](), False
         for state in states:
             move = state, row
             if move not in self._moves:
                 self._moves[move] = self._moved(state, row)
             following, shows = self._moves[move]
             after |= following
-            some |= shows
-        return frozenset(after), some
+            is_shown |= shows
+        return frozenset(after), is_shown
 
     def _moved(self, state: State, row: _Row) -> tuple[set[State], bool]:
-        """The same of one state."""
-        after, some = set[State](), False
+        """The states after a tick from one state; and whether a completion showed the formula."""
+        after, is_shown = set[State](), False
         for letter in product(*(_VALUES[code] for code in row[1:])):
             following, value = self._step(state, letter)
             if row[0] == "1" and value:
-                some = True
+                is_shown = True
             else:
                 after.add(following)
-        return after, some
+        return after, is_shown
 
     def _step(self, state: State, letter: Sequence[int]) -> tuple[State, int]:
         values, memory = [*letter], list[int]()
@@ -140,7 +142,7 @@ class _Automaton:
 
     @with_recursion_limit
     def _place(self, formula: f.Formula) -> int:
-        """Where the value of a part is; a part that stands in two places is computed once."""
+        """The index of the value of a sub-formula; a shared sub-formula is computed once."""
         if isinstance(formula, f.Atom):
             return self.names.index(formula.name)
         if id(formula) not in self._places:
@@ -191,7 +193,7 @@ class _Automaton:
         return node
 
     def _since(self, left: int | None, right: int, ago: f.Interval) -> _Node:
-        """Bit k of what is remembered: `right` was true k ticks ago, and `left` has been since."""
+        """A node whose memory has bit k set if `right` was true k ticks ago and `left` since."""
         slot, lo, hi = len(self._first), ago.lo, ago.hi
         self._first.append(0)
 

@@ -1,8 +1,9 @@
-"""Boolean functions as binary decision diagrams: BuDDy, as it comes with Spot.
+"""Boolean functions as binary decision diagrams, computed by BuDDy, which is part of Spot.
 
-A variable is a number, and numbers are the order of variables: those that are read together stand
-side by side, or diagrams grow. Functions have the operators `&`, `|`, `^`, `-f` and `f - g`; equal
-functions are equal. All of a process share one table of nodes, and one numbering.
+A variable is a number, and numbers give the order of variables: variables that are read together
+should be adjacent, or diagrams grow. Functions have the operators `&`, `|`, `^`, `-f` and `f - g`;
+equal functions are equal objects. All users in a process share one table of nodes, and one
+numbering.
 
 Source: Bryant, Graph-based algorithms for Boolean function manipulation, IEEE Trans. Computers 35
 (1986); Duret-Lutz et al., From Spot 2.0 to Spot 2.10, CAV 2022.
@@ -16,7 +17,7 @@ from functools import lru_cache
 from typing import Any
 
 Function = Any
-"""A diagram; its library has no types."""
+"""A diagram; the library has no type stubs."""
 
 
 @lru_cache(maxsize=1)
@@ -71,61 +72,61 @@ def _cube(variables: tuple[int, ...]) -> Function:
 
 def point(values: Mapping[int, bool]) -> Function:
     """The conjunction of the literals."""
-    found = true()
+    conjunction = true()
     for number in sorted(values, reverse=True):  # from the bottom up each step is one node
-        found = literal(number, values[number]) & found
-    return found
+        conjunction = literal(number, values[number]) & conjunction
+    return conjunction
 
 
-def choice(condition: Function, then: Function, otherwise: Function) -> Function:
+def ite(condition: Function, then: Function, otherwise: Function) -> Function:
     """`condition ? then : otherwise`."""
     return _buddy().bdd_ite(condition, then, otherwise)
 
 
-def some(function: Function, variables: Function) -> Function:
-    """Whether some values of the variables of a cube make it true."""
+def exists(function: Function, variables: Function) -> Function:
+    """Existential quantification over the variables of a cube."""
     return _buddy().bdd_exist(function, variables)
 
 
-def every(function: Function, variables: Function) -> Function:
-    """Whether all values of the variables of a cube make it true."""
+def forall(function: Function, variables: Function) -> Function:
+    """Universal quantification over the variables of a cube."""
     return _buddy().bdd_forall(function, variables)
 
 
-def some_of_both(left: Function, right: Function, variables: Function) -> Function:
-    """`some(left & right, variables)`, without the conjunction ever being built."""
+def and_exists(left: Function, right: Function, variables: Function) -> Function:
+    """`exists(left & right, variables)`, without the conjunction ever being built."""
     buddy = _buddy()
     return buddy.bdd_appex(left, right, buddy.bddop_and, variables)
 
 
-def every_implied(left: Function, right: Function, variables: Function) -> Function:
-    """`every(left >> right, variables)`, without the implication ever being built."""
+def forall_implies(left: Function, right: Function, variables: Function) -> Function:
+    """`forall(left >> right, variables)`, without the implication ever being built."""
     buddy = _buddy()
     return buddy.bdd_appall(left, right, buddy.bddop_imp, variables)
 
 
-def composed(function: Function, number: int, value: Function) -> Function:
-    """The function with another one in the place of a variable."""
+def compose(function: Function, number: int, value: Function) -> Function:
+    """The function with a variable replaced by another function."""
     return _buddy().bdd_compose(function, value, number)
 
 
-def at(function: Function, known: Function) -> Function:
-    """The function where the literals of a cube hold."""
-    return _buddy().bdd_restrict(function, known)
+def at(function: Function, literals: Function) -> Function:
+    """The function restricted by the literals of a cube."""
+    return _buddy().bdd_restrict(function, literals)
 
 
 def support(function: Function) -> tuple[int, ...]:
-    """The variables that it depends on, in their order."""
+    """The variables on which the function depends, in their order."""
     buddy = _buddy()
-    found, rest = [], buddy.bdd_support(function)
+    variables, rest = [], buddy.bdd_support(function)
     while rest != buddy.bddtrue:
-        found.append(buddy.bdd_var(rest))
+        variables.append(buddy.bdd_var(rest))
         rest = buddy.bdd_high(rest)
-    return tuple(found)
+    return tuple(variables)
 
 
 def witness(function: Function, prefer: bool = False) -> dict[int, bool]:
-    """Values of some variables that make it true; each is `prefer` where it can be.
+    """Values of some variables that make the function true, each `prefer` where possible.
 
     Args:
         function: not false.
@@ -143,29 +144,29 @@ def witness(function: Function, prefer: bool = False) -> dict[int, bool]:
 
 
 def size(function: Function) -> int:
-    """How many nodes it has."""
+    """The number of nodes."""
     return int(_buddy().bdd_nodecount(function))
 
 
 def branches(function: Function) -> tuple[int, Function, Function]:
-    """The topmost variable of a function that is not constant; where it is true, and where not."""
+    """The topmost variable of a non-constant function, and the cofactors for true and for false."""
     buddy = _buddy()
     return buddy.bdd_var(function), buddy.bdd_high(function), buddy.bdd_low(function)
 
 
-def parts(functions: Iterable[Function]) -> tuple[Function, ...]:
-    """Every function within the diagrams that is not constant, each after those that it needs."""
-    found: dict[Function, None] = {}
+def nodes(functions: Iterable[Function]) -> tuple[Function, ...]:
+    """The non-constant nodes of the diagrams, each after its successors."""
+    nodes: dict[Function, None] = {}
     waiting = [*functions]
     while waiting:
         function = waiting[-1]
         needed = []
-        if function not in found and function not in (true(), false()):
+        if function not in nodes and function not in (true(), false()):
             _, high, low = branches(function)
-            needed = [n for n in (high, low) if n not in found and n not in (true(), false())]
+            needed = [n for n in (high, low) if n not in nodes and n not in (true(), false())]
             if not needed:
-                found[function] = None
+                nodes[function] = None
         waiting.extend(needed)
         if not needed:
             waiting.pop()
-    return tuple(found)
+    return tuple(nodes)

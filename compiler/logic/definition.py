@@ -1,6 +1,6 @@
-"""The definition of every operator, written down once, slow and obvious.
+"""The definition of every temporal operator, written plainly: slow, for tests.
 
-Nothing in the product calls this: it is what the fast ways are compared with.
+The product uses it only to check short example traces; tests compare the fast evaluation with it.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def holds(formula: f.Formula, trace: Sequence[Valuation], at: int = 0) -> bool:
         case f.Iff(left, right):
             return holds(left, trace, at) is holds(right, trace, at)
         case f.ProbabilityBound():
-            raise ValueError("one trace does not tell a probability")
+            raise ValueError("one trace does not show a probability")
         case f.Next() | f.Eventually() | f.Globally() | f.Until() | f.Release():
             return _future(formula, trace, at)
         case _:

@@ -1,4 +1,4 @@
-"""Formulas over whole finite traces: one bit a tick, all ticks at once.
+"""Evaluation of formulas over whole finite traces: one bit for each tick, all ticks at once.
 
 A column is an integer whose bit i is a truth value at tick i. Operators of the past are those of
 the generated monitors (`monitors.kernel.columns`); an operator of the future is one of the past on
@@ -20,7 +20,7 @@ def evaluate(formula: f.Formula, columns: Mapping[str, int], ticks: int) -> int:
     """The formula's truth at each tick, as `compiler.logic.definition.holds` defines it.
 
     Args:
-        formula: of the past or the future, on a finite trace; `LAST` is the last tick.
+        formula: past-time or future-time, on a finite trace; `LAST` is the last tick.
         columns: one for each atom.
         ticks: the length of the trace.
 
@@ -32,11 +32,11 @@ def evaluate(formula: f.Formula, columns: Mapping[str, int], ticks: int) -> int:
 
 
 def evaluate_unknown(formula: f.Formula, columns: Mapping[str, c.Column], ticks: int) -> c.Column:
-    """The same where atoms may be unknown: at each tick true, false or unknown.
+    """The formula's value at each tick (true, false or unknown) where atoms may be unknown.
 
-    True and false hold whatever the unknown values were; unknown may be said too often (a formula
-    can be true by two parts that are unknown). Source: Kleene, Introduction to Metamathematics,
-    1952, section 64.
+    True and false hold for all values of the unknown atoms. Unknown is reported too often: a
+    formula can be true by two parts that are unknown. Source: Kleene, Introduction to
+    Metamathematics, 1952, section 64.
     """
     (column,) = evaluate_unknown_all([formula], columns, ticks)
     return column
@@ -46,7 +46,7 @@ def evaluate_unknown(formula: f.Formula, columns: Mapping[str, c.Column], ticks:
 def evaluate_unknown_all(
     formulas: Sequence[f.Formula], columns: Mapping[str, c.Column], ticks: int
 ) -> tuple[c.Column, ...]:
-    """The same of several formulas: a part that they share is computed once."""
+    """As `evaluate_unknown` for several formulas; shared sub-formulas are computed once."""
     every = (1 << ticks) - 1
     sure = _Evaluation({name: column.true for name, column in columns.items()}, ticks, every)
     may = sure
@@ -60,13 +60,13 @@ def evaluate_unknown_all(
 
 
 class _Evaluation:
-    """Of formulas on one trace; a part that stands in two places is computed once.
+    """The evaluation of formulas on one trace; a shared sub-formula is computed once.
 
-    A part is known by its identity: the hash of a tree takes as long as the tree is large, and that
-    of each of its parts in turn as long as its square.
+    A sub-formula is recognized by its identity, because hashing a tree takes as long as the tree is
+    large, and hashing each of its sub-trees the square of that.
 
-    What it tells is what holds for certain, or what may hold: every operator but the negation is
-    monotone, and the negation of the one is that of the other (`dual`).
+    The result is the certain or the possible value: every operator but the negation is monotone,
+    and the negation of one is the negation of the other (`dual`).
     """
 
     def __init__(self, columns: Mapping[str, int], ticks: int, every: int) -> None:
@@ -75,7 +75,7 @@ class _Evaluation:
         self.dual = self
 
     def at_each_tick(self, formula: f.Formula) -> int:
-        """Its column."""
+        """The column of the formula."""
         entry = self._cache.get(id(formula))
         if entry is None:
             entry = self._cache[id(formula)] = (formula, self._column(formula))
@@ -109,7 +109,7 @@ class _Evaluation:
             case f.Iff(left, right):
                 return read(left) & read(right) | negated(left) & negated(right)
             case f.ProbabilityBound():
-                raise ValueError("one trace does not tell a probability")
+                raise ValueError("one trace does not show a probability")
             case f.Next() | f.Eventually() | f.Globally() | f.Until() | f.Release():
                 return self._future(formula)
             case _:

@@ -273,13 +273,13 @@ def _flat(kind: type[And] | type[Or], args: tuple[Formula, ...]) -> list[Formula
 
 
 _FEW, _GLANCE = 8, 3
-"""Above so many formulas only those are compared that have this many levels in common."""
+"""Above `_FEW` formulas, only those with equal operators down to `_GLANCE` levels are compared."""
 
 
 def _glance(f: Formula, levels: int) -> Hashable:
-    """What equal formulas have in common, at a cost that does not grow with them.
+    """A key that equal formulas share, at a cost independent of their size.
 
-    Of an operator that is its first operands, some levels deep.
+    The key has the first operands of an operator, some levels deep.
     """
     if isinstance(f, Atom):
         return f.name

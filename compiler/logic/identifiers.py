@@ -1,4 +1,4 @@
-"""Names for propositions in languages that know plain identifiers only."""
+"""Names for propositions in languages that allow only plain identifiers."""
 
 from __future__ import annotations
 
@@ -36,31 +36,33 @@ def legal_names(
     variants: Callable[[str], Iterator[str]] = numbered,
     brings: Callable[[str], Iterable[str]] = lambda name: (name,),
 ) -> Mapping[str, str]:
-    """A name for each proposition: letters, digits and `_`, none of them twice or reserved.
+    """A unique, unreserved identifier for each proposition, of letters, digits and `_`.
 
-    What is legal as it is keeps its name, whatever the others are: `init_2` stays beside `init`,
-    which becomes `init_3`. Comparisons come last: `x_gt_3` keeps its name, and `(x > 3)` beside it
-    becomes `x_gt_3_2`.
+    A legal name is kept, whatever the others are: `init_2` stays beside `init`, which becomes
+    `init_3`. Comparisons come last: `x_gt_3` keeps its name, and `(x > 3)` beside it becomes
+    `x_gt_3_2`.
 
     Args:
         propositions: names of variables, and texts of comparisons and calls.
-        reserved: what a name may not be; capitals count.
-        prefix: what all names begin with.
-        names: what some propositions are called where that is not reserved.
-        variants: a name, and what it becomes where it is taken.
-        brings: all the identifiers that come with a name; none of them is reserved, or another's.
+        reserved: the reserved names; case matters.
+        prefix: the beginning of all names.
+        names: preferred names of some propositions, used unless reserved.
+        variants: yields a name and its replacements if it is taken.
+        brings: all identifiers that a name introduces; none may be reserved or taken.
     """
     taken = set[str]()
-    found: dict[str, str] = {}
+    legal: dict[str, str] = {}
 
     def is_free(name: str) -> bool:
-        return not any(each in reserved or each in taken for each in brings(name))
+        return not any(identifier in reserved or identifier in taken for identifier in brings(name))
 
     everything = tuple(dict.fromkeys(propositions))
     wanted = {name: prefix + (names or {}).get(name, _plain(name)) for name in everything}
     # Where the reserved names are all that begin so, only another beginning helps.
     wanted = {
-        name: f"v_{text}" if all(each in reserved for each in islice(variants(text), 3)) else text
+        name: f"v_{text}"
+        if all(identifier in reserved for identifier in islice(variants(text), 3))
+        else text
         for name, text in wanted.items()
     }
 
@@ -68,13 +70,13 @@ def legal_names(
         return is_compound(name), wanted[name] != prefix + name or not is_free(wanted[name])
 
     for name in sorted(everything, key=late):
-        found[name] = next(filter(is_free, variants(wanted[name])))
-        taken.update(brings(found[name]))
-    return {name: found[name] for name in everything}
+        legal[name] = next(filter(is_free, variants(wanted[name])))
+        taken.update(brings(legal[name]))
+    return {name: legal[name] for name in everything}
 
 
 def _plain(name: str) -> str:
-    """`x_gt_3` for `(x > 3)`; it begins with a letter."""
+    """`x_gt_3` for `(x > 3)`; the result begins with a letter."""
     if is_compound(name):
         spelt = _SYMBOL.sub(lambda match: _OPERATORS[match[0]], name)
         name = "_".join(re.findall(r"\w+", spelt))

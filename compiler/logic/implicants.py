@@ -1,4 +1,4 @@
-"""Truth tables as a few conjunctions of a few literals.
+"""Covers of truth tables by few, short conjunctions.
 
 Source: Brayton et al., Logic Minimization Algorithms for VLSI Synthesis, 1984, section 4.2
 (expansion of implicants against the off-set).
@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 Vector = tuple[bool, ...]
 """The truth values of some variables, in a given order."""
 Term = Mapping[int, bool]
-"""A conjunction: the value of each variable that it names; empty, it is true."""
+"""A conjunction: the value of each variable in it; the empty one is true."""
 
 
 def cover(certain: Sequence[Vector], excluded: Iterable[Vector]) -> list[Term]:
@@ -34,5 +34,5 @@ def cover(certain: Sequence[Vector], excluded: Iterable[Vector]) -> list[Term]:
 
 
 def matches(term: Term, vector: Vector) -> bool:
-    """Whether the conjunction holds there."""
+    """Whether the conjunction holds at the vector."""
     return all(vector[i] is value for i, value in term.items())

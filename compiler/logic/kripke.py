@@ -1,4 +1,4 @@
-"""Kripke structures, and whether all of their runs keep a temporal formula.
+"""Kripke structures, and model checking of temporal formulas on them.
 
 A state is a number, with the atoms that are true in it. A run begins in the initial state, follows
 edges, and never ends: a state without edges is repeated for ever.
@@ -24,7 +24,7 @@ class Kripke:
     labels: tuple[frozenset[str], ...]
     """Shape (states,): the atoms that are true; every other one is false."""
     edges: tuple[tuple[int, ...], ...]
-    """Shape (states,): the states that may come next; none: the state itself does."""
+    """Shape (states,): the next states; if empty, the state itself."""
     initial: int = 0
 
     def __post_init__(self) -> None:
@@ -32,7 +32,7 @@ class Kripke:
         assert 0 <= self.initial < len(self.labels)
 
     def successors(self, state: int) -> tuple[int, ...]:
-        """What may come next; never empty."""
+        """The next states; never empty."""
         return self.edges[state] or (state,)
 
 
@@ -42,11 +42,11 @@ class Lasso:
 
     prefix: tuple[int, ...]
     cycle: tuple[int, ...]
-    """At least one."""
+    """The repeated states, at least one."""
 
     @property
     def states(self) -> tuple[int, ...]:
-        """Each state of the run once, as it comes; it leads back to `len(prefix)`."""
+        """Each state of the run once, in order; the last one leads back to `len(prefix)`."""
         return self.prefix + self.cycle
 
 
@@ -60,7 +60,7 @@ class TooManyStatesError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Explored(Generic[S]):
-    """A Kripke structure and what its numbers stand for."""
+    """A Kripke structure with the states that its numbers stand for."""
 
     kripke: Kripke
     states: tuple[S, ...]
@@ -77,12 +77,12 @@ def explore(
 
     Args:
         initial: the only initial state.
-        successors: the states that may come next; none: the run stays where it is for ever.
+        successors: the next states; none: the run stays in the state for ever.
         label: the atoms that are true in a state.
-        limit: how many states are allowed.
+        limit: the maximum number of states.
 
     Raises:
-        TooManyStatesError: there are more.
+        TooManyStatesError: there are more states.
     """
     numbers = {initial: 0}
     states = [initial]
@@ -101,12 +101,12 @@ def explore(
 
 
 def check(kripke: Kripke, formula: Formula) -> Lasso | None:
-    """None where every run keeps the formula from its first state on; else a run that does not.
+    """A run that violates the formula; None if every run satisfies it.
 
     Args:
         kripke: the model.
-        formula: future-time; an atom that no state has is false everywhere. Bounds are expanded,
-            so they are to be small.
+        formula: future-time; an atom that no state has is false everywhere. Bounds are expanded, so
+            they should be small.
 
     Raises:
         ValueError: the formula speaks of a last tick or of probabilities.
@@ -116,15 +116,15 @@ def check(kripke: Kripke, formula: Formula) -> Lasso | None:
     """
     if not _is_linear(formula):
         raise ValueError("only a formula about single endless runs can be checked")
-    found = automata.violation(
+    run = automata.violation(
         kripke.labels,
         [kripke.successors(state) for state in range(len(kripke.labels))],
         kripke.initial,
         formula,
     )
-    if found is None:
+    if run is None:
         return None
-    lasso = Lasso(*found)
+    lasso = Lasso(*run)
     assert _is_run(kripke, lasso), "the counterexample is no run of the model"
     return lasso
 
@@ -142,10 +142,10 @@ def _is_run(kripke: Kripke, lasso: Lasso) -> bool:
 
 
 def way_to(kripke: Kripke, goal: Callable[[frozenset[str]], bool]) -> tuple[int, ...] | None:
-    """A shortest way to a state whose atoms the goal accepts.
+    """A shortest path to a state whose atoms the goal accepts.
 
     Returns:
-        The states from the initial one on, that state included; None where no run comes to one.
+        The states from the initial one to that state; None if no run reaches one.
     """
     came: dict[int, int | None] = {kripke.initial: None}
     waiting = [kripke.initial]

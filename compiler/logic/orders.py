@@ -1,10 +1,10 @@
-"""Which comparisons cannot be true together: `x < 2` and `x > 3`, or `x < y`, `y < z` and `z < x`.
+"""Comparisons that cannot be true together: `x < 2` and `x > 3`, or `x < y`, `y < z` and `z < x`.
 
-What is excluded here is excluded of every sample, for proofs leave it out. Monitors and audits
-compute in floating-point numbers, where `x + 1 > x` is false of a large x. So only order is used,
-which rounding keeps: what is computed is a number of its own (`x + y`), the same wherever it is
-written in the same way; and of a constant that is no 32-bit float it is known only that its nearest
-floats lie near it. What cannot be decided so is possible.
+An exclusion holds for every sample, because proofs rely on it. Monitors and audits compute in
+floats, where `x + 1 > x` is false for a large x. So only order is used, which rounding preserves: a
+computed term (`x + y`) is a number of its own, equal wherever it is written in the same way; a
+constant that is not a 32-bit float stands for any number between its nearest floats. A combination
+that cannot be decided in this way counts as possible.
 
 Source: Dechter, Meiri, Pearl, Temporal constraint networks, Artificial Intelligence 49 (1991): a
 set of order constraints has a solution where no circle of them is strict.
@@ -34,15 +34,15 @@ from fretish import expressions as e
 from fretish.reading.recursion import with_recursion_limit
 
 Literal = tuple[str, bool]
-"""A comparison by its name, and whether it is true."""
+"""The name of a comparison, and its truth value."""
 Exclusion = tuple[Literal, ...]
-"""Literals that are never all right at one tick; without one of them, they are at some."""
+"""Literals that are never all true at one tick; every proper subset can be."""
 MOST = 5_000
-"""Valuations of comparisons that speak of one another; the further ones are left possible."""
+"""Limit of valuations of related comparisons; further ones count as possible."""
 MOST_STEPS = 15_000_000
-"""Of a search through them, about two seconds."""
+"""Step limit of a search through valuations, about two seconds."""
 MOST_POINTS = 500
-"""In a search; the comparisons of further ones are left possible."""
+"""Limit of points in a search; comparisons of further points count as possible."""
 _DENIED: Mapping[e.ComparisonOperator, e.ComparisonOperator] = {
     "<": ">=", "<=": ">", ">": "<=", ">=": "<", "=": "!=", "!=": "=",
 }  # fmt: skip
@@ -54,19 +54,19 @@ def exclusions(
     scales: Mapping[str, Fraction],
     words: Mapping[str, Sequence[str]] | None = None,
 ) -> tuple[Exclusion, ...]:
-    """The least sets of literals that no numbers make true; each other valuation may occur.
+    """The minimal sets of literals that no numbers make true; each other valuation may occur.
 
     Args:
-        comparisons: by their names; a bare number is in the unit of what it is compared with.
-        scales: of the signals, from their units to base units; a name without one is a number.
-        words: what each enumerated signal may be.
+        comparisons: by their names; a number without a unit has the unit of the term beside it.
+        scales: factors from the signals' units to base units; a name without one has no unit.
+        words: the values of each enumerated signal.
     """
-    read = {name: relation_of(each, scales) for name, each in comparisons.items()}
-    found: list[Exclusion] = []
+    read = {name: relation_of(comparison, scales) for name, comparison in comparisons.items()}
+    excluded: list[Exclusion] = []
     for names in _groups(read):
         share = Fraction(len(names), len(read))
-        found += _of_group({name: read[name] for name in names}, words or {}, share)
-    return tuple(found)
+        excluded += _of_group({name: read[name] for name in names}, words or {}, share)
+    return tuple(excluded)
 
 
 Values = TypeVar("Values", bound="tuple[bool | None, ...]")
@@ -77,15 +77,15 @@ def only_possible(
 ) -> tuple[Values, ...]:
     """The valuations of atoms that are not excluded, in their order; all, if none were left."""
     places = {name: place for place, name in enumerate(atoms)}
-    known = [
-        [(places[name], value) for name, value in each]
-        for each in excluded
-        if all(name in places for name, _ in each)
+    relevant = [
+        [(places[name], value) for name, value in exclusion]
+        for exclusion in excluded
+        if all(name in places for name, _ in exclusion)
     ]
     left = tuple(
         values
         for values in valuations
-        if not any(all(values[i] is value for i, value in each) for each in known)
+        if not any(all(values[i] is value for i, value in exclusion) for exclusion in relevant)
     )
     return left or tuple(valuations)
 
@@ -94,7 +94,7 @@ def only_possible(
 
 
 def _groups(relations: Mapping[str, Relation]) -> Sequence[Sequence[str]]:
-    """Comparisons that speak of one another: of the same terms, or in a row of them."""
+    """Groups of related comparisons: those that share terms, directly or through others."""
     heads: dict[Term, Term] = {}
 
     def head(term: Term) -> Term:
@@ -118,29 +118,34 @@ def _groups(relations: Mapping[str, Relation]) -> Sequence[Sequence[str]]:
 def _of_group(
     relations: Mapping[str, Relation], words: Mapping[str, Sequence[str]], share: Fraction
 ) -> Sequence[Exclusion]:
-    """The exclusions of comparisons that speak of one another, with a share of the steps."""
+    """The exclusions of related comparisons, found with a share of the step limit."""
     if ranges.is_of_one_term(relations):
         return ranges.exclusions(relations, words, share)
     search = _Search(relations, words, int(MOST_STEPS * share))
-    found = search.run()
+    minimal = search.run()
     if not search.is_cut:
-        return found
-    known = {frozenset(each) for each in found}
+        return minimal
+    literal_sets = {frozenset(exclusion) for exclusion in minimal}
     more = (
-        each
-        for some in _by_term(relations)
-        for each in ranges.exclusions(some, words, share * Fraction(len(some), len(relations)))
+        exclusion
+        for of_term in _by_term(relations)
+        for exclusion in ranges.exclusions(
+            of_term, words, share * Fraction(len(of_term), len(relations))
+        )
     )
-    return [*found, *(each for each in more if frozenset(each) not in known)]
+    return [
+        *minimal,
+        *(exclusion for exclusion in more if frozenset(exclusion) not in literal_sets),
+    ]
 
 
 def _by_term(relations: Mapping[str, Relation]) -> Iterator[Mapping[str, Relation]]:
-    """The comparisons of each term with constants or words, which can be looked at alone."""
-    found: dict[Point, dict[str, Relation]] = {}
+    """The comparisons of each term with constants or enumeration values, decided alone."""
+    groups: dict[Point, dict[str, Relation]] = {}
     for name, relation in relations.items():
         if isinstance(relation.right, Constant) or is_word(relation.right):
-            found.setdefault(relation.left, {})[name] = relation
-    return (some for some in found.values() if ranges.is_of_one_term(some))
+            groups.setdefault(relation.left, {})[name] = relation
+    return (group for group in groups.values() if ranges.is_of_one_term(group))
 
 
 # Order ----------------------------------------------------------------------------------------
@@ -148,27 +153,27 @@ def _by_term(relations: Mapping[str, Relation]) -> Iterator[Mapping[str, Relatio
 
 @dataclass(slots=True)
 class _Order:
-    """What is known of the order of points, with all that follows.
+    """Known order relations of points, closed under consequences.
 
-    Bit j of an entry i says something of the points i and j.
+    Bit j of entry i is a relation of the points i and j.
     """
 
     at_most: list[int]
-    """Point i is at most point j."""
+    """Bit j of entry i: point i is at most point j."""
     less: list[int]
     apart: list[int]
-    """Said of j and i, too."""
+    """Bit j of entry i: the points differ; symmetric."""
     choices: Sequence[tuple[int, int]] = ()
     """Points that are equal to one of several others."""
     has_circle: bool = False
-    """A point is less than itself."""
+    """Whether a point is less than itself."""
 
     def copy(self) -> _Order:
-        """One of its own."""
+        """An independent copy."""
         return replace(self, at_most=[*self.at_most], less=[*self.less], apart=[*self.apart])
 
     def add(self, i: int, j: int, *, strict: bool) -> None:
-        """Point i is at most point j, or less."""
+        """Add that point i is at most point j, or less if `strict`."""
         if (self.less if strict else self.at_most)[i] >> j & 1:
             return
         beyond, far = self.at_most[j], self.less[j]
@@ -179,7 +184,7 @@ class _Order:
                 self.has_circle |= bool(self.less[k] >> k & 1)
 
     def separate(self, i: int, j: int) -> None:
-        """The points are not equal."""
+        """Add that the points differ."""
         self.apart[i] |= 1 << j
         self.apart[j] |= 1 << i
 
@@ -194,7 +199,7 @@ class _Order:
                 if apart
                 for j in _places(apart & self.at_most[i])
             )
-            or any(not each & ~self.apart[i] for i, each in self.choices)
+            or any(not candidates & ~self.apart[i] for i, candidates in self.choices)
         )
 
 
@@ -205,7 +210,7 @@ def _places(bits: int) -> Iterator[int]:
 
 
 class _Search:
-    """The valuations of a group, one comparison after the other, as long as they are possible."""
+    """The search through possible valuations of a group, one comparison after the other."""
 
     def __init__(
         self, relations: Mapping[str, Relation], words: Mapping[str, Sequence[str]], steps: int
@@ -224,7 +229,7 @@ class _Search:
 
     @property
     def is_cut(self) -> bool:
-        """Whether something was left possible that was not tried."""
+        """Whether some valuations were not tried, and count as possible."""
         return self._left <= 0 or self._steps <= 0 or len(self._names) < len(self._relations)
 
     def run(self) -> Sequence[Exclusion]:
@@ -242,7 +247,7 @@ class _Search:
             if self._left <= 0 or self._steps <= 0:
                 return
             literal = (name, value)
-            if any(not each & ~bits for each in self._by_last.get(literal, ())):
+            if any(not exclusion_bits & ~bits for exclusion_bits in self._by_last.get(literal, ())):
                 continue
             after = order.copy()
             self._add(after, literal)
@@ -253,7 +258,7 @@ class _Search:
                 self._go((*chosen, literal), bits | 1 << 2 * len(chosen) + value, after)
 
     def _exclude(self, chosen: tuple[Literal, ...], last: Literal) -> None:
-        """Add what the literal needs of those before it, which are possible without it."""
+        """Add the minimal exclusion of the literal and some of those chosen before it."""
         needed: list[int] = []
         fixed = self._known.copy()
         self._add(fixed, last)
@@ -290,7 +295,7 @@ class _Search:
                     order.separate(i, j)
 
     def _order(self) -> _Order:
-        """What holds of the points whatever is measured."""
+        """The order of the points that holds for all measurements."""
         single = [1 << place for place in range(len(self._places))]
         order = _Order([*single], [0] * len(single), [0] * len(single))
         self._add_constants(order)
@@ -306,9 +311,9 @@ class _Search:
         return order
 
     def _add_constants(self, order: _Order) -> None:
-        """The order of the constants, from the last one down, with what follows."""
+        """Add the order of the constants, from the last one down, with its consequences."""
         row = [point for point in self._places if isinstance(point, Constant)]
-        row.sort(key=lambda each: each.value, reverse=True)
+        row.sort(key=lambda constant: constant.value, reverse=True)
         above: list[tuple[Constant, Fraction, int]] = []
         for less in row:
             i, (_, end) = self._places[less], less.ends
@@ -322,7 +327,7 @@ class _Search:
             above.append((less, less.ends[0], i))
 
     def _choices(self) -> Iterator[tuple[int, int]]:
-        """Enumerated signals with all their words, where all are spoken of."""
+        """Enumerated signals whose values all appear as points."""
         for point, place in self._places.items():
             match point:
                 case Term(e.Name(id)) if id in self._words:
@@ -345,7 +350,7 @@ def _points(relations: Iterable[Relation]) -> Iterator[Point]:
 def _consequences(
     left: Point, op: e.ComparisonOperator, right: Point
 ) -> Iterator[tuple[Point, e.ComparisonOperator, Point]]:
-    """The relation; and `-x > -2` beside `x < 2`."""
+    """The relation and its consequences, such as `-x > -2` for `x < 2`."""
     yield left, op, right
     if isinstance(left, Term) and isinstance(right, Constant):
         yield negative(left), MIRRORED[op], Constant(-right.value, right.beside)

@@ -1,4 +1,4 @@
-"""Formula → text, in the spelling of each tool that reads it."""
+"""Formulas as text, in the notation of each tool."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from compiler.logic.spelling.reserved_words import SPOT as SPOT_WORDS
 from fretish.reading.recursion import with_recursion_limit
 
 _ATOMIC, _UNARY, _BINARY, _AND, _OR, _XOR, _IMPLIES, _IFF = range(8)
-"""How loose an operator binds."""
+"""Precedence ranks of operators: a higher rank binds looser."""
 
 _MANGLED = {".": "_DOT_", "%": "_PRC_", " ": "_SPC_", '"': "_DQT_", "[": "_LSQ_", "]": "_RSQ_"}
 
@@ -39,13 +39,13 @@ def is_compound(name: str) -> bool:
 
 
 def _plain_atom(name: str) -> str:
-    """In quotes, as in a sentence, where it would be an operator: `G` is no name of a formula."""
+    """The atom, in quotes if it would read as an operator, such as `G`."""
     text = name if is_compound(name) else identifier(name)
     return f'"{text}"' if text in NOTATION else text
 
 
 def _escaped(words: Container[str]) -> Callable[[str], str]:
-    """As FRET writes names in quotes, with `_DQT_` for these: in a text without quotes."""
+    """A speller that writes reserved words as FRET writes quoted names, with `_DQT_`."""
 
     def atom(name: str) -> str:
         text = name if is_compound(name) else identifier(name)
@@ -56,14 +56,14 @@ def _escaped(words: Container[str]) -> Callable[[str], str]:
 
 _DQT = "_DQT_{}_DQT_"
 _WORD = re.compile(r'"[^"\n]*"|[A-Za-z_][A-Za-z0-9_.%]*')
-"""In the text of an atom: a word of a signal, or a name."""
+"""A string or a name within the text of an atom."""
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 def _quoted_atom(name: str) -> str:
-    """Spot's: a comparison is one proposition in double quotes, which escapes those within it.
+    """The atom for Spot: a comparison is one proposition, in double quotes.
 
-    So is a name that begins like one of Spot's operators: `Fault` would be `F ault`.
+    A name that begins like one of Spot's operators is quoted, too: `Fault` would be `F ault`.
     """
     text = name if is_compound(name) else identifier(name)
     if text not in SPOT_WORDS and _IDENTIFIER.fullmatch(text):
@@ -87,7 +87,7 @@ _SQUARE = _bounds("[", ",", "]")
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """How one tool spells formulas."""
+    """The notation of formulas of one tool."""
 
     name: str
     constants: tuple[str, str] = ("FALSE", "TRUE")
@@ -99,13 +99,13 @@ class Dialect:
     implies: str = " -> "
     iff: str = " <-> "
     operators: Mapping[str, str] = field(default_factory=dict)
-    """Temporal operators that are spelt in another way than by their letter."""
+    """Temporal operators that are not written by their letter."""
     bounds: Callable[[f.Interval], str] = _SQUARE
     atom: Callable[[str], str] = _plain_atom
     gap: str = " "
-    """Between a temporal operator and an operand that does not begin with a parenthesis."""
+    """The text between a temporal operator and an operand without a parenthesis."""
     full: bool = False
-    """Every operator in parentheses of its own."""
+    """Whether every operator is in parentheses."""
     has_past: bool = True
     has_bounded_since: bool = True
 
@@ -173,7 +173,7 @@ _FULL_PAST = Dialect(
 
 
 def readable(formula: f.Formula) -> str:
-    """With as few parentheses as may be: `G(too_close -> F stopped)`."""
+    """The formula with as few parentheses as possible: `G(too_close -> F stopped)`."""
     return text(formula, PLAIN)
 
 
@@ -193,16 +193,15 @@ def past(formula: f.Formula) -> str:
 
 @with_recursion_limit
 def pctl(formula: f.Formula) -> str:
-    """Fully parenthesized PCTL*, in the operators that PRISM and Storm read within a path.
+    """Fully parenthesized PCTL*, in operators that PRISM and Storm allow in path formulas.
 
-    They have neither implication nor release there: `a -> b` is `!a | b`, and `a R b` is
-    `!(!a U !b)`.
+    Implication and release are not among them: `a -> b` is `!a | b`, and `a R b` is `!(!a U !b)`.
     """
     return text(for_prism(formula), PCTL)
 
 
 def for_prism(formula: f.Formula) -> f.Formula:
-    """The formula by operators that PRISM and Storm read within a path."""
+    """The formula in operators that PRISM and Storm allow in path formulas."""
     rebuilt = f.rebuild(formula, for_prism)
     match rebuilt:
         case f.Implies(left, right):
@@ -219,7 +218,7 @@ def for_prism(formula: f.Formula) -> f.Formula:
 
 @with_recursion_limit
 def text(formula: f.Formula, dialect: Dialect) -> str:
-    """The formula in the spelling of a dialect, with as few parentheses as it allows."""
+    """The formula in a dialect, with as few parentheses as it allows."""
     plain = formula if dialect.has_bounded_since else without_bounded_since(formula)
     return _Printer(dialect).at(plain, _IFF)
 
@@ -241,13 +240,13 @@ def without_bounded_since(formula: f.Formula) -> f.Formula:
 
 
 class _Printer:
-    """One dialect's text, with the rank of the operator at its root."""
+    """Prints formulas in one dialect, with the rank of the root operator."""
 
     def __init__(self, dialect: Dialect) -> None:
         self.dialect = dialect
 
     def at(self, formula: f.Formula, loosest: int) -> str:
-        """The text, in parentheses where its operator binds looser than its place allows."""
+        """The text, in parentheses if its operator binds looser than `loosest`."""
         rank, text = self.ranked(formula)
         if self.dialect.full and rank != _ATOMIC:
             return f"({text})"

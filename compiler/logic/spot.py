@@ -1,8 +1,8 @@
-"""Spot: the only module that imports it, and only when it is called.
+"""Interface to Spot; the only module that imports it, on the first call.
 
-An atom's name may be any text, so Spot never reads one: it gets names that are made here.
-Bounds are small here: Spot expands them into chains of X, so nothing on the way from a sentence
-to its files may depend on this room.
+An atom's name may be any text, so Spot gets names that are made here. Bounds must be small, because
+Spot expands them into chains of X. So no path from a sentence to its generated files may depend on
+this module.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from fretish.reading.recursion import with_recursion_limit
 def equivalent(left: Formula, right: Formula) -> bool:
     """Whether two future-time formulas hold on the same infinite traces (and `LAST` is free)."""
     names = _names(*atoms(left), *atoms(right))
-    return same_language(*(printing.future(_renamed(each, names)) for each in (left, right)))
+    return same_language(*(printing.future(_renamed(formula, names)) for formula in (left, right)))
 
 
 def same_language(left: str, right: str) -> bool:
@@ -48,12 +48,12 @@ def same_language(left: str, right: str) -> bool:
 def holds_on(
     formula: Formula, prefix: Sequence[Mapping[str, bool]], loop: Sequence[Mapping[str, bool]]
 ) -> bool:
-    """Whether an endless trace satisfies a future-time formula, as Spot's automaton tells it.
+    """Whether an endless trace satisfies a future-time formula, according to Spot's automaton.
 
     Args:
-        formula: its bounds are small, for Spot expands them; it has no `LAST`.
+        formula: with small bounds, which Spot expands; without `LAST`.
         prefix: the values of its atoms at the first ticks.
-        loop: at least one tick, which come again and again.
+        loop: the ticks that repeat for ever, at least one.
 
     Source: Duret-Lutz et al., CAV 2022 (`twa_word`).
     """
@@ -61,7 +61,10 @@ def holds_on(
     names = _names(*atoms(formula), *(name for values in (*prefix, *loop) for name in values))
 
     def letters(ticks: Sequence[Mapping[str, bool]]) -> list[str]:
-        return [_letter({names[name]: value for name, value in each.items()}) for each in ticks]
+        return [
+            _letter({names[name]: value for name, value in valuation.items()})
+            for valuation in ticks
+        ]
 
     parts = [*letters(prefix), f"cycle{{{'; '.join(letters(loop))}}}"]
     word = spot.parse_word("; ".join(parts), spot.make_bdd_dict())
@@ -76,16 +79,16 @@ def _letter(values: Mapping[str, bool]) -> str:
 
 
 _PROVABLE_BOUND = 12
-"""A longer bound is not given to Spot, which expands it into a chain of X."""
+"""Longer bounds are not given to Spot, which expands them into chains of X."""
 
 
 @with_recursion_limit
 def simplified(formula: Formula) -> str | None:
-    """A shorter text in Spot's syntax that says the same on infinite traces, if there is one.
+    """A shorter, equivalent text in Spot's syntax on infinite traces; None if there is none.
 
-    Bounded operators are opaque while Spot rewrites, so that bounds of any size stay one operator;
-    what is true of the formula around them is true whatever they mean. Spot then proves the result
-    equivalent through automata, around the opaque operators, and outright where bounds are small.
+    Bounded operators are opaque while Spot rewrites, so that bounds of any size stay one operator.
+    Spot then proves the result equivalent through automata: with the opaque operators, and also
+    without them if bounds are small.
 
     Source: Duret-Lutz et al., CAV 2022, and Spot's documentation of tl_simplifier.
     """
@@ -103,20 +106,20 @@ def simplified(formula: Formula) -> str | None:
         text = text.replace(name, f"({printing.text(bounded, printing.SPOT)})")
     if longest_bound(formula) <= _PROVABLE_BOUND:
         assert same_language(text, printing.future(renamed)), "simplification is not equivalent"
-    own = {name: printing.text(Atom(each), printing.SPOT) for each, name in names.items()}
+    own = {name: printing.text(Atom(atom_name), printing.SPOT) for atom_name, name in names.items()}
     text = _NAME.sub(lambda match: own[match[0]], text)
     exact = printing.text(formula, printing.SPOT)
     return text if size < _length(formula) and len(text) < len(exact) else None
 
 
 def _length(formula: Formula) -> int:
-    """How many operators and propositions, as Spot counts them: `a & b & c` has five."""
+    """The number of operators and propositions as Spot counts them: `a & b & c` has five."""
     parts = children(formula)
     return max(1, len(parts) - 1) + sum(map(_length, parts))
 
 
 def _hide(formula: Formula, opaque: dict[str, Formula]) -> Formula:
-    """The formula with a fresh proposition for each bounded operator, which `opaque` remembers."""
+    """The formula with a fresh proposition for each bounded operator, recorded in `opaque`."""
     match formula:
         case Eventually(_, Interval(_, int())) | Globally(_, Interval(_, int())):
             inner = rebuild(formula, lambda part: _hide(part, opaque))
@@ -135,16 +138,16 @@ def violation(
     initial: int,
     formula: Formula,
 ) -> tuple[tuple[int, ...], tuple[int, ...]] | None:
-    """A run of a graph that does not keep the formula; None where every run keeps it.
+    """A run of a graph that violates the formula; None if every run satisfies it.
 
     Args:
         labels: shape (states,), the atoms that are true in each.
-        edges: shape (states,), at least one state that comes next.
-        initial: where runs begin.
+        edges: shape (states,), the next states of each, at least one.
+        initial: the initial state.
         formula: future-time, on infinite runs.
 
     Returns:
-        The states of a prefix, which may be empty, and those of a cycle, which is not.
+        The states of a prefix, possibly empty, and those of a non-empty cycle.
 
     Source: Duret-Lutz et al., CAV 2022: product with the automaton of the negation on the fly.
     """
@@ -166,7 +169,7 @@ def violation(
 
 
 def _names(*own: str) -> dict[str, str]:
-    """A plain name for each atom's name; Spot sorts by names, so they are in the same order."""
+    """A plain name for each atom, in the same alphabetical order, since Spot sorts by name."""
     return {name: f"p{i}" for i, name in enumerate(sorted(set(own)))}
 
 
@@ -185,7 +188,7 @@ def _graph(
     edges: Sequence[Sequence[int]],
     names: dict[str, str],
 ) -> Any:
-    """Spot's Kripke graph, with the numbers of its states as they are here."""
+    """Spot's Kripke graph with the same numbers of states."""
     valuation = _valuations(graph, names)
     for number, label in enumerate(labels):
         state = graph.new_state(valuation(label))
@@ -214,7 +217,7 @@ def _valuations(graph: Any, names: dict[str, str]) -> Callable[[frozenset[str]],
 
 
 def version() -> str:
-    """Of Spot."""
+    """The version of Spot."""
     return str(_spot().version())
 
 

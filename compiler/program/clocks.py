@@ -1,7 +1,8 @@
-"""Counters of a program that are as old as an open demand, so that none of its own is needed.
+"""Existing counters of a program that also measure the age of an open demand.
 
-A demand is open while a counter of the oldest witness is not negative. Where a witness never comes
-without the guard, the counter starts when the demand opens, and is not set back while it is open.
+Such a counter saves a cell for the age of a demand. A demand is open while a counter of the oldest
+witness is not negative. If a witness never comes without the guard, the counter starts when the
+demand opens, and is not reset while it is open.
 """
 
 from __future__ import annotations
@@ -16,24 +17,26 @@ from compiler.program.values import Age, And, Comparison, Value, Variable
 
 
 def clocks(program: Program) -> Mapping[str, str]:
-    """The counter of the open demand of requirements, by their ids; some have none."""
+    """The counter of the open demand by requirement id, where there is one."""
     blocks = {block.name: block for block in program.blocks}
-    found = ((each.id, _clock(each, blocks)) for each in program.requirements)
-    return {id: counter for id, counter in found if counter is not None}
+    candidates = (
+        (requirement.id, _clock(requirement, blocks)) for requirement in program.requirements
+    )
+    return {id: counter for id, counter in candidates if counter is not None}
 
 
 def lengthened(program: Program, clocks: Mapping[str, str]) -> Program:
-    """The program whose counters tell a deadline's tick from later ones.
+    """The program with counters that distinguish the deadline's tick from later ones.
 
     Args:
-        program: whose comparisons all hold of a counter's largest value as of any above it.
-        clocks: the counter of requirements, by their ids.
+        program: its comparisons do not distinguish a counter's largest value from larger ones.
+        clocks: requirement id → counter.
     """
     most: dict[str, int] = {}
-    for each in program.requirements:
-        if each.id in clocks and each.horizon is not None:
-            counter = clocks[each.id]
-            most[counter] = max(most.get(counter, 0), each.horizon + 1)
+    for requirement in program.requirements:
+        if requirement.id in clocks and requirement.horizon is not None:
+            counter = clocks[requirement.id]
+            most[counter] = max(most.get(counter, 0), requirement.horizon + 1)
     cells = tuple(
         replace(cell, most=max(cell.most, most[cell.name]))
         if isinstance(cell, Counter) and cell.name in most
@@ -41,7 +44,8 @@ def lengthened(program: Program, clocks: Mapping[str, str]) -> Program:
         for cell in program.cells
     )
     blocks = tuple(
-        _longer(each, most[each.name]) if each.name in most else each for each in program.blocks
+        _longer(block, most[block.name]) if block.name in most else block
+        for block in program.blocks
     )
     return replace(program, cells=cells, blocks=blocks)
 
@@ -58,7 +62,7 @@ def _clock(requirement: Requirement, blocks: Mapping[str, Block]) -> str | None:
 
 
 def _starts_once(block: Block) -> bool:
-    """Whether the counter grows until it is -1, and then starts from 0."""
+    """Whether the counter grows until it is -1, and then restarts from 0."""
     there = Age(block.name, Comparison.AT_LEAST, 0)
     match block.instructions:
         case (Choose(((kept, Advance()), (witness, Count(_, 0))), Count(_, -1)),):
@@ -74,15 +78,15 @@ def _conjuncts(value: Value) -> frozenset[Value]:
 
 
 def _longer(block: Block, most: int) -> Block:
-    """The block whose counter grows to `most`, or further if it did."""
-    made = list[Instruction]()
+    """The block with its counter's maximum raised to `most`."""
+    instructions = list[Instruction]()
     for instruction in block.instructions:
         assert isinstance(instruction, Choose)
         branches = tuple(
             (condition, _grown(then, most)) for condition, then in instruction.branches
         )
-        made.append(Choose(branches, _grown(instruction.otherwise, most)))
-    return replace(block, instructions=tuple(made))
+        instructions.append(Choose(branches, _grown(instruction.otherwise, most)))
+    return replace(block, instructions=tuple(instructions))
 
 
 def _grown(instruction: Count | Advance, most: int) -> Count | Advance:

@@ -1,4 +1,4 @@
-"""The same as a block's instructions, over whole traces: one operator over columns."""
+"""A block's operator over whole traces: one operation over columns."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class AtFirst:
 
 
 @dataclass(frozen=True, slots=True)
-class Before:
+class PreviousColumn:
     """The value of the tick before; at tick 0, `weak`."""
 
     value: Value
@@ -25,13 +25,13 @@ class Since:
     """`guard S[lo,hi] witness` in ticks; `dual`: the negation of that of the negated values."""
 
     guard: Value | None
-    """None: nothing has to hold since the witness."""
+    """None: no guard."""
     witness: Value
     lo: int
     hi: int | None
     dual: bool
     unbounded: str | None = None
-    """The name of the same without bounds, where that is computed before."""
+    """The name of the column without bounds, if that is computed before."""
 
 
-Column = Value | AtFirst | Before | Since
+Column = Value | AtFirst | PreviousColumn | Since

@@ -1,4 +1,4 @@
-"""What a program does at a tick: instructions that set variables and move counters."""
+"""The instructions of a program for one tick: they set variables and move counters."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from compiler.program.values import Value
 
 @dataclass(frozen=True, slots=True)
 class Assign:
-    """A truth value gets its name; it is a cell's, or lives for this tick."""
+    """Assign a truth value to a cell, or to a variable of this tick."""
 
     name: str
     value: Value
@@ -17,7 +17,7 @@ class Assign:
 
 @dataclass(frozen=True, slots=True)
 class Shift:
-    """The variable gets what the cell kept, and the cell the value of this tick."""
+    """The variable gets the cell's old value, and the cell the value of this tick."""
 
     name: str
     cell: str
@@ -42,7 +42,7 @@ class Advance:
 
 @dataclass(frozen=True, slots=True)
 class Slide:
-    """The window takes `guard` and `witness` of this tick; the variable says what it holds.
+    """Push `guard` and `witness` of this tick into the window; the variable gets its value.
 
     `negated`: the variable gets the negation.
     """

@@ -1,6 +1,6 @@
-"""What a program does, tick by tick, straight from its definition.
+"""An interpreter of programs, straight from the definition of instructions.
 
-Nothing in the product calls this: it is what the texts in each language are compared with.
+The product does not call this module: tests compare the generated code of each language with it.
 """
 
 from __future__ import annotations
@@ -38,21 +38,21 @@ Pairs = tuple[tuple[bool, bool], ...]
 
 @dataclass(frozen=True)
 class State:
-    """One rail after a tick."""
+    """The state of the certain or of the possible values after a tick."""
 
     tick: int
-    """-1 before the first."""
+    """The index of the tick; -1 before the first."""
     values: Mapping[str, bool | int]
-    """Of flags, counters and variables."""
+    """The values of flags, counters and variables."""
     windows: Mapping[str, Pairs]
     """The guard and the witness at the ticks inside of each window, the youngest first."""
     signals: tuple[Signals[bool], ...]
-    """Of each requirement; none before the first tick."""
+    """The signals of each requirement; none before the first tick."""
     marks: tuple[Marks, ...]
 
 
 def initial(program: Program) -> State:
-    """Before the first tick."""
+    """The state before the first tick."""
     values: dict[str, bool | int] = {}
     windows: dict[str, Pairs] = {}
     for cell in program.cells:
@@ -67,20 +67,22 @@ def initial(program: Program) -> State:
 
 
 def step(program: Program, state: State, row: Mapping[str, Truth], doubt: bool = False) -> State:
-    """One tick later.
+    """The state one tick later.
 
     Args:
-        program: of which the state is.
-        state: after the tick before.
-        row: the truth of each proposition; None: it is unknown.
-        doubt: what an unknown literal counts as.
+        program: the program.
+        state: the state after the tick before.
+        row: the truth of each proposition; None: unknown.
+        doubt: the value that an unknown literal counts as.
     """
     sizes = {cell.name: cell for cell in program.cells if isinstance(cell, Window)}
     tick = _Tick(row, doubt, sizes, dict(state.values), dict(state.windows))
     for block in program.blocks:
         for instruction in block.instructions:
             tick.do(instruction)
-    signals = tuple(Signals(*map(tick.value, each.signals)) for each in program.requirements)
+    signals = tuple(
+        Signals(*map(tick.value, requirement.signals)) for requirement in program.requirements
+    )
     now = state.tick + 1
     marks = map(_marked, program.requirements, state.marks, signals, [now] * len(signals))
     return State(now, tick.values, tick.windows, signals, tuple(marks))
@@ -100,7 +102,7 @@ def _marked(requirement: Requirement, before: Marks, now: Signals[bool], tick: i
 
 @dataclass(frozen=True)
 class _Tick:
-    """One tick of one rail."""
+    """One tick of the certain or of the possible values."""
 
     row: Mapping[str, Truth]
     doubt: bool

@@ -1,4 +1,4 @@
-"""Past-time formulas → the program of a monitor.
+"""Compilation of past-time formulas into the program of a monitor.
 
 Negations are pushed down to the propositions, so every value is monotone in the literals. Where a
 negation meets a temporal operator, its dual is computed.
@@ -13,7 +13,7 @@ from compiler.formalization.past import MonitorSpec
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.program import columns
-from compiler.program.columns import AtFirst, Before, Column
+from compiler.program.columns import AtFirst, Column, PreviousColumn
 from compiler.program.instructions import Advance, Assign, Choose, Count, Instruction, Shift, Slide
 from compiler.program.program import Block, Cell, Counter, Flag, Program, Requirement, Window
 from compiler.program.values import (
@@ -25,9 +25,9 @@ from compiler.program.values import (
     Literal,
     Value,
     Variable,
-    both,
-    either,
+    and_,
     not_,
+    or_,
 )
 from fretish.reading.recursion import with_recursion_limit
 from monitors.kernel.verdicts import Signals
@@ -35,11 +35,11 @@ from monitors.kernel.verdicts import Signals
 
 @with_recursion_limit
 def program(watches: Mapping[str, MonitorSpec], taken: Collection[str] = ()) -> Program:
-    """Compile the signals of watches; a sub-formula that comes twice is computed once.
+    """The program for the signals of monitor specifications; shared sub-formulas are computed once.
 
     Args:
-        watches: of each requirement's id; past-time formulas only.
-        taken: names that no cell and no variable may have.
+        watches: requirement id → monitor specification, with past-time formulas only.
+        taken: reserved names for cells and variables.
     """
     writer = _Writer(frozenset(taken))
     requirements = tuple(
@@ -56,7 +56,7 @@ def program(watches: Mapping[str, MonitorSpec], taken: Collection[str] = ()) -> 
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A block and its cells, when all users of its counter are known."""
+    """A block and its cells, built after all users of its counter are known."""
 
     block: Callable[[], Block]
     cells: Callable[[], tuple[Cell, ...]]
@@ -74,13 +74,13 @@ class _Counter:
     most: int = 0
 
     def cells(self) -> tuple[Cell, ...]:
-        """The youngest goes up to `most` + 1: none; the oldest up to `most`, and -1 is none."""
+        """Counters: the youngest witness to `most` + 1 (none), the oldest to `most` (-1: none)."""
         least, most = (0, self.most + 1) if self.youngest else (-1, self.most)
         none = self._none
         return (Counter(self.name, none, least, most, f"{self.comment}; {none}: none"),)
 
     def block(self) -> Block:
-        """How it moves at a tick."""
+        """The block that moves the counter at a tick."""
         none, born = Count(self.name, self._none), Count(self.name, 0)
         if self.youngest:
             grown = Advance(self.name, self._none)
@@ -101,7 +101,7 @@ _Branch = tuple[Value, Count | Advance]
 
 
 def _choice(first: _Branch, second: _Branch, last: Count | Advance) -> Choose:
-    """A second condition that is a constant leaves one branch."""
+    """A choice of three branches, or of two if the second condition is constant."""
     condition, then = second
     if condition in (TRUE, FALSE):
         return Choose((first,), then if condition == TRUE else last)
@@ -110,7 +110,7 @@ def _choice(first: _Branch, second: _Branch, last: Count | Advance) -> Choose:
 
 @dataclass(frozen=True, slots=True)
 class _Sides:
-    """Both sides of a since, or of its dual; the values are those of the literals' rail."""
+    """The sides of a since, or of its dual, as values over the literals."""
 
     left: f.Formula
     right: f.Formula
@@ -125,14 +125,14 @@ class _Sides:
         return not_(self.guard), not_(self.witness)
 
     def column(self, ago: f.Interval = f.EVER, unbounded: str | None = None) -> columns.Since:
-        """Over whole traces."""
+        """The column over whole traces."""
         guard = None if self.left == f.TRUE else self.guard
         return columns.Since(guard, self.witness, ago.lo, ago.hi, not self.positive, unbounded)
 
 
 @dataclass(slots=True)
 class _Writer:
-    """One walk over formulas from the leaves up: one part for each temporal operator."""
+    """A writer that visits formulas bottom-up, and makes one part for each temporal operator."""
 
     taken: frozenset[str]
     literals: dict[Literal, None] = field(default_factory=dict)
@@ -155,7 +155,7 @@ class _Writer:
                 return self.value(arg, not positive)
             case f.And(args) | f.Or(args):
                 values = [self.value(arg, positive) for arg in args]
-                return both(values) if isinstance(formula, f.And) == positive else either(values)
+                return and_(values) if isinstance(formula, f.And) == positive else or_(values)
             case f.Implies(left, right):
                 return self.value(f.Or((f.Not(left), right)), positive)
             case f.Iff(left, right):
@@ -164,7 +164,7 @@ class _Writer:
                 return self._shared(formula, positive)
 
     def _shared(self, formula: f.Formula, positive: bool) -> Value:
-        """A value with a name of its own; its part is written once."""
+        """A named value, whose part is written once."""
         key = formula, positive
         if key not in self._values:
             self._values[key] = self._value(formula, positive)
@@ -189,7 +189,7 @@ class _Writer:
                 raise AssertionError(f"not a past-time operator: {formula}")
 
     def _name(self, kind: str) -> str:
-        """A name that nothing else has."""
+        """A fresh name."""
         while True:
             self._counts[kind] = self._counts.get(kind, 0) + 1
             name = f"{kind}_{self._counts[kind]}"
@@ -212,11 +212,11 @@ class _Writer:
     def _differing(
         self, formula: f.Formula, left: f.Formula, right: f.Formula, positive: bool
     ) -> Value:
-        """A difference, or where it is negated, an agreement."""
-        value = either(
+        """The difference of two formulas, or their agreement if negated."""
+        value = or_(
             [
-                both([self.value(left), self.value(right, not positive)]),
-                both([self.value(left, False), self.value(right, positive)]),
+                and_([self.value(left), self.value(right, not positive)]),
+                and_([self.value(left, False), self.value(right, positive)]),
             ]
         )
         name = self._name("differ" if positive else "agree")
@@ -226,7 +226,9 @@ class _Writer:
         """The value of the tick before; at tick 0 it is `weak`."""
         name, comment = self._name("before"), self._comment(formula, positive)
         kept = Flag(f"kept_{name}", weak, comment)
-        return self._add(name, comment, Shift(name, kept.name, value), Before(value, weak), kept)
+        return self._add(
+            name, comment, Shift(name, kept.name, value), PreviousColumn(value, weak), kept
+        )
 
     def _since(
         self,
@@ -250,7 +252,7 @@ class _Writer:
         return self._by_count(sides, ago, comment)
 
     def _ever(self, sides: _Sides, comment: str) -> Value:
-        """Without bounds: one truth value is kept."""
+        """A since without bounds, kept in one truth value."""
         counter = self._counters.get((False, sides.left, sides.right, sides.positive))
         if counter is not None:
             column = Variable(self._without_bounds(sides))
@@ -260,14 +262,14 @@ class _Writer:
         name = self._name("since")
         witness, guard, before = sides.witness, sides.guard, Variable(name)
         if sides.positive:
-            value = either([witness, both([guard, before])])
+            value = or_([witness, and_([guard, before])])
         else:
-            value = both([witness, either([guard, before])])
+            value = and_([witness, or_([guard, before])])
         cell = Flag(name, not sides.positive, comment)
         return self._add(name, comment, Assign(name, value), sides.column(), cell)
 
     def _by_count(self, sides: _Sides, ago: f.Interval, comment: str) -> Value:
-        """By counting ticks since one witness; the cost does not depend on the bounds."""
+        """A since with one bound, by counting ticks since one witness, at constant cost."""
         bound = ago.lo if ago.hi is None else ago.hi
         counter = self._counter(ago.hi is not None, sides)
         counter.most = max(counter.most, bound)
@@ -283,7 +285,7 @@ class _Writer:
         return self._add(name, comment, Assign(name, value), sides.column(ago, unbounded))
 
     def _without_bounds(self, sides: _Sides) -> str:
-        """The column of the operator without bounds, from which one with bounds is made."""
+        """The column of the operator without bounds, from which the bounded one is computed."""
         key = sides.left, sides.right, sides.positive
         if key not in self._unbounded:
             self._unbounded[key] = name = self._name("held")
@@ -303,7 +305,7 @@ class _Writer:
         return self._counters[key]
 
     def _window(self, sides: _Sides, lo: int, hi: int, comment: str) -> Value:
-        """Both bounds: the witnesses inside of the window are kept."""
+        """A since with both bounds, which keeps the witnesses within the window."""
         name = self._name("since")
         cell = Window(f"kept_{name}", lo, hi, comment)
         slide = Slide(name, cell.name, *sides.conditions(), not sides.positive)

@@ -1,7 +1,8 @@
-"""Programs of monitors: typed cells, a block for each temporal operator, the signals.
+"""Programs of monitors: typed cells, a block for each temporal operator, and the signals.
 
-A program is one rail: it computes everything from literals, a proposition or its negation. With
-unknowns counted as false it computes what holds for certain, and counted as true, what may hold.
+A program computes one of the two bounds: it is evaluated over literals, a proposition or its
+negation each. With unknowns counted as false it computes certain values, and with unknowns counted
+as true possible values.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ from monitors.kernel.stepping import Marks
 from monitors.kernel.verdicts import Signals
 
 SIGNALS, MARKS = Signals._fields, Marks._fields
-"""The signals of a rail, and the ticks that it remembers, for each requirement."""
+"""The signals of a program, and the ticks that it remembers, for each requirement."""
 SOURCES: Mapping[str, str] = dict(zip(MARKS, ("breach", "doom", "trigger", "owed"), strict=True))
-"""The signal of which each mark remembers a tick."""
+"""The signal whose tick each mark remembers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +44,7 @@ class Counter:
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """What `guard S[lo,hi] witness` needs of the ticks before this one."""
+    """The memory of `guard S[lo,hi] witness` about earlier ticks."""
 
     name: str
     lo: int
@@ -56,19 +57,20 @@ Cell = Flag | Counter | Window
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """One temporal operator: at each tick, and as a column over whole traces."""
+    """The code of one temporal operator, for each tick and as a column over whole traces."""
 
     name: str
-    """The variable or the counter that it computes."""
+    """The variable or the counter that the block computes."""
     comment: str
     instructions: tuple[Instruction, ...]
     column: Column | None
-    """None: only ticks need the block. A block without instructions is for columns alone."""
+    """None: the block is needed for ticks only. A block without instructions is needed for columns
+    only."""
 
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """The signals of one requirement at this tick, when all blocks are done."""
+    """The signals of one requirement at this tick, after all blocks."""
 
     id: str
     signals: Signals[Value]
@@ -79,13 +81,13 @@ class Requirement:
 
     @property
     def marks(self) -> tuple[str, ...]:
-        """The `MARKS` that can change: those whose signal can ever be true."""
+        """The `MARKS` that can change, because their signal can be true."""
         return tuple(mark for mark in MARKS if getattr(self.signals, SOURCES[mark]) != FALSE)
 
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """A rail: its literals and cells, what it does at each tick, and what it tells then."""
+    """A program: its literals and cells, its blocks, and its signals."""
 
     literals: tuple[Literal, ...]
     cells: tuple[Cell, ...]

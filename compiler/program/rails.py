@@ -1,4 +1,4 @@
-"""A program as languages without objects need it: the size of every cell is known beforehand.
+"""Programs for languages without objects: the size of every cell is known in advance.
 
 A window is a ring of bits: `guard S[lo,hi] witness` holds when the latest witness that is `lo`
 ticks old or older, with the guard true ever since, became that old at most `hi - lo` ticks ago. So
@@ -30,8 +30,8 @@ from compiler.program.values import (
     Literal,
     Value,
     Variable,
-    both,
-    either,
+    and_,
+    or_,
     parts,
 )
 
@@ -68,7 +68,7 @@ class StatementGroup:
 
 @dataclass(frozen=True, slots=True)
 class Deadline:
-    """Of a demand that is open: `horizon` less the counter, where that is not negative."""
+    """The ticks left of an open demand: `horizon` less the counter, unless that is negative."""
 
     counter: str
     horizon: int
@@ -76,13 +76,13 @@ class Deadline:
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What one rail tells of a requirement after a tick."""
+    """The values to read of a requirement after a tick."""
 
     id: str
     prefix: str
     truths: Mapping[str, Value]
     deadline: Deadline | None
-    """None: no demand has one."""
+    """The deadline of the open demand; None if demands have no deadline."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,14 +96,14 @@ class Rail:
 
 
 def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
-    """The program without what no signal needs, with rings for windows, and with marks as cells.
+    """The program reduced to what signals need, with rings for windows and cells for marks.
 
     Args:
-        program: of any requirements.
-        prefixes: of each requirement's id, what the names of its own cells begin with.
+        program: the program of any requirements.
+        prefixes: requirement id → prefix of the names of its cells.
     """
-    known = clocks(program)
-    program = lengthened(program, known)
+    clock_of = clocks(program)
+    program = lengthened(program, clock_of)
     blocks = _needed(program)
     names = {name for block in blocks for name in _cells(block)}
     windows = {cell.name: cell for cell in program.cells if isinstance(cell, Window)}
@@ -114,13 +114,13 @@ def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
     for block in blocks:
         steps = list[Step]()
         for instruction in block.instructions:
-            made, moves = _static(instruction, windows)
-            cells.extend(made)
+            new_cells, moves = _without_windows(instruction, windows)
+            cells.extend(new_cells)
             steps.extend(moves)
         stages.append(StatementGroup(block.comment, tuple(steps)))
     for requirement in program.requirements:
-        marks, stage, reading = _remembered(
-            requirement, prefixes[requirement.id], known.get(requirement.id)
+        marks, stage, reading = _mark_cells(
+            requirement, prefixes[requirement.id], clock_of.get(requirement.id)
         )
         cells.extend(marks)
         stages.extend([stage] if stage.steps else [])
@@ -129,13 +129,13 @@ def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
 
 
 def _literals(program: Program, blocks: Iterable[Block]) -> tuple[Literal, ...]:
-    """Those that are read."""
-    values = [*_told(program), *(value for block in blocks for value in _values(block))]
+    """The literals that are read."""
+    values = [*_output_values(program), *(value for block in blocks for value in _values(block))]
     used = {value for value in values if isinstance(value, Literal)}
     return tuple(literal for literal in program.literals if literal in used)
 
 
-def _told(program: Program) -> Iterator[Value]:
+def _output_values(program: Program) -> Iterator[Value]:
     """The signals, and all values within them."""
     for requirement in program.requirements:
         for signal in requirement.signals:
@@ -145,21 +145,21 @@ def _told(program: Program) -> Iterator[Value]:
 def _needed(program: Program) -> tuple[Block, ...]:
     """The blocks that signals depend on."""
     blocks = {block.name: block for block in program.blocks if block.instructions}
-    waiting = [*_told(program)]
-    found: set[str] = set()
+    waiting = [*_output_values(program)]
+    needed: set[str] = set()
     while waiting:
         value = waiting.pop()
         match value:
-            case Variable(name) | Age(name) if name not in found:
-                found.add(name)
+            case Variable(name) | Age(name) if name not in needed:
+                needed.add(name)
                 waiting.extend(_values(blocks[name]))
             case _:
                 continue
-    return tuple(block for name, block in blocks.items() if name in found)
+    return tuple(block for name, block in blocks.items() if name in needed)
 
 
 def _values(block: Block) -> Iterator[Value]:
-    """Whatever its instructions read, but the cells that they move."""
+    """The values that the block's instructions read, without the cells that they move."""
     for instruction in block.instructions:
         for value in _read(instruction):
             yield from parts(value)
@@ -178,23 +178,23 @@ def _read(instruction: Instruction) -> Iterable[Value]:
 
 
 def _cells(block: Block) -> Iterator[str]:
-    """Names of cells that a block may have."""
+    """The names of the cells of a block."""
     yield block.name
     for instruction in block.instructions:
         if isinstance(instruction, Shift):
             yield instruction.cell
 
 
-def _static(
+def _without_windows(
     instruction: Instruction, windows: Mapping[str, Window]
 ) -> tuple[tuple[Cell, ...], tuple[Step, ...]]:
-    """The instruction without windows, and the cells that it needs for that."""
+    """The instruction with windows replaced, and the cells needed for that."""
     if isinstance(instruction, Slide):
-        return _slid(instruction, windows[instruction.window])
+        return _ring_and_step(instruction, windows[instruction.window])
     return (), (instruction,)
 
 
-def _slid(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, ...]]:
+def _ring_and_step(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, ...]]:
     """A window as a ring and counters, and its step."""
     name, lo, none = slide.name, window.lo, window.hi - window.lo + 1
     past, guarded = Variable(f"past_{name}"), slide.guard != TRUE
@@ -202,7 +202,7 @@ def _slid(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, .
     note = f"ticks since a witness became {lo} ticks old; {none}: none"
     age = Counter(f"age_{name}", none, 0, none, note)
     clear = Counter(f"clear_{name}", 0, 0, lo, "ticks in a row with the guard")
-    old = both([past, Age(clear.name, Comparison.AT_LEAST, lo)]) if guarded else past
+    old = and_([past, Age(clear.name, Comparison.AT_LEAST, lo)]) if guarded else past
     grown, lost = Advance(age.name, none), Count(age.name, none)
     older = Choose(((old, Count(age.name, 0)), (slide.guard, grown)), lost)
     row = Choose(((slide.guard, Advance(clear.name, lo)),), Count(clear.name, 0))
@@ -216,10 +216,10 @@ def _slid(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, .
     return (ring, *((clear,) if guarded else ()), age), steps
 
 
-def _remembered(
+def _mark_cells(
     requirement: Requirement, prefix: str, clock: str | None
 ) -> tuple[list[Cell], StatementGroup, Reading]:
-    """The cells of a requirement's own, how they move, and what is read of them.
+    """The marks of a requirement as cells, with the statements that update them and its reading.
 
     `clock`: the counter that is as old as the open demand, if there is one.
     """
@@ -230,7 +230,7 @@ def _remembered(
         latches[name] = Variable(flag.name) if signal != FALSE else FALSE
         if signal != FALSE:
             cells.append(flag)
-            steps.append(Assign(flag.name, either([Variable(flag.name), signal])))
+            steps.append(Assign(flag.name, or_([Variable(flag.name), signal])))
     deadline = None
     if requirement.horizon is not None and clock is not None:
         deadline = Deadline(clock, requirement.horizon)
@@ -247,8 +247,8 @@ def _remembered(
         else:
             steps.append(Choose(((signals.owed, grown),), none))
     truths = {
-        "violated": either(latches.values()),
-        "failed": either([latches["broken"], signals.fails]),
+        "violated": or_(latches.values()),
+        "failed": or_([latches["broken"], signals.fails]),
         "trigger": signals.trigger,
         "breach": signals.breach,
         "open": signals.owed,

@@ -1,8 +1,8 @@
-"""The statements of a rail, but for what languages with braces write differently.
+"""Statements of a program for languages with braces, without the parts in which they differ.
 
-Cells stand behind what points to the rail, literals behind what points to those of the tick, as
-`is_` and `not_`: none of these names is that of a local variable, of a macro or of a key word,
-whatever the user calls propositions.
+Cells are written with a prefix that points to the state, and literals with one that points to the
+inputs of the tick, as `is_` and `not_`. So no name is that of a local variable, a macro or a key
+word, whatever the user's propositions are called.
 """
 
 from __future__ import annotations
@@ -19,26 +19,26 @@ from compiler.program.values import Age, And, Constant, Literal, Not, Or, Value,
 
 @dataclass(frozen=True, slots=True)
 class Statements(ABC):
-    """A language's words for a rail."""
+    """The syntax of a language for the statements of a program."""
 
     CELLS: ClassVar[str]
-    """What stands before the name of a cell."""
+    """The prefix of cells."""
     LITERALS: ClassVar[str]
-    """What stands before that of a literal."""
+    """The prefix of literals."""
     LOCAL: ClassVar[str]
-    """What declares a local truth value."""
+    """The declaration of a local truth value."""
     IF: ClassVar[tuple[str, str]]
-    """What stands before a condition, and behind it."""
+    """The text before and after a condition."""
 
     rail: Rail
     names: Mapping[str, str]
     """An identifier for each proposition."""
     cells: Mapping[str, Cell]
-    """Of the rail, by their names."""
+    """The cells by their names."""
 
     @classmethod
     def of(cls, rail: Rail, names: Mapping[str, str]) -> Self:
-        """Of a rail, with an identifier for each proposition."""
+        """The statements of a program, with an identifier for each proposition."""
         return cls(rail, names, {cell.name: cell for cell in rail.cells})
 
     @abstractmethod
@@ -47,14 +47,14 @@ class Statements(ABC):
 
     @abstractmethod
     def capped(self, counter: str, most: int) -> str:
-        """A counter one tick later, where it stays at the most."""
+        """The counter one tick later, limited to `most`."""
 
     @abstractmethod
     def delay(self, name: str, ring: Ring, value: str) -> Iterator[str]:
-        """One bit of a ring is read and written; its place goes round."""
+        """Statements that read and overwrite one bit of a ring, and advance its position."""
 
     def literals(self) -> Iterator[tuple[str, str, bool]]:
-        """The name of each literal, the input that it reads, and its sign."""
+        """The name, the input and the sign of each literal."""
         for literal in self.rail.literals:
             yield self._literal(literal), self.names[literal.proposition], literal.positive
 
@@ -64,8 +64,8 @@ class Statements(ABC):
     def value(self, value: Value) -> str:
         """An expression of truth values.
 
-        It joins them by `&` and `|`, which evaluate both sides: where `&&` may jump, the processor
-        guesses, and is wrong as often as propositions change.
+        Values are joined by `&` and `|`, which evaluate both sides: `&&` may compile to jumps,
+        whose prediction fails as often as propositions change.
         """
         match value:
             case Constant(truth):
@@ -86,18 +86,18 @@ class Statements(ABC):
                 assert_never(value)
 
     def joins(self, value: Value) -> bool:
-        """Whether its expression joins or compares others."""
+        """Whether the value's expression has an operator that joins or compares."""
         return isinstance(value, And | Or | Age)
 
     def grouped(self, value: Value) -> str:
-        """In parentheses, if it joins or compares others."""
+        """The value, in parentheses if it joins or compares."""
         return f"({self.value(value)})" if self.joins(value) else self.value(value)
 
     def _place(self, name: str) -> str:
         return f"{self.CELLS}{name}" if name in self.cells else name
 
     def lines(self, stage: StatementGroup) -> Iterator[str]:
-        """The statements of a stage."""
+        """The statements of a group."""
         for step in stage.steps:
             yield from self._statement(step)
 

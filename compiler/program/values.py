@@ -1,4 +1,4 @@
-"""What is true at a tick: expressions over literals, variables and counters.
+"""Truth values at a tick: expressions over literals, variables and counters.
 
 All values but the tests of counters are monotone in the literals, so that one program computes
 both what holds for certain and what may hold.
@@ -28,13 +28,13 @@ class Literal:
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A truth value with a name: a cell's, or one that was computed at this tick."""
+    """A named truth value: a cell, or a value computed at this tick."""
 
     name: str
 
 
 class Comparison(Enum):
-    """How a counter compares with a number."""
+    """The operators between a counter and a number."""
 
     LESS = "<"
     AT_MOST = "<="
@@ -53,7 +53,7 @@ class Age:
 
 @dataclass(frozen=True, slots=True)
 class Not:
-    """The negation; of conditions alone, where a dual operator asks for it."""
+    """The negation; only in conditions of dual operators."""
 
     value: Value
 
@@ -77,7 +77,7 @@ Value = Constant | Literal | Variable | Age | Not | And | Or
 TRUE, FALSE = Constant(True), Constant(False)
 
 
-def both(values: Iterable[Value]) -> Value:
+def and_(values: Iterable[Value]) -> Value:
     """The conjunction; constants fold."""
     rest = tuple(value for value in values if value != TRUE)
     if FALSE in rest:
@@ -87,7 +87,7 @@ def both(values: Iterable[Value]) -> Value:
     return And(rest)
 
 
-def either(values: Iterable[Value]) -> Value:
+def or_(values: Iterable[Value]) -> Value:
     """The disjunction; constants fold."""
     rest = tuple(value for value in values if value != FALSE)
     if TRUE in rest:
@@ -98,7 +98,7 @@ def either(values: Iterable[Value]) -> Value:
 
 
 def not_(value: Value) -> Value:
-    """The negation; of a constant, the other one."""
+    """The negation; constants fold."""
     return Constant(not value.truth) if isinstance(value, Constant) else Not(value)
 
 
@@ -112,5 +112,5 @@ def parts(value: Value) -> Iterator[Value]:
             inner = (negated,)
         case Constant() | Literal() | Variable() | Age():
             inner = ()
-    for each in inner:
-        yield from parts(each)
+    for operand in inner:
+        yield from parts(operand)

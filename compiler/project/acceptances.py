@@ -1,7 +1,7 @@
 """Warnings that the project accepts, each with its reason.
 
-What is about a requirement is accepted in its header; the rest in the settings, for one topic or
-hazard, or for the whole project. An accepted warning stays one: it is counted and shown.
+A warning about a requirement is accepted in its header; other warnings in the settings, for one
+topic or hazard or for the whole project. An accepted warning is still counted and shown.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ _CODES = {code.number: code for code in Code}
 
 @dataclass(frozen=True, slots=True)
 class Acceptance:
-    """Warnings of one code, and why they may stand."""
+    """Accepted warnings of one code, with the reason."""
 
     code: Code
     reason: str
     span: Span = field(compare=False, repr=False)
     requirement: RequirementEntry | None = field(default=None, repr=False)
-    """The one whose header has it; None: it is in the settings."""
+    """The requirement whose header has the acceptance; None if it is in the settings."""
     subject: str = ""
-    """The topic or the hazard; empty: whatever it is."""
+    """The topic or the hazard; empty: any."""
 
     @property
     def name(self) -> str:
@@ -41,27 +41,27 @@ class Acceptance:
 
     @property
     def about(self) -> str:
-        """What a warning of the code is about: a key of `ACCEPTANCES`."""
+        """The kind of subject of the code's warnings: a key of `ACCEPTANCES`."""
         return explanation(self.code).accept
 
 
 def acceptances(
     requirements: Iterable[RequirementEntry], settings: Settings | None
 ) -> tuple[tuple[Acceptance, ...], tuple[Diagnostic, ...]]:
-    """Those of headers, then those of the settings; and F549 for each that can answer nothing."""
-    written = [(each, code) for each in requirements for code in each.accept]
-    found = [
-        _acceptance(code, each.accept[code], each.place("accept", code), each)
-        for each, code in written
+    """The acceptances of headers, then those of settings; and F549 for each that is invalid."""
+    written = [(requirement, code) for requirement in requirements for code in requirement.accept]
+    entries = [
+        _acceptance(code, requirement.accept[code], requirement.place("accept", code), requirement)
+        for requirement, code in written
     ]
     if settings is not None:
-        found.extend(_of_settings(settings))
-    good = tuple(each for each in found if isinstance(each, Acceptance))
-    return good, tuple(each for each in found if isinstance(each, Diagnostic))
+        entries.extend(_of_settings(settings))
+    good = tuple(entry for entry in entries if isinstance(entry, Acceptance))
+    return good, tuple(entry for entry in entries if isinstance(entry, Diagnostic))
 
 
 def _of_settings(settings: Settings) -> Iterator[Acceptance | Diagnostic]:
-    """Those of one topic or hazard come first: they are more to the point."""
+    """The acceptances of the settings, the most specific (of one topic or hazard) first."""
     for code, reasons in settings.accept.items():
         for subject, reason in reasons.items() if isinstance(reasons, Mapping) else ():
             place = settings.place("accept", code, subject)
@@ -82,10 +82,10 @@ def _acceptance(
     if code is None:
         near = suggestion(number, _CODES)
         fix = f"did you mean `{near}`?" if near else "write the number that the warning begins with"
-        return _bad(f"`{number}` is no code of fretc", place, fix)
+        return _bad(f"`{number}` is not a code of fretc", place, fix)
     about = explanation(code).accept
     if not about:
-        fix = f"fix what it is about: `fretc explain {number}` says how"
+        fix = f"fix the cause: `fretc explain {number}` says how"
         return _bad(f"{number} cannot be accepted: {code.summary}", place, fix)
     where, example = ACCEPTANCES[about]
     line = example.format(number).removeprefix("[accept]\n")
@@ -95,7 +95,9 @@ def _acceptance(
     if subject and about not in (TOPIC, HAZARD):
         return _bad(f"{number} is not about a topic or a hazard", place, fix)
     if not reason.strip():
-        return _bad(f"{number} is accepted without a reason", place, "write why it may stand")
+        return _bad(
+            f"{number} is accepted without a reason", place, "write why the warning is acceptable"
+        )
     return Acceptance(code, reason.strip(), place, requirement, subject)
 
 
@@ -104,69 +106,73 @@ def _bad(message: str, place: Span, fix: str) -> Diagnostic:
 
 
 _ByCode = Mapping[tuple[Code, str], Sequence[Acceptance]]
-"""By code and file those of headers, in their order in it; by code and `""` the others."""
+"""Acceptances of headers by code and file, in their order; the others by code and `""`."""
 
 
-def answered(
-    diagnostics: Iterable[Diagnostic], known: Sequence[Acceptance]
+def with_acceptance_reasons(
+    diagnostics: Iterable[Diagnostic], accepted: Sequence[Acceptance]
 ) -> tuple[Diagnostic, ...]:
-    """The same, each accepted warning with the reason of the first acceptance that answers it."""
-    by_code = _by_code(known)
+    """The diagnostics, each accepted warning with the reason of its first acceptance."""
+    by_code = _by_code(accepted)
     return tuple(_answered(diagnostic, by_code) for diagnostic in diagnostics)
 
 
-def _answered(diagnostic: Diagnostic, known: _ByCode) -> Diagnostic:
-    found = next(_answers(diagnostic, known), None)
-    return diagnostic if found is None else replace(diagnostic, accepted=found.reason)
+def _answered(diagnostic: Diagnostic, by_code: _ByCode) -> Diagnostic:
+    acceptance = next(_answers(diagnostic, by_code), None)
+    return diagnostic if acceptance is None else replace(diagnostic, accepted=acceptance.reason)
 
 
-def _by_code(known: Iterable[Acceptance]) -> _ByCode:
-    found: dict[tuple[Code, str], list[Acceptance]] = {}
-    for each in known:
-        file = each.span.source.name if each.requirement else ""
-        found.setdefault((each.code, file), []).append(each)
-    return found
+def _by_code(accepted: Iterable[Acceptance]) -> _ByCode:
+    by_code: dict[tuple[Code, str], list[Acceptance]] = {}
+    for acceptance in accepted:
+        file = acceptance.span.source.name if acceptance.requirement else ""
+        by_code.setdefault((acceptance.code, file), []).append(acceptance)
+    return by_code
 
 
-def _answers(diagnostic: Diagnostic, known: _ByCode) -> Iterator[Acceptance]:
-    """The acceptances of a warning, those that are the most to the point first."""
+def _answers(diagnostic: Diagnostic, by_code: _ByCode) -> Iterator[Acceptance]:
+    """The acceptances of a warning, the most specific first."""
     if diagnostic.severity is not Severity.WARNING:
         return
     place = diagnostic.span
     if place is not None and place.source.name:
-        headers = known.get((diagnostic.code, place.source.name), ())
-        before = bisect_right(headers, place.end, key=lambda each: each.span.start)
+        headers = by_code.get((diagnostic.code, place.source.name), ())
+        before = bisect_right(headers, place.end, key=lambda acceptance: acceptance.span.start)
         around = headers[max(0, before - 1) : before + 1]  # a header begins above its acceptance
         yield from (e for e in around if e.requirement and e.requirement.contains(place))
-    others = known.get((diagnostic.code, ""), ())
-    yield from (each for each in others if each.subject in ("", diagnostic.subject))
+    others = by_code.get((diagnostic.code, ""), ())
+    yield from (
+        acceptance for acceptance in others if acceptance.subject in ("", diagnostic.subject)
+    )
 
 
-def idle(
-    known: Sequence[Acceptance],
+def unused_acceptances(
+    accepted: Sequence[Acceptance],
     warnings: Iterable[Diagnostic],
     declarations: Declarations | None,
     recorded: Collection[str] | None,
 ) -> Iterator[Diagnostic]:
-    """F550 for each acceptance that answers none of the warnings.
+    """F550 for each acceptance without a matching warning.
 
     Args:
-        known: the acceptances; those in headers of retired requirements are passed over.
-        warnings: every one that there is of the project, and of the logs that were audited.
+        accepted: the acceptances; those in headers of retired requirements are skipped.
+        warnings: all warnings of the project, and of the audited logs.
         declarations: the bindings, if there are any.
-        recorded: the topics of the logs that were audited; None: no log was.
+        recorded: the topics of the audited logs; None if none was audited.
     """
-    by_code = _by_code(known)
-    used = {id(each) for warning in warnings for each in _answers(warning, by_code)}
-    for each in known:
-        retired = each.requirement is not None and each.requirement.status == "retired"
-        open_yet = each.about == TOPIC and _may_come(each.subject, declarations, recorded)
-        if not (retired or open_yet or id(each) in used):
+    by_code = _by_code(accepted)
+    used = {id(acceptance) for warning in warnings for acceptance in _answers(warning, by_code)}
+    for acceptance in accepted:
+        retired = acceptance.requirement is not None and acceptance.requirement.status == "retired"
+        open_yet = acceptance.about == TOPIC and _may_come(
+            acceptance.subject, declarations, recorded
+        )
+        if not (retired or open_yet or id(acceptance) in used):
             yield Diagnostic(
                 Code.IDLE_ACCEPTANCE,
-                f"{each.code.number} is accepted, and no such warning is there",
-                each.span,
-                help="take the acceptance out: it would hide the next one",
+                f"{acceptance.code.number} is accepted, but there is no such warning",
+                acceptance.span,
+                help="remove the acceptance: it would hide a later warning",
                 severity=Severity.WARNING,
             )
 
@@ -174,9 +180,9 @@ def idle(
 def _may_come(
     topic: str, declarations: Declarations | None, recorded: Collection[str] | None
 ) -> bool:
-    """Whether a log that was not audited yet may tell F315 of a topic; of any, if it is empty.
+    """Whether a log that was not audited may give F315 for a topic; for any topic if empty.
 
-    It never does where each signal of the topic states how long a sample counts.
+    It cannot if each signal of the topic states how long a sample counts.
     """
     signals = declarations.signals.values() if declarations else ()
     topics = {signal.path.topic for signal in signals if signal.max_age is None}

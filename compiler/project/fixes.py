@@ -1,6 +1,6 @@
 """`fretc check --fix`: apply the safe fixes to the sentences of `.fret` files.
 
-A fix is safe where it can say nothing but what the author means (`Fix.is_safe`).
+A fix is safe if it cannot change what the author means (`Fix.is_safe`).
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ class FixedFile:
     path: str
     text: str
     fixes: tuple[Fix, ...]
-    """In the order of their application. The span of each is in the text that its pass began with,
-    which has the fixes of earlier passes in it."""
+    """The fixes in the order of application. Each span refers to the text at the start of its pass,
+    which has the fixes of earlier passes."""
 
 
-def fixed(paths: Sequence[str]) -> tuple[FixedFile, ...]:
+def fixed_files(paths: Sequence[str]) -> tuple[FixedFile, ...]:
     """The files that have a safe fix, with all of their safe fixes applied.
 
-    Files without a safe fix are left out, and so are those that cannot be read: anyone who reads
-    them next reports that.
+    Files without a safe fix are left out, and so are unreadable ones, which their next reader
+    reports.
     """
     sources = (read(path) for path in paths)
     files = (_fixed_file(source) for source in sources if isinstance(source, Source))
@@ -72,18 +72,19 @@ def _safe_fixes(source: Source) -> list[Fix]:
 
 
 def _has_a_sentence(requirement: RequirementEntry) -> bool:
-    """Whether its wording is meant as FRETish, so that a fix cannot spoil another text.
+    """Whether the wording is intended as FRETish, so that a fix cannot damage other text.
 
-    Free text is not. Nor is the wording below a header that does not end: it is the whole file.
+    Free text is not. The wording below a header that does not end is not either: it is the whole
+    file.
     """
     unclosed = any(mistake.code is Code.UNCLOSED_HEADER for mistake in requirement.mistakes)
     return not unclosed and not requirement.is_free_text
 
 
 def _safe_fixes_of_sentence(wording: Span) -> list[Fix]:
-    """Those of one sentence; none where reading it would cost too much."""
-    found = with_budget(wording.end - wording.start, wording, partial(find_errors, wording))
-    if isinstance(found, Diagnostic):
+    """The safe fixes of one sentence; none if reading it costs too much."""
+    diagnostics = with_budget(wording.end - wording.start, wording, partial(find_errors, wording))
+    if isinstance(diagnostics, Diagnostic):
         return []
-    fixes = (mistake.fix for mistake in found)
+    fixes = (mistake.fix for mistake in diagnostics)
     return [fix for fix in fixes if fix is not None and fix.is_safe]

@@ -1,24 +1,21 @@
-"""A requirements folder read as one thing: a `Project`."""
+"""Reading a requirements folder into a `Project`."""
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Collection, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from compiler.files.attribution import NOBODY, Attribution
+from compiler.files.attribution import NOBODY
 from compiler.files.settings import Settings, settings
 from compiler.files.text_files import read
 from compiler.formalization.formalize import duplicate_ids, formalize, unreadable_sentence
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.resolution import extended
-from compiler.project.acceptances import Acceptance, acceptances, answered
-from compiler.project.hazards import Hazard
+from compiler.formalization.resolution import with_propositions
+from compiler.project.acceptances import acceptances, with_acceptance_reasons
+from compiler.project.hazards import cycles, unknown_parents
 from compiler.project.hazards import hazards as read_hazards
-from compiler.project.parent_graph import cycles, unknown_parents
 from compiler.project.paths import (
     BINDINGS,
     HAZARDS,
@@ -26,7 +23,8 @@ from compiler.project.paths import (
     requirement_files,
     sibling_path,
 )
-from compiler.project.refusals import Refused, refused
+from compiler.project.project import Project, UnformalizedRequirement
+from compiler.project.refusals import refused
 from compiler.project.stated_numbers import check_stated_numbers
 from fretish.bindings.declarations import SHARED, Declarations
 from fretish.bindings.tables.reader import read_bindings
@@ -37,72 +35,6 @@ if TYPE_CHECKING:
     from compiler.project.parents import Parent
 
 
-@dataclass(frozen=True, slots=True)
-class UnformalizedRequirement:
-    """A requirement without a requirement, and why: it has an error, or it is free text."""
-
-    requirement: RequirementEntry
-    diagnostic: Diagnostic
-    """The first error; the note where it is free text."""
-    diagnostics: tuple[Diagnostic, ...] = ()
-    """All there is to say of it."""
-
-
-@dataclass(frozen=True, slots=True)
-class Project:
-    """What was read, and all that there is to say of it."""
-
-    requirements: tuple[RequirementEntry, ...]
-    """As written, in the order of the files."""
-    formalized: tuple[FormalizedRequirement, ...]
-    failed: tuple[UnformalizedRequirement, ...]
-    declarations: Declarations | None
-    hazards: Mapping[str, Hazard]
-    diagnostics: tuple[Diagnostic, ...]
-    general: tuple[Diagnostic, ...] = ()
-    """Those of the diagnostics that are about no single requirement, and no single table of the
-    bindings: a mistake there is one of the requirements that read it. Hazards and parents are
-    among them, which no formula reads."""
-    mistaken: Mapping[int, Diagnostic] = field(default_factory=dict)
-    """The mistake of each formalized requirement, by its `id()`: it shares its
-    id with another one, or its `params` name what is not there."""
-    parents: Mapping[str, Parent] = field(default_factory=dict)
-    """What other tools have, by its id; read where hazards are."""
-    acceptances: tuple[Acceptance, ...] = ()
-    """The warnings that are accepted, and why; those among `diagnostics` are marked."""
-    attribution: Attribution = NOBODY
-    """Who answers for what is made of it, by its settings."""
-    refused: tuple[Refused, ...] = ()
-    """The requirements that a mistake reaches: nothing is made of them."""
-
-    @property
-    def rules(self) -> tuple[FormalizedRequirement, ...]:
-        """The former name of `formalized`."""
-        warnings.warn("`rules` of a project is `formalized` now", DeprecationWarning, stacklevel=2)
-        return self.formalized
-
-    @property
-    def sound(self) -> Project:
-        """The same without the requirements that a mistake reaches.
-
-        A `retired` requirement is among them, too.
-        """
-        refused = {id(each.requirement) for each in self.refused}
-        requirements = tuple(
-            requirement for requirement in self.formalized if id(requirement.entry) not in refused
-        )
-        return replace(self, formalized=requirements)
-
-    @property
-    def without_rule(self) -> tuple[RequirementEntry, ...]:
-        """The requirements that have an error, or are free text."""
-        return tuple(each.requirement for each in self.failed)
-
-    def answered(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """The same, with the reason of each warning that is accepted."""
-        return answered(diagnostics, self.acceptances)
-
-
 def load(
     paths: Sequence[str],
     bindings: str | None = None,
@@ -111,20 +43,20 @@ def load(
     parents: bool = False,
     reads: Collection[str] = SHARED,
 ) -> Project:
-    """Read requirements, and what stands beside them.
+    """Read requirement files, their bindings, hazards, settings and parents.
 
     Args:
         paths: `.fret` files; `-` is standard input.
         bindings: their `bindings.toml`; None: the one in the folder of the first file, if any.
         hazards: their `hazards.toml`; None: no hazards are read.
         parents: whether parents in other tools are read, as the settings name them.
-        reads: the shared tables of the bindings that the caller reads; a mistake in any other one
-            keeps back nothing.
+        reads: the shared tables of the bindings that the caller reads; an error in another table
+            refuses nothing.
     """
     declarations, of_bindings = _declarations(
         bindings or first_sibling_path(paths, BINDINGS), reads
     )
-    known, of_hazards = read_hazards(hazards) if hazards else ({}, ())
+    hazard_of, of_hazards = read_hazards(hazards) if hazards else ({}, ())
     written = _written(paths)
     chosen = _settings(paths)
     above, elsewhere = _above(chosen) if parents else ({}, ())
@@ -132,13 +64,13 @@ def load(
     requirements, failed, mistaken, remarks = _formalized(written, declarations, broken=broken)
     upward = [*of_hazards, *elsewhere]
     if (hazards or parents) and not has_errors(upward):
-        upward.extend(unknown_parents(written, known, above, hazards))
+        upward.extend(unknown_parents(written, hazard_of, above, hazards))
         upward.extend(cycles(written))
     declarations = _with_atoms(declarations, requirements)
     mistakes = declarations.mistakes.values() if declarations else ()
     single = frozenset(chain.from_iterable(mistakes))
-    of_all = [each for each in of_bindings if each not in single]
-    own = mistaken | {id(each.requirement): each.diagnostic for each in failed}
+    of_all = [diagnostic for diagnostic in of_bindings if diagnostic not in single]
+    own = mistaken | {id(failure.requirement): failure.diagnostic for failure in failed}
     accepted, unanswered = acceptances(written, chosen if isinstance(chosen, Settings) else None)
     if isinstance(chosen, Diagnostic) and not parents:
         unanswered = (*unanswered, chosen)
@@ -148,8 +80,8 @@ def load(
         requirements,
         failed,
         declarations,
-        known,
-        answered(everything, accepted),
+        hazard_of,
+        with_acceptance_reasons(everything, accepted),
         (*of_all, *upward),
         mistaken,
         above,
@@ -162,28 +94,29 @@ def load(
 def _with_atoms(
     declarations: Declarations | None, requirements: Sequence[FormalizedRequirement]
 ) -> Declarations | None:
-    """The declarations with the atoms of all requirements that signals decide."""
+    """The declarations extended by the atoms over signals of all requirements."""
     for requirement in requirements:
         if declarations is not None and requirement.declarations is not None:
             own = requirement.declarations
-            declarations = extended(declarations, own.propositions, own.mistakes)
+            declarations = with_propositions(declarations, own.propositions, own.mistakes)
     return declarations
 
 
 def _written(paths: Sequence[str]) -> list[RequirementEntry]:
-    """Every requirement; one that stands for the whole of each file that cannot be read."""
-    found: list[RequirementEntry] = []
+    """Every requirement; an unreadable file counts as one."""
+    entries: list[RequirementEntry] = []
     for path in paths:
         source = read(path)
         if isinstance(source, Diagnostic):
-            found.append(unreadable_file(path, source))
+            entries.append(unreadable_file(path, source))
         else:
-            found.extend(requirements(source)[0])
-    return found
+            entries.extend(requirements(source)[0])
+    return entries
 
 
 _MOST_BROKEN_HEADERS = 100
-"""Below so many mistaken headers sentences are read, too: a file of thousands is none to fix."""
+"""Up to this number of erroneous headers their sentences are checked, too; a file with thousands is
+not fixed by hand."""
 
 
 def _formalized(
@@ -194,12 +127,12 @@ def _formalized(
     dict[int, Diagnostic],
     list[Diagnostic],
 ]:
-    """What is formalized, what is not, mistakes of those that are, and all there is to say.
+    """Formalized requirements, failed ones, errors of formalized ones, and all diagnostics.
 
     Args:
-        written: as read.
-        declarations: None where there are none, or they are `broken`: a clock may be among them.
-        broken: whether the bindings have a mistake for which none of them can be used.
+        written: the requirements of the files.
+        declarations: None if there are none, or they are `broken`; they may include a clock.
+        broken: whether an error makes all bindings unusable.
     """
     unsaid = frozenset({Code.NO_CLOCK}) if broken else frozenset()
     mistaken = dict(duplicate_ids(written))
@@ -227,10 +160,10 @@ def _formalized(
 def load_folder(
     folder: str, bindings: str | None = None, hazards: str | None = None
 ) -> Project | Diagnostic:
-    """A requirements folder (or one file) with all that stands beside it, and parents elsewhere.
+    """The project of a folder (or one file), with bindings, hazards, and parents in other tools.
 
     Args:
-        folder: of the requirements.
+        folder: the folder of the requirements.
         bindings: None: the `bindings.toml` of the folder, if there is one.
         hazards: None: the `hazards.toml` of the folder, if there is one.
     """
@@ -246,7 +179,7 @@ def load_folder(
 
 
 def _settings(paths: Sequence[str]) -> Settings | Diagnostic | None:
-    """The settings of the project; None where it is read from standard input."""
+    """The settings of the project; None if it is read from standard input."""
     first = next((path for path in paths if path != "-"), None)
     return settings(str(Path(first).parent)) if first else None
 
@@ -254,7 +187,7 @@ def _settings(paths: Sequence[str]) -> Settings | Diagnostic | None:
 def _above(
     chosen: Settings | Diagnostic | None,
 ) -> tuple[Mapping[str, Parent], tuple[Diagnostic, ...]]:
-    """The parents that live in other tools, by the settings of the project."""
+    """The parents in other tools, as the settings name them."""
     if isinstance(chosen, Diagnostic):
         return {}, (chosen,)
     if chosen is None:
@@ -265,7 +198,7 @@ def _above(
 
 
 def _reason(remarks: Sequence[Diagnostic]) -> Diagnostic:
-    """The error among them; the note where the requirement is free text."""
+    """The first error; the note if the requirement is free text."""
     return next((remark for remark in remarks if remark.is_error), remarks[0])
 
 

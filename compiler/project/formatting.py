@@ -18,12 +18,12 @@ from fretish.syntax import Sentence
 
 _WIDTH = 100
 _PIECE = re.compile(r'(?:"[^"\n]*"|(?<![\w.])[0-9][\w.+-]* (?=[A-Za-z%])|\S)+')
-"""What stays on one line: a word, a name in quotes, a number with its unit."""
+"""A piece that is not broken over lines: a word, a quoted name, or a number with its unit."""
 
 
 @dataclass(frozen=True, slots=True)
 class Formatted:
-    """One file: its text as it is, and as it should be."""
+    """One file: its present text, and the formatted text."""
 
     path: str
     before: str
@@ -35,8 +35,8 @@ class Formatted:
         return PurePosixPath(self.path)
 
 
-def formatted(paths: Sequence[str]) -> tuple[tuple[Formatted, ...], tuple[Diagnostic, ...]]:
-    """Every file with its sentences canonical; headers and what stands around stay as they are."""
+def formatted_files(paths: Sequence[str]) -> tuple[tuple[Formatted, ...], tuple[Diagnostic, ...]]:
+    """Every file with canonical sentences; headers and all other text stay unchanged."""
     files: list[Formatted] = []
     diagnostics: list[Diagnostic] = []
     for path in paths:
@@ -64,13 +64,13 @@ def formatted(paths: Sequence[str]) -> tuple[tuple[Formatted, ...], tuple[Diagno
 
 
 def _trees(text: str) -> list[Sentence | Diagnostic]:
-    """The sentences of a file, as they are read."""
+    """The parsed sentences of a file."""
     entries, _ = requirements(Source("", text))
     return [parse(entry.wording) for entry in entries if not entry.is_free_text]
 
 
 def _wrapped(text: str, file: str) -> str:
-    """Lines of at most 100 characters, with the line ends of the file."""
+    """The text in lines of at most 100 characters, with the line ends of the file."""
     lines = [""]
     for piece in _PIECE.findall(text):
         if lines[-1] and len(lines[-1]) + 1 + len(piece) > _WIDTH:

@@ -1,8 +1,8 @@
-"""FRET's exchange formats → `.fret` files and `bindings.toml`.
+"""Import of FRET's exchange formats as `.fret` files and `bindings.toml`.
 
-The import takes what a person wrote: sentences, names, comments. It takes no formulas of FRET: an
-export can carry those of an older sentence, so fretc derives formulas from the sentence.
-Source: NASA FRET v3.1, its export of requirements and variables (JSON), and its import of CSV.
+The import reads what a person wrote: sentences, names, comments. It ignores FRET's formulas: an
+export can contain those of an older sentence, so fretc derives formulas from the sentence. Source:
+NASA FRET v3.1, its export of requirements and variables (JSON), and its import of CSV.
 """
 
 from __future__ import annotations
@@ -32,21 +32,21 @@ from fretish.printer import expression
 from fretish.reading.limits import with_budget
 
 STATUSES = {"completed": "approved", "deprecated": "retired"}
-"""FRET's status → ours; every other one is a draft."""
+"""FRET's status → the status of fretc; every other status becomes a draft."""
 
 OWN = "fretc"
-"""Where a record of `--emit fret-json` has the title and the text, for which FRET has no field."""
+"""The key in a record of `--emit fret-json` for title and text, which FRET has no fields for."""
 _FRET_FIELDS = ("project", "comments", "status", "_id", "reqid")
 _VARIABLE_FIELDS = frozenset(
     "_id project component_name variable_name dataType idType description reqs".split()
 )
 _IGNORED_FIELDS = frozenset({"modeldoc", "_rev", OWN})
 KEPT = "variable"
-"""The records of `[[fret.variable]]`: variables of FRET that are none here."""
+"""The table `[[fret.variable]]`: variables of FRET that are not imported."""
 
 
 @dataclass(frozen=True, slots=True)
-class Imported:
+class ImportedRequirement:
     """One requirement of the export."""
 
     id: str
@@ -56,8 +56,8 @@ class Imported:
 
 
 @dataclass(frozen=True, slots=True)
-class Import:
-    """What an export becomes."""
+class ImportResult:
+    """The result of an import: files and diagnostics."""
 
     artifacts: tuple[Artifact, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
@@ -66,7 +66,7 @@ class Import:
     mapping: Mapping[str, str] = field(default_factory=dict)
 
 
-def read_export(source: Source, columns: Mapping[str, str]) -> Import:
+def read_export(source: Source, columns: Mapping[str, str]) -> ImportResult:
     """Read FRET's JSON, or a CSV of any tool.
 
     Args:
@@ -74,10 +74,10 @@ def read_export(source: Source, columns: Mapping[str, str]) -> Import:
         columns: for CSV, the names of the columns `id`, `text` and `project`.
     """
     result = with_budget(len(source.text), source.span(0, 0), lambda: _read(source, columns))
-    return Import((), (result,), 0, 0) if isinstance(result, Diagnostic) else result
+    return ImportResult((), (result,), 0, 0) if isinstance(result, Diagnostic) else result
 
 
-def _read(source: Source, columns: Mapping[str, str]) -> Import:
+def _read(source: Source, columns: Mapping[str, str]) -> ImportResult:
     if source.name.lower().endswith(".csv"):
         return _from_csv(source, columns)
     return _from_json(source)
@@ -86,7 +86,7 @@ def _read(source: Source, columns: Mapping[str, str]) -> Import:
 # JSON ------------------------------------------------------------------------------------------
 
 
-def _from_json(source: Source) -> Import:
+def _from_json(source: Source) -> ImportResult:
     try:
         data: Any = parsed(source.text).value
     except json.JSONDecodeError as error:
@@ -104,15 +104,15 @@ def _from_json(source: Source) -> Import:
     kept: list[Mapping[str, Any]] = []
     declared = _variables(variables, source, diagnostics, kept)
     files = [*_documents(entries), *_glossary(declared, kept)]
-    return Import(tuple(files), tuple(diagnostics), len(entries), len(declared))
+    return ImportResult(tuple(files), tuple(diagnostics), len(entries), len(declared))
 
 
 def _parts(data: Any) -> tuple[list[Mapping[str, Any]], list[Mapping[str, Any]]] | str:
-    """The requirements and the variables of an export, old or new; or what is wrong with it."""
+    """The requirements and the variables of an export, in any version; or the error."""
     if isinstance(data, list):
         records = _records(data)
         if len(records) < len(data):
-            return "it is an array of something else than objects"
+            return "it is an array with items that are not objects"
         return (records, []) if records and "reqid" in records[0] else ([], records)
     if not isinstance(data, dict):
         return "it is neither an array nor an object"
@@ -134,7 +134,7 @@ def _records(value: Any) -> list[Mapping[str, Any]]:
 
 def _requirements(
     records: Iterable[Mapping[str, Any]], source: Source, diagnostics: list[Diagnostic]
-) -> Iterator[Imported]:
+) -> Iterator[ImportedRequirement]:
     taken: set[str] = set()
     ids: dict[tuple[str, str], str] = {}
     entries: list[tuple[str, str, Mapping[str, Any]]] = []
@@ -154,28 +154,28 @@ def _requirements(
                 _warning(
                     Code.RENAMED,
                     f"requirement {number} ({reqid}{of}) is imported as `{id}`: `{wanted}` is "
-                    "taken, and capitals do not tell ids apart",
+                    "taken, and ids are compared without case",
                     source,
-                    "rename it in its project, or import each project into a folder of its own",
+                    "rename it in its project, or import each project into its own folder",
                 )
             )
         ids[project, reqid] = id
         entries.append((id, fulltext, record))
     for id, fulltext, record in entries:
         project = _text(record.get("project"))
-        yield Imported(id, _unfenced(fulltext), _header(id, record, ids), project)
+        yield ImportedRequirement(id, _unfenced(fulltext), _header(id, record, ids), project)
         diagnostics.extend(_unread(id, fulltext))
 
 
 def _unfenced(text: str) -> str:
-    """A line `+++` would end the sentence and begin a header: it is moved in by a space."""
+    """The text with each line `+++` indented, so that it does not begin a header."""
     return re.sub(r"^\ufeff?(?=\+\+\+)", " ", text, flags=re.MULTILINE)
 
 
 def _header(
     id: str, record: Mapping[str, Any], ids: Mapping[tuple[str, str], str]
 ) -> dict[str, Any]:
-    """The `.fret` header; what fretc does not use goes below `fret`."""
+    """The `.fret` header; fields that fretc does not use go below `fret`."""
     fret = {key: _text(record.get(key)) for key in _FRET_FIELDS}
     if fret["reqid"] == id:
         del fret["reqid"]
@@ -200,7 +200,7 @@ def _header(
 
 
 def _unread(id: str, fulltext: str) -> Iterator[Diagnostic]:
-    """A warning where the imported sentence is no FRETish; it is imported unchanged."""
+    """A warning if the imported sentence is not FRETish; it is imported unchanged."""
     source = Source(f"{id} (fulltext)", fulltext)
     if re.fullmatch(r'"[^"]*"', fulltext):
         return
@@ -210,13 +210,13 @@ def _unread(id: str, fulltext: str) -> Iterator[Diagnostic]:
 
 
 def _id(text: str) -> str:
-    """Letters, digits, `_`, `-` and `.`: what an id may have."""
+    """The text with all characters replaced that an id must not have."""
     cleaned = re.sub(r"[^A-Za-z0-9_.-]+", "-", text).strip("-._")
     return cleaned or "requirement"
 
 
 def _unique(id: str, project: str, taken: set[str]) -> str:
-    """Ids differ by more than capitals; FRET's differ within a project only."""
+    """A unique id: ids of fretc are unique without case, FRET's only within a project."""
     candidates = [id, f"{_id(project)}-{id}" if project else f"{id}-2"]
     candidates += [f"{id}-{n}" for n in range(2, len(taken) + 3)]
     free = next(c for c in candidates if c.lower() not in taken)
@@ -225,14 +225,14 @@ def _unique(id: str, project: str, taken: set[str]) -> str:
 
 
 def _text(value: Any) -> str:
-    """FRET writes lists and null where there is no text."""
+    """The value as text; empty for the list or null that FRET writes for no text."""
     text = value if isinstance(value, str) else "" if value in (None, [], {}) else str(value)
     return text.encode("utf-8", "replace").decode()  # half of a character is none
 
 
-def _documents(requirements: Sequence[Imported]) -> Iterator[Artifact]:
+def _documents(requirements: Sequence[ImportedRequirement]) -> Iterator[Artifact]:
     """One `.fret` file for each project."""
-    by_project: dict[str, list[Imported]] = {}
+    by_project: dict[str, list[ImportedRequirement]] = {}
     for requirement in requirements:
         by_project.setdefault(requirement.project, []).append(requirement)
     taken: set[str] = set()
@@ -242,7 +242,7 @@ def _documents(requirements: Sequence[Imported]) -> Iterator[Artifact]:
         yield Artifact(PurePosixPath(f"{name}.fret"), text)
 
 
-def _pair(requirement: Imported) -> str:
+def _pair(requirement: ImportedRequirement) -> str:
     return f"+++\n{tomli_w.dumps(requirement.header)}+++\n{requirement.fulltext}\n"
 
 
@@ -255,18 +255,17 @@ def _variables(
     diagnostics: list[Diagnostic],
     kept: list[Mapping[str, Any]],
 ) -> dict[str, dict[str, Any]]:
-    """`[variable.NAME]` tables: names are those of one folder, whatever project they are of.
+    """The tables `[variable.NAME]`; names belong to the folder, not to a project.
 
-    What a name is for another component stands in a table `of` that component. Of several
-    variables of one name and one component the first is read; F530 names the differences of the
-    others.
+    The meaning of a name for another component is a table `of` that component. Of several variables
+    with the same name and component the first is read; F530 names the differences of the others.
 
     Args:
-        records: of the export.
+        records: the records of the export.
         source: the export.
-        diagnostics: where what there is to say goes.
-        kept: where records go that are not read: what FRET has of a model, and other ones of a
-            variable that is read.
+        diagnostics: the list that receives diagnostics.
+        kept: the list that receives records that are not read: FRET's models, and further records
+            of a variable.
     """
     tables: dict[str, dict[str, Any]] = {}
     components: dict[str, dict[str, dict[str, Any]]] = {}
@@ -294,12 +293,12 @@ def _variables(
 
 
 def unquoted(name: str) -> str:
-    """FRET keeps the quotes of a name; in a sentence `"T"` is `T`."""
+    """The name without the quotes that FRET keeps; in a sentence `"T"` is `T`."""
     return name[1:-1] if re.fullmatch(r'"[^"\n]+"', name) else name
 
 
 def _without_circles(tables: Mapping[str, dict[str, Any]], source: Source) -> Iterator[Diagnostic]:
-    """F342 for variables that stand for one another: each keeps its assignment as a mere text."""
+    """F342 for variables with circular assignments; each keeps its assignment as text."""
     values: dict[str, e.Expression] = {}
     for name, table in tables.items():
         value = parse_value(Source(name, table.get("value", "")).span())
@@ -313,9 +312,10 @@ def _without_circles(tables: Mapping[str, dict[str, Any]], source: Source) -> It
             del table["value"]
         yield _warning(
             Code.DEFINITION_CIRCLE,
-            f"assignments lead in a circle: {' -> '.join(names[:12])}; they are kept, and not read",
+            f"assignments lead in a circle: {' -> '.join(names[:12])}; they are kept for FRET, "
+            "but not read",
             source,
-            "let one of them stand for numbers and other variables alone",
+            "define one of them without the others",
         )
 
 
@@ -343,33 +343,33 @@ def _variable(record: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _id_of_variable(record: Mapping[str, Any]) -> dict[str, str]:
-    """The `_id` that FRET does not make of the names of project, component and variable."""
+    """The `_id`, unless FRET derives it from the names of project, component and variable."""
     names = ("project", "component_name", "variable_name")
     id = _text(record.get("_id"))
     return {"_id": id} if id not in ("", "".join(_text(record.get(n)) for n in names)) else {}
 
 
 def _record(record: Mapping[str, Any]) -> dict[str, Any]:
-    """All that FRET keeps of a variable, as TOML has it."""
+    """FRET's record of a variable as TOML values."""
     ignored = {"_rev", OWN}
     return {k: _plain(v) for k, v in record.items() if k not in ignored and v is not None}
 
 
 def assignment_field(role: str) -> str:
-    """Where FRET keeps what a variable stands for; a mode has a place of its own for that."""
+    """The field of FRET for the assignment of a variable; modes have a different one."""
     return "modeRequirement" if role == Role.MODE else "assignment"
 
 
 def stands_for_something(role: str) -> bool:
-    """Whether FRET reads an assignment: what an input is nobody defines."""
+    """Whether FRET reads an assignment for the role; inputs have none."""
     return role in (Role.INTERNAL, Role.MODE)
 
 
 def _value(record: Mapping[str, Any], written: str) -> e.Expression | None:
-    """What a variable stands for: as fretc has written it, where FRET has kept what goes with it.
+    """The assignment of a variable, as fretc wrote it if FRET's copy still agrees.
 
-    None where it stands for nothing, as inputs and outputs do, or its assignment cannot be said
-    in FRETish.
+    None if it has no assignment, as inputs and outputs, or the assignment has no equivalent in
+    FRETish.
     """
     defines = stands_for_something(_text(record.get("idType")).lower())
     if not defines or record.get("variable_name") == "FTP":  # FRETish's own name of the first tick
@@ -401,14 +401,14 @@ def _merged(
     )
     return _warning(
         Code.MERGED_VARIABLE,
-        f"a second variable `{name}` is kept for FRET, and not read: it has {differences}",
+        f"a second variable `{name}` is kept for FRET, but not read: it has {differences}",
         source,
-        "import each project into a folder of its own, or make the two say the same",
+        "import each project into its own folder, or make the two variables equal",
     )
 
 
 def _plain(value: Any) -> Any:
-    """As TOML has it: texts, numbers, and lists of them; what it lacks as JSON text."""
+    """The value in TOML's types; other values become JSON text."""
     if isinstance(value, str):
         return _text(value)
     if isinstance(value, int | float):
@@ -430,7 +430,7 @@ def _glossary(
 ) -> Iterator[Artifact]:
     if tables or kept:
         content: dict[str, Any] = {"variable": {name: dict(t) for name, t in tables.items()}}
-        content |= {"fret": {KEPT: [dict(each) for each in kept]}} if kept else {}
+        content |= {"fret": {KEPT: [dict(record) for record in kept]}} if kept else {}
         text = (
             "# The variables of the requirements, as FRET's glossary has them. To audit logs,\n"
             "# declare a [clock], and bind each variable by a [proposition.NAME] over signals.\n\n"
@@ -450,7 +450,7 @@ _GUESSES = {
 }
 
 
-def _from_csv(source: Source, columns: Mapping[str, str]) -> Import:
+def _from_csv(source: Source, columns: Mapping[str, str]) -> ImportResult:
     delimiter = _delimiter(source.text)
     try:
         reader = csv.DictReader(
@@ -462,24 +462,24 @@ def _from_csv(source: Source, columns: Mapping[str, str]) -> Import:
         return _failed(f"it is not CSV: {error}", source)
     if not rows:
         return _failed(
-            "it has a header and no rows" if source.text.strip() else "it is empty", source
+            "it has a header, but no rows" if source.text.strip() else "it is empty", source
         )
     chosen = _columns(names, columns, source)
     if isinstance(chosen, Diagnostic):
-        return Import((), (chosen,))
+        return ImportResult((), (chosen,))
     diagnostics: list[Diagnostic] = []
     entries = list(_requirements((_row(row, chosen) for row in rows), source, diagnostics))
-    return Import(tuple(_documents(entries)), tuple(diagnostics), len(entries), 0, chosen)
+    return ImportResult(tuple(_documents(entries)), tuple(diagnostics), len(entries), 0, chosen)
 
 
 _DELIMITERS = ",;\t"
 
 
 def _delimiter(text: str) -> str:
-    """What parts the header into the most columns: a comma, a semicolon or a tab.
+    """The delimiter that splits the header into the most columns: comma, semicolon or tab.
 
-    Spreadsheets write semicolons where a comma parts the digits of a number. The first of these
-    wins where two part it alike.
+    Spreadsheets write semicolons where the decimal separator is a comma. If two delimiters split it
+    alike, the first one counts.
     """
 
     def columns(delimiter: str) -> int:
@@ -494,7 +494,7 @@ def _delimiter(text: str) -> str:
 def _columns(
     names: Sequence[str], options: Mapping[str, str], source: Source
 ) -> dict[str, str] | Diagnostic:
-    """Which column is which: as asked for, or by its name."""
+    """The names of the columns, as requested or recognized."""
     chosen: dict[str, str] = {}
     for part, guesses in _GUESSES.items():
         wanted = options.get(part)
@@ -519,7 +519,7 @@ def _columns(
 
 
 def _row(row: Mapping[str | None, Any], chosen: Mapping[str, str]) -> dict[str, Any]:
-    """As a FRET record; text that is no FRETish is quoted, as FRET does, and kept as free text."""
+    """The row as a FRET record; text that is not FRETish is quoted, and kept as free text."""
     text = _text(row.get(chosen["text"])).strip()
     if text and isinstance(parse(Source("row", text).span()), Diagnostic):
         text = '"' + text.replace('"', "'") + '"'
@@ -540,8 +540,8 @@ def _row(row: Mapping[str | None, Any], chosen: Mapping[str, str]) -> dict[str, 
 # Mistakes --------------------------------------------------------------------------------------
 
 
-def _failed(why: str, source: Source, at: int = 0) -> Import:
-    return Import((), (_bad(why, source, "give it an export of FRET (JSON), or a CSV", at),))
+def _failed(why: str, source: Source, at: int = 0) -> ImportResult:
+    return ImportResult((), (_bad(why, source, "use an export of FRET (JSON), or a CSV file", at),))
 
 
 def _bad(why: str, source: Source, fix: str, at: int = 0) -> Diagnostic:

@@ -1,12 +1,15 @@
-"""The hazards that a project is there to prevent, as `hazards.toml` declares them."""
+"""Hazards, and whether the parents of requirements lead to them."""
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from compiler.files.text_files import read
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
+from fretish.documents import RequirementEntry
+from fretish.reading.natural_order import natural
 from fretish.reading.toml_text import Tables
 from fretish.reading.toml_text import read as read_tables
 
@@ -15,7 +18,7 @@ _FIELDS = ("title", "text", "severity", "source")
 
 @dataclass(frozen=True, slots=True)
 class Hazard:
-    """What a requirement is there to prevent."""
+    """A hazard of `hazards.toml`, which requirements are to control."""
 
     id: str
     title: str
@@ -25,7 +28,7 @@ class Hazard:
 
 
 def hazards(path: str) -> tuple[dict[str, Hazard], tuple[Diagnostic, ...]]:
-    """`[HAZ-001]` tables with `title`, and perhaps `text`, `severity`, `source`."""
+    """The hazards of a file: tables `[HAZ-001]` with `title`, and optional other fields."""
     source = read(path)
     if isinstance(source, Diagnostic):
         return {}, (source,)
@@ -43,14 +46,116 @@ def _mistakes(tables: Tables, id: str, fields: Any) -> list[Diagnostic]:
         return Diagnostic(Code.BAD_HAZARDS, message, tables.place(*path), help=fix)
 
     if not isinstance(fields, dict):
-        return [wrong(f"`{id}` is no hazard", f'write `[{id}]`, then `title = "..."`', id)]
-    found = []
+        return [wrong(f"`{id}` is not a hazard table", f'write `[{id}]`, then `title = "..."`', id)]
+    diagnostics = []
     for key, value in fields.items():
         if key not in _FIELDS:
-            known = ", ".join(_FIELDS)
-            found.append(wrong(f"`{key}` is no field of a hazard", f"it may have {known}", id, key))
+            fields_text = ", ".join(_FIELDS)
+            diagnostics.append(
+                wrong(f"`{key}` is not a field of a hazard", f"it may have {fields_text}", id, key)
+            )
         elif not isinstance(value, str):
-            found.append(wrong(f"`{key}` must be a text", "write it in quotes", id, key))
+            diagnostics.append(wrong(f"`{key}` must be a text", "write it in quotes", id, key))
     if "title" not in fields:
-        found.append(wrong(f"the hazard {id} has no title", 'add `title = "..."`', id))
-    return found
+        diagnostics.append(wrong(f"the hazard {id} has no title", 'add `title = "..."`', id))
+    return diagnostics
+
+
+# Parents ------------------------------------------------------------------------------------------
+
+
+def unknown_parents(
+    requirements: Sequence[RequirementEntry],
+    hazards: Collection[str],
+    external: Collection[str],
+    file: str | None,
+) -> Iterator[Diagnostic]:
+    """F501 for each parent that is neither a hazard, nor a requirement, here or in another tool.
+
+    If no file can declare a parent, one diagnostic covers all of them.
+
+    Args:
+        requirements: the requirements.
+        hazards: ids of the hazards.
+        external: ids of the parents in other tools.
+        file: the hazards file; None if there is none.
+    """
+    ids = [requirement.id for requirement in requirements]
+    declared = [*sorted({*hazards, *external}, key=natural), *ids]
+    unknown = [(r, parent) for r in requirements for parent in r.parents if parent not in declared]
+    if unknown and file is None and not external:
+        requirement, parent = unknown[0]
+        more = len(unknown) - 1
+        remainder = (
+            f" ({more} more {'parent is' if more == 1 else 'parents are'}, too)" if more else ""
+        )
+        yield _unknown(
+            requirement,
+            f"there is no `hazards.toml`: the parent `{parent}` of {requirement.id} is declared "
+            f"nowhere{remainder}",
+            "write `hazards.toml` beside the requirements, or name it with `--hazards`",
+        )
+        return
+    for requirement, parent in unknown:
+        near = suggestion(parent, declared)
+        yield _unknown(
+            requirement,
+            f"{requirement.id} names the parent `{parent}`, which is not declared",
+            f"did you mean `{near}`?" if near else "declare it in hazards.toml",
+        )
+
+
+def _unknown(requirement: RequirementEntry, message: str, fix: str) -> Diagnostic:
+    place = requirement.place("parents")
+    return Diagnostic(Code.UNKNOWN_PARENT, message, place, fix, Severity.WARNING)
+
+
+def cycles(requirements: Sequence[RequirementEntry]) -> Iterator[Diagnostic]:
+    """F526 for each circle of parents, once, at its first requirement."""
+    by_id = {requirement.id: requirement for requirement in requirements}
+    earlier: set[frozenset[str]] = set()
+    for requirement in requirements:
+        circle = _circle(requirement.id, by_id)
+        if circle and frozenset(circle) not in earlier:
+            earlier.add(frozenset(circle))
+            yield Diagnostic(
+                Code.PARENTS_IN_A_CIRCLE,
+                f"{requirement.id} is its own ancestor: {' → '.join(circle)}",
+                requirement.place("parents"),
+                help="remove one of these links from `parents`",
+            )
+
+
+def _circle(start: str, by_id: dict[str, RequirementEntry]) -> list[str]:
+    """A shortest path from a requirement up to itself; empty where there is none."""
+    came: dict[str, str] = {}
+    waiting = [start]
+    for id in waiting:  # it grows while it is walked: breadth first
+        for parent in by_id[id].parents if id in by_id else ():
+            if parent == start:
+                way = [start, id]
+                while way[-1] != start:
+                    way.append(came[way[-1]])
+                return way[::-1]
+            if parent not in came:
+                came[parent] = id
+                waiting.append(parent)
+    return []
+
+
+def without_hazard(
+    active: Sequence[RequirementEntry], declared: Collection[str]
+) -> Iterator[RequirementEntry]:
+    """The requirements with parents of which none leads to anything declared.
+
+    Args:
+        active: the requirements that are not retired; the path to a hazard uses no others.
+        declared: ids of hazards, and of parents in other tools.
+    """
+    reached = {requirement.id for requirement in active if {*declared} & {*requirement.parents}}
+    while True:
+        more = {r.id for r in active if reached & {*r.parents}} - reached
+        if not more:
+            break
+        reached |= more
+    return (r for r in active if r.parents and r.id not in reached)

@@ -1,7 +1,7 @@
-"""FRET's assignments: Lustre ↔ the expressions of FRETish.
+"""Conversion of FRET's assignments between Lustre and the expressions of FRETish.
 
-Only what certainly means the same is translated; the rest of Lustre (`if`, `div`, `pre` without a
-first value) stays the text that it is. `0.0 -> pre x`, with a literal that says the type, is
+Only expressions with a certainly equal meaning are converted; other Lustre (`if`, `div`, `pre`
+without a first value) stays text. `0.0 -> pre x`, with a literal that shows the type, is
 `preReal(0.0, x)`. Source: Lustre V6 reference manual, expressions and their precedences.
 """
 
@@ -27,17 +27,17 @@ _FOREIGN = frozenset(
     "current when merge fby if then else with div nor int real bool let tel node const "
     "returns var at of the is".split()
 )
-"""Words that Lustre has for itself, or FRETish."""
+"""Words that are reserved in Lustre or in FRETish."""
 _SIGNS = {"<>": "!=", "=>": "->"}
 _ENDS_NEGATION = frozenset({")", ",", "and", "or", "=>", "xor", ""})
-"""What follows a name that `not` stands before: whether it binds closer than `=` is disputed."""
+"""Tokens that may follow a negated name: whether `not` binds closer than `=` is disputed."""
 _MOST = 20_000
-"""Characters of an assignment that is read."""
+"""Maximum number of characters of an assignment."""
 _MOST_DELAYS = 50
 
 
 def fretish(text: str) -> e.Expression | None:
-    """What an assignment means in FRETish; None where that is not certain."""
+    """The assignment in FRETish; None if that is not certain."""
     if len(text) > _MOST:
         return None
     lexemes = _delayed(_lexemes(text) or [])
@@ -51,32 +51,44 @@ def fretish(text: str) -> e.Expression | None:
 
 
 def _lexemes(text: str) -> list[str] | None:
-    found, place = [], 0
-    while text[place:].strip():
-        match = _LEXEME.match(text, place)
+    lexemes, index = [], 0
+    while text[index:].strip():
+        match = _LEXEME.match(text, index)
         if match is None or match["word"] in _FOREIGN:
             return None
-        found.append(match[0].strip())
-        place = match.end()
-    return found
+        lexemes.append(match[0].strip())
+        index = match.end()
+    return lexemes
 
 
 def _delayed(lexemes: list[str]) -> list[str]:
-    """With `preReal(0.0, x)` for `0.0 -> pre x`, where it stands alone or in parentheses."""
-    found = lexemes if lexemes.count("->") <= _MOST_DELAYS else []
-    for arrow in reversed([i for i, word in enumerate(found) if word == "->"]):
-        first, after = _literal(found[:arrow]), _after_pre(found, arrow)
+    """The tokens with `preReal(0.0, x)` for `0.0 -> pre x` that stands alone or in parentheses."""
+    rewritten = lexemes if lexemes.count("->") <= _MOST_DELAYS else []
+    for arrow in reversed([i for i, word in enumerate(rewritten) if word == "->"]):
+        first, after = _literal(rewritten[:arrow]), _after_pre(rewritten, arrow)
         begin = arrow - len(first)
-        alone = found[begin - 1 : begin] in ([], ["("]) and found[after : after + 1] in ([], [")"])
-        if not first or not after or not alone or _is_called(found, begin - 1):
+        alone = rewritten[begin - 1 : begin] in ([], ["("]) and rewritten[after : after + 1] in (
+            [],
+            [")"],
+        )
+        if not first or not after or not alone or _is_called(rewritten, begin - 1):
             return []
-        inner = found[arrow + 2 : after]
-        found = [*found[:begin], _function(first), "(", *first, ",", *inner, ")", *found[after:]]
-    return found
+        inner = rewritten[arrow + 2 : after]
+        rewritten = [
+            *rewritten[:begin],
+            _function(first),
+            "(",
+            *first,
+            ",",
+            *inner,
+            ")",
+            *rewritten[after:],
+        ]
+    return rewritten
 
 
 def _literal(before: list[str]) -> list[str]:
-    """The literal at the end; none where something else is there."""
+    """The literal at the end; empty if there is none."""
     last = before[-1:]
     if last and (last[0] in ("true", "false") or last[0][0].isdigit()):
         negative = before[-2:-1] == ["-"] and last[0][0].isdigit()
@@ -85,7 +97,7 @@ def _literal(before: list[str]) -> list[str]:
 
 
 def _after_pre(lexemes: list[str], arrow: int) -> int:
-    """The place after `pre x` or `pre (...)` that follows; 0 where none does."""
+    """The index after the following `pre x` or `pre (...)`; 0 if there is none."""
     if lexemes[arrow + 1 : arrow + 2] != ["pre"] or len(lexemes) < arrow + 3:
         return 0
     start, level = arrow + 2, 0
@@ -100,20 +112,20 @@ def _after_pre(lexemes: list[str], arrow: int) -> int:
 
 
 def _is_called(lexemes: list[str], opening: int) -> bool:
-    """Whether the parenthesis holds the arguments of a function."""
+    """Whether the parenthesis contains the arguments of a function."""
     before = lexemes[opening - 1 : opening] if opening > 0 else []
     return bool(before) and before[0] not in (*_WORDS, "pre") and before[0][0].isalpha()
 
 
 def _function(first: list[str]) -> str:
-    """What takes a value of the type of the literal."""
+    """The function for the type of the literal."""
     if first[-1] in ("true", "false"):
         return "preBool"
     return "preReal" if "." in first[-1] or "e" in first[-1].lower() else "preInt"
 
 
 def _is_clear(lexemes: list[str]) -> bool:
-    """Whether `or` and `xor`, whose ranks differ, do not meet, nor `not` and a comparison."""
+    """Whether `or` and `xor` are not mixed, nor `not` and a comparison: their ranks differ."""
     if any({"or", "xor"} <= signs for signs in _levels(lexemes)):
         return False
     for i, word in enumerate(lexemes):
@@ -126,22 +138,22 @@ def _is_clear(lexemes: list[str]) -> bool:
 
 
 def _levels(lexemes: list[str]) -> list[set[str]]:
-    """What stands between each pair of parentheses, and in none, without what is inside of it."""
-    found: list[set[str]] = [set()]
+    """The tokens of each pair of parentheses, and of the top level, without nested ones."""
+    levels: list[set[str]] = [set()]
     open_ = [0]
     for word in lexemes:
         if word == "(":
-            open_.append(len(found))
-            found.append(set())
+            open_.append(len(levels))
+            levels.append(set())
         elif word == ")" and len(open_) > 1:
             open_.pop()
         else:
-            found[open_[-1]].add(word)
-    return found
+            levels[open_[-1]].add(word)
+    return levels
 
 
 def _is_followed(lexemes: list[str], opening: int) -> bool:
-    """Whether what follows the closing parenthesis ends a negation."""
+    """Whether the token after the closing parenthesis ends a negation."""
     level = 0
     for i in range(opening, len(lexemes)):
         level += {"(": 1, ")": -1}.get(lexemes[i], 0)
@@ -152,7 +164,7 @@ def _is_followed(lexemes: list[str], opening: int) -> bool:
 
 @with_recursion_limit
 def lustre(tree: e.Expression) -> str | None:
-    """The expression as FRET's assignment; None where Lustre does not have what it says."""
+    """The expression as FRET's assignment; None if Lustre cannot express it."""
     if any(not _has(part) for part in e.parts(tree)):
         return None
     return _text(tree)
@@ -169,7 +181,7 @@ def _has(part: e.Expression) -> bool:
 
 
 def _text(tree: e.Expression) -> str:
-    """Every operator within another one in parentheses."""
+    """The text, with parentheses around every nested operator."""
     match tree:
         case e.Truth(value):
             return str(value).lower()

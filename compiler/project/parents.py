@@ -1,9 +1,9 @@
-"""Requirements that live in other tools, as parents of ours: their ids, titles and texts.
+"""Parent requirements in documents of other tools: their ids, titles and texts.
 
-Each tool's own reading counts, never one that looks like it: of StrictDoc, Doorstop and
-sphinx-needs the file is read that the tool itself exports, and ReqIF by the library `reqif`. An
-export is plain data, so nothing of an untrusted document is executed; StrictDoc's library would run
-`strictdoc_config.py`, and needs some seventy packages; Doorstop's follows `!include`.
+Only each tool's own interpretation is used: for StrictDoc, Doorstop and sphinx-needs the export
+that the tool writes, and for ReqIF the library `reqif`. An export is plain data, so no content of
+an untrusted document is executed; StrictDoc's library would run `strictdoc_config.py` and needs
+some seventy packages; Doorstop's library follows `!include`.
 
 Sources: StrictDoc, `strictdoc export --formats=json`; Doorstop, `doorstop export --yaml`;
 sphinx-needs, needs.json; OMG, Requirements Interchange Format (ReqIF) 1.2.
@@ -23,7 +23,7 @@ from xml.etree import ElementTree
 
 from compiler.files.checked_json import SchemaError, plain
 from compiler.files.settings import Settings
-from compiler.files.text_files import regular
+from compiler.files.text_files import open_regular
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import missing_extra
 from fretish.diagnostics.source import Source, Span
@@ -39,15 +39,15 @@ class Parent:
     title: str
     text: str
     source: str
-    """The document that it is in."""
+    """The path of its document."""
 
 
 class UnreadableError(Exception):
-    """The document is not what its name says; the text says why."""
+    """The document is not in the format of its name; the message says why."""
 
 
 def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic, ...]]:
-    """Every parent in the documents of the settings, and what is wrong with these."""
+    """The parents in the documents of the settings, by id; and diagnostics."""
     by_id: dict[str, Parent] = {}
     diagnostics = []
     for name in settings.parents:
@@ -69,13 +69,13 @@ def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic,
 
 
 def _demand_within(settings: Settings, path: Path) -> None:
-    """The settings may be somebody else's: they make us read nothing outside of his project.
+    """Check that a document lies in the project, since settings may come from somebody else.
 
     Raises:
-        UnreadableError: it, or a document in it, is outside.
+        UnreadableError: the path, or a document in it, lies outside.
     """
-    for each in (path, *(sorted(path.glob("*.yml")) if path.is_dir() else ())):
-        if not settings.holds(each):
+    for file in (path, *(sorted(path.glob("*.yml")) if path.is_dir() else ())):
+        if not settings.holds(file):
             raise UnreadableError(_OUTSIDE)
 
 
@@ -87,7 +87,7 @@ def _all(path: Path, name: str) -> tuple[Parent, ...]:
 
 
 def _size(path: Path) -> int:
-    """Bytes of a document, or of a folder of documents."""
+    """The size in bytes of a document, or of a folder of documents."""
     return sum(
         document.stat().st_size for document in (path.glob("*.yml") if path.is_dir() else [path])
     )
@@ -98,7 +98,7 @@ def _unreadable(settings: Settings, name: str, why: str) -> Diagnostic:
         Code.BAD_PARENTS,
         f"the parents in `{name}` cannot be read: {why}",
         _place(settings, name),
-        help="name its folder, if it is meant: `fretc --parents FOLDER COMMAND ...`"
+        help="to allow it, name its folder: `fretc --parents FOLDER COMMAND ...`"
         if why == _OUTSIDE
         else _EXPORTS.get(Path(name).suffix.lower(), _EXPORTS[""]),
     )
@@ -136,17 +136,17 @@ def _read(path: Path, name: str) -> Iterator[Parent]:
         case ".reqifz":
             return _reqifz(path, name)
         case ".sdoc":
-            raise UnreadableError("only StrictDoc itself reads its documents for certain")
+            raise UnreadableError("only StrictDoc itself can read its documents reliably")
         case _:
-            raise UnreadableError("no format is known by that ending")
+            raise UnreadableError("its extension belongs to no supported format")
 
 
 _MOST = 64 * 2**20
-"""Bytes of a document; more is none of requirements."""
+"""Maximum number of bytes of a document."""
 
 
 def _text(path: Path) -> str:
-    with regular(path) as file:
+    with open_regular(path) as file:
         return _decoded(file.read(_MOST + 1))
 
 
@@ -173,7 +173,7 @@ def _json(text: str, name: str) -> Iterator[Parent]:
         return _strictdoc(data["DOCUMENTS"], name)
     if isinstance(data, dict) and "versions" in data:
         return _needs(data, name)
-    raise UnreadableError("it has neither `DOCUMENTS`, as StrictDoc writes, nor `versions`")
+    raise UnreadableError("it has neither `DOCUMENTS` (StrictDoc) nor `versions` (sphinx-needs)")
 
 
 # StrictDoc -------------------------------------------------------------------------------------
@@ -182,7 +182,7 @@ _NO_TEXT = ("UID", "MID", "TITLE", "NODES", "RELATIONS", "GRAMMAR", "OPTIONS", "
 
 
 def _strictdoc(documents: Sequence[Any], name: str) -> Iterator[Parent]:
-    """Every node with a UID below the documents, of whatever type their grammars have."""
+    """Every node with a UID in the documents, of any type."""
     waiting = [node for document in reversed(documents) for node in _nodes(document)]
     while waiting:
         node = waiting.pop()
@@ -193,15 +193,15 @@ def _strictdoc(documents: Sequence[Any], name: str) -> Iterator[Parent]:
 
 
 def _nodes(node: Any) -> list[dict[str, Any]]:
-    """What is below it, the first one last."""
+    """The child nodes, in reverse order."""
     below = node.get("NODES", []) if isinstance(node, dict) else None
-    if not isinstance(below, list) or not all(isinstance(each, dict) for each in below):
+    if not isinstance(below, list) or not all(isinstance(child, dict) for child in below):
         raise UnreadableError("its nodes are not as StrictDoc writes them")
     return below[::-1]
 
 
 def _statement(node: Mapping[str, Any]) -> str:
-    """Its statement; all other texts of a node whose grammar has none."""
+    """The statement of a node; if its grammar has none, all of its other texts."""
     if "STATEMENT" in node:
         return str(node["STATEMENT"])
     texts = {k: v for k, v in node.items() if k not in _NO_TEXT and not k.startswith("_")}
@@ -217,7 +217,7 @@ def _exports(folder: Path, name: str) -> Iterator[Parent]:
         raise UnreadableError("it holds the items; `doorstop export --yaml all FOLDER` writes them")
     paths = sorted(folder.glob("*.yml"))
     if not paths:
-        raise UnreadableError("no export of Doorstop (`*.yml`) is in it")
+        raise UnreadableError("it has no export of Doorstop (`*.yml`)")
     for path in paths:
         yield from _doorstop(path, name)
 
@@ -227,9 +227,9 @@ def _doorstop(path: Path, name: str) -> Iterator[Parent]:
     try:
         document = loaded(_text(path))
     except ValueError as error:
-        raise UnreadableError(f"{path.name} is not YAML that is read: {error}") from None
+        raise UnreadableError(f"{path.name} cannot be read as YAML: {error}") from None
     if not isinstance(document, dict) or not all(_is_item(item) for item in document.values()):
-        raise UnreadableError(f"{path.name} is no export of Doorstop")
+        raise UnreadableError(f"{path.name} is not an export of Doorstop")
     for uid, item in document.items():
         if item.get("active", True):
             yield _parent(str(uid), item.get("header"), item["text"], name)
@@ -245,7 +245,7 @@ def _is_item(item: Any) -> bool:
 
 
 def _needs(data: Mapping[str, Any], name: str) -> Iterator[Parent]:
-    """The needs of the current version."""
+    """The needs of the current version of needs.json."""
     versions, current = data["versions"], data.get("current_version")
     if not isinstance(versions, dict) or not isinstance(current, str) or current not in versions:
         raise UnreadableError("its `current_version` is not among its `versions`")
@@ -255,7 +255,7 @@ def _needs(data: Mapping[str, Any], name: str) -> Iterator[Parent]:
         raise UnreadableError("its version has no `needs`")
     for id, need in needs.items():
         if not isinstance(need, dict):
-            raise UnreadableError(f"`{id}` is no need")
+            raise UnreadableError(f"`{id}` is not a need")
         content = need.get("content", need.get("description"))
         yield _parent(id, str(need.get("title") or ""), str(content or ""), name)
 
@@ -263,22 +263,23 @@ def _needs(data: Mapping[str, Any], name: str) -> Iterator[Parent]:
 # ReqIF -----------------------------------------------------------------------------------------
 
 _LEAST_PACKED, _RATIO = 2**22, 50
-"""An archive unpacks to so many bytes, and so many more for each of its own: XML packs well."""
+"""Limit of unpacking an archive: bytes, and bytes for each byte of the archive, because XML
+compresses well."""
 _NAMES = ("ReqIF.ForeignID", "ReqIF.Name", "ReqIF.ChapterName", "ReqIF.Text", "UID", "TITLE")
 
 
 def _reqifz(path: Path, name: str) -> Iterator[Parent]:
     try:
-        with regular(path) as file, zipfile.ZipFile(file) as archive:
+        with open_regular(path) as file, zipfile.ZipFile(file) as archive:
             inside = sorted(n for n in archive.namelist() if n.lower().endswith(".reqif"))
             most = _LEAST_PACKED + _RATIO * path.stat().st_size
-            if sum(archive.getinfo(each).file_size for each in inside) > most:
-                raise UnreadableError("it unpacks to far more than such archives do")
-            texts = [_inside(archive, each) for each in inside]
+            if sum(archive.getinfo(member).file_size for member in inside) > most:
+                raise UnreadableError("it unpacks to far more data than a ReqIF archive should")
+            texts = [_inside(archive, member) for member in inside]
     except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, ValueError):
         texts = []  # RuntimeError: it is encrypted, or packed in a way that Python does not know
     if not texts:
-        raise UnreadableError("it is no archive of ReqIF files")
+        raise UnreadableError("it is not an archive of ReqIF files")
     for text in texts:
         yield from _reqif(text, name)
 
@@ -289,11 +290,11 @@ def _inside(archive: zipfile.ZipFile, member: str) -> str:
 
 
 def _reqif(text: str, name: str) -> Iterator[Parent]:
-    """Every SPEC-OBJECT, by its foreign id where it has one, else by its identifier."""
+    """Every SPEC-OBJECT, with its foreign id if it has one, else its identifier."""
     from reqif.parser import ReqIFParser
 
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise UnreadableError("it declares a document type, which ReqIF has none of")
+        raise UnreadableError("it declares a document type, which a ReqIF file must not have")
     try:
         content = ReqIFParser.parse_from_string(text).core_content.req_if_content
         types, objects = content.spec_types or (), content.spec_objects or ()
@@ -302,14 +303,14 @@ def _reqif(text: str, name: str) -> Iterator[Parent]:
             for kind in types
             for definition in getattr(kind, "attribute_definitions", None) or ()
         }
-        members = [_spec_object(each, names, name) for each in objects]
+        members = [_spec_object(spec_object, names, name) for spec_object in objects]
     except Exception as error:  # the library has no exception of its own for what it cannot read
-        raise UnreadableError(f"the library `reqif` does not take it: {_first(error)}") from None
+        raise UnreadableError(f"the library `reqif` cannot read it: {_first(error)}") from None
     yield from members
 
 
 def _first(error: Exception) -> str:
-    """The first line of what it says."""
+    """The first line of the error message."""
     return next(iter(str(error).splitlines()), "") or type(error).__name__
 
 
@@ -332,7 +333,7 @@ def _spec_object(spec: Any, names: Mapping[str, str], source: str) -> Parent:
 
 
 def _value(attribute: Any) -> str:
-    """The value as text; of XHTML without its elements."""
+    """The value as text, without XHTML elements."""
     value = attribute.value
     if isinstance(value, list):
         return ", ".join(map(str, value))

@@ -1,4 +1,4 @@
-"""Paths of a project: the files with its requirements, and what stands beside them."""
+"""Paths of a project: the requirement files, and the files beside them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HAZARDS = "hazards.toml"
 
 
 def requirement_files(folder: str) -> list[str] | Diagnostic:
-    """The `.fret` files of a folder, `r2` before `r10`; or the one file, where it is a file."""
+    """The `.fret` files of a folder in natural order (`r2` before `r10`); or the given file."""
     try:
         if not _is_folder(folder):
             return [folder] if Path(folder).is_file() else _absent("there is no folder", folder)
@@ -25,8 +25,8 @@ def requirement_files(folder: str) -> list[str] | Diagnostic:
         names = sorted(listed, key=natural)
     except OSError as error:
         return unreadable(folder, error)
-    found = [str(Path(folder) / name) for name in names]
-    return [path for path in found if not _is_folder(path)] or _absent(
+    paths = [str(Path(folder) / name) for name in names]
+    return [path for path in paths if not _is_folder(path)] or _absent(
         "no requirement (`*.fret`) is in", folder
     )
 
@@ -36,40 +36,40 @@ def _absent(what: str, folder: str) -> Diagnostic:
         Code.NO_SUCH_FILE,
         f"{what} `{folder}`",
         Source(folder, "").span(),
-        help="name the folder that your requirements are in, with `--requirements`; or begin one: "
+        help="name the folder of your requirements with `--requirements`, or create one: "
         "`fretc init`",
     )
 
 
 def _is_folder(path: str) -> bool:
-    """An empty name is none, though Python takes it for the current folder."""
+    """Whether the path is a folder; the empty path is not, though Python accepts it."""
     return bool(path) and path != "-" and os.path.isdir(path)
 
 
-def listed(paths: Sequence[str]) -> list[str] | Diagnostic:
-    """The files, with those of a folder in its place; each once, however it is spelt.
+def expanded_paths(paths: Sequence[str]) -> list[str] | Diagnostic:
+    """The files, with folders replaced by their files; each once, however it is spelt.
 
-    In the order of `paths`; in the natural one where theirs is that of a shell's `*.fret`.
+    The order is that of `paths`, or the natural one if `paths` has the order of a shell's `*.fret`.
     """
-    found: dict[str, str] = {}
+    by_identity: dict[str, str] = {}
     for path in sorted(paths, key=natural) if [*paths] == sorted(paths) else paths:
         files = requirement_files(path) if _is_folder(path) else [path]
         if isinstance(files, Diagnostic):
-            return replace(files, help="name files, or a folder that has some")
+            return replace(files, help="name `.fret` files, or a folder with `.fret` files")
         for file in files:
-            found.setdefault(os.path.realpath(file) if file != "-" else file, file)
-    return list(found.values())
+            by_identity.setdefault(os.path.realpath(file) if file != "-" else file, file)
+    return list(by_identity.values())
 
 
 def sibling_path(folder: str, name: str) -> str | None:
-    """The path of a file in the requirements folder, where it is there."""
+    """The path of a file in the requirements folder; None if it is missing."""
     return first_sibling_path(
         [folder if os.path.isfile(folder) else str(Path(folder) / "any")], name
     )
 
 
 def companions(paths: Sequence[str]) -> tuple[str, ...]:
-    """What stands beside the first requirement and is read with it; no output may replace it."""
+    """The files beside the first requirement that are read with it; no output may replace them."""
     names = (BINDINGS, HAZARDS, "fretc.toml", "fretc.lock", "waivers.toml", "allowed_signers")
     return tuple(
         path for path in (first_sibling_path(paths, name) for name in names) if path is not None
@@ -77,7 +77,7 @@ def companions(paths: Sequence[str]) -> tuple[str, ...]:
 
 
 def first_sibling_path(paths: Sequence[str], name: str) -> str | None:
-    """The path of a file in the folder of the first of these, where it is there."""
+    """The path of a file in the folder of the first path; None if it is missing."""
     first = next((path for path in paths if path != "-"), None)
     path = str(Path(first).parent / name) if first else None
     return path if path is not None and os.path.exists(path) else None

@@ -1,33 +1,16 @@
-"""What a mistake in a project reaches: the requirements that read it, and no others."""
+"""The requirements that an error in a project affects: those that read the erroneous text."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from compiler.formalization.binding_agreement import broken_tables
 from compiler.formalization.formalized import FormalizedRequirement
+from compiler.project.project import Project, Refused
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.documents import RequirementEntry
-
-if TYPE_CHECKING:
-    from compiler.project.folder import Project
-
-
-@dataclass(frozen=True, slots=True)
-class Refused:
-    """A requirement that nothing can be made of, and the mistakes in what it reads."""
-
-    requirement: RequirementEntry
-    why: tuple[Diagnostic, ...]
-    """Errors: in its header, its sentence, its id, and the bindings of its names."""
-
-    @property
-    def is_in_force(self) -> bool:
-        """Whether anybody misses it."""
-        return self.requirement.status != "retired"
 
 
 def refused(
@@ -37,18 +20,18 @@ def refused(
     declarations: Declarations | None,
     unusable: Iterable[Diagnostic],
 ) -> tuple[Refused, ...]:
-    """The requirements that some mistake reaches, in their order.
+    """The requirements with an error in what they read, in order.
 
     Args:
         requirements: all of them.
-        formalized: those that could be formalized.
-        own: the mistake of a requirement in its file, by its `id()`; a note is none.
-        declarations: the bindings; None where there are none.
-        unusable: mistakes in the bindings that every requirement reads.
+        formalized: the formalized ones among them.
+        own: the diagnostic of a requirement in its file, by the entry's `id()`; notes are ignored.
+        declarations: the bindings; None if there are none.
+        unusable: errors in the parts of the bindings that every requirement reads.
     """
     rule_of = {id(requirement.entry): requirement for requirement in formalized}
-    of_all = [each for each in unusable if each.is_error]
-    found = []
+    of_all = [diagnostic for diagnostic in unusable if diagnostic.is_error]
+    refusals = []
     for entry in requirements:
         requirement, mistake = rule_of.get(id(entry)), own.get(id(entry))
         why = [mistake] if mistake is not None and mistake.is_error else []
@@ -57,17 +40,17 @@ def refused(
         if requirement is not None and declarations is not None:
             why.extend(broken_tables(requirement, declarations))
         if why:
-            found.append(Refused(entry, tuple(dict.fromkeys(why))))
-    return tuple(found)
+            refusals.append(Refused(entry, tuple(dict.fromkeys(why))))
+    return tuple(refusals)
 
 
 def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
-    """The requirements whose chain up to the hazards a mistake reaches, by their `id()`.
+    """The errors that prevent a trace or a review, by the `id()` of each requirement.
 
-    Beside those that nothing can be made of: a trace, a review or a comparison of a requirement
-    reads the headers and hazards above it, and the warnings that are accepted.
+    They include the errors of refused requirements. A trace also reads the headers and hazards
+    above a requirement, and the accepted warnings.
     """
-    found = {id(each.requirement): [*each.why] for each in project.refused}
+    errors = {id(each.requirement): [*each.why] for each in project.refused}
     of_headers = {mistake for each in project.requirements for mistake in each.mistakes}
     tables = project.declarations.mistakes.values() if project.declarations else ()
     of_formulas = {why for each in project.refused for why in each.why} - of_headers
@@ -78,33 +61,33 @@ def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
         if mistake.is_error and mistake not in of_formulas
     }
     for requirement in project.requirements if others else ():
-        way = _Way.of(requirement, project)
-        reasons = [mistake for mistake, owners in others.items() if way.reads(mistake, owners)]
-        found.setdefault(id(requirement), []).extend(reasons)
-    return {key: tuple(dict.fromkeys(why)) for key, why in found.items() if why}
+        path = _UpwardPath.of(requirement, project)
+        reasons = [mistake for mistake, owners in others.items() if path.reads(mistake, owners)]
+        errors.setdefault(id(requirement), []).extend(reasons)
+    return {key: tuple(dict.fromkeys(why)) for key, why in errors.items() if why}
 
 
 _OF_SETTINGS = (Code.BAD_SETTINGS, Code.BAD_ACCEPTANCE)
 
 
 @dataclass(frozen=True, slots=True)
-class _Way:
-    """The way from a requirement up to what it is there for."""
+class _UpwardPath:
+    """The path from a requirement up to its hazards."""
 
     above: Sequence[RequirementEntry]
-    """It, and the requirements above it."""
+    """The requirement, and the requirements above it."""
     leaves: bool
-    """Whether it leads to a parent that is no requirement."""
+    """Whether the path leads to a parent that is not a requirement."""
     is_lost: bool
-    """Whether it leads to one that nothing declares: perhaps a requirement whose header cannot be
-    read."""
+    """Whether the path leads to an undeclared parent, which may be a requirement whose header
+    cannot be read."""
 
     @classmethod
-    def of(cls, requirement: RequirementEntry, project: Project) -> _Way:
-        by_id = {each.id: each for each in project.requirements}
+    def of(cls, requirement: RequirementEntry, project: Project) -> _UpwardPath:
+        by_id = {entry.id: entry for entry in project.requirements}
         above, ends = [requirement], set[str]()
-        for each in above:  # it grows while it is walked
-            for parent in each.parents:
+        for entry in above:  # it grows while it is walked
+            for parent in entry.parents:
                 if parent not in by_id:
                     ends.add(parent)
                 elif by_id[parent] not in above:
@@ -113,16 +96,16 @@ class _Way:
         return cls(above, bool(ends), bool(lost))
 
     def reads(self, mistake: Diagnostic, owners: Sequence[RequirementEntry]) -> bool:
-        """Whether a mistake is on the way, or in the settings of all.
+        """Whether an error is on the path, or in settings that concern every requirement.
 
         Args:
             mistake: an error.
-            owners: the requirements that it is in.
+            owners: the requirements that contain the error.
         """
         if not owners:
             return self.leaves or mistake.code in _OF_SETTINGS
-        of_header = any(mistake in each.mistakes for each in owners)
-        return (self.is_lost and of_header) or any(each in self.above for each in owners)
+        of_header = any(mistake in owner.mistakes for owner in owners)
+        return (self.is_lost and of_header) or any(owner in self.above for owner in owners)
 
 
 def _is_in(mistake: Diagnostic, requirement: RequirementEntry) -> bool:

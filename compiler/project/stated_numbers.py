@@ -1,6 +1,6 @@
-"""Numbers that stand in two places: in the sentence and its bindings, and in the words beside it.
+"""Checks that numbers in titles, texts and `params` agree with the sentence and its bindings.
 
-A title that says 5 cm beside a binding of 0.9 m misleads everyone who reads only one of them.
+A title with 5 cm and a binding with 0.9 m mislead everyone who reads only one of them.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _QUANTITY = re.compile(
 def check_stated_numbers(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[Diagnostic]:
-    """F310 and F351: `params`, title or text state a number, and the bindings have another one."""
+    """F310 and F351 for numbers in `params`, title or text that the bindings contradict."""
     yield from _parameters(requirement, declarations)
     yield from _prose(requirement, declarations)
 
@@ -45,7 +45,7 @@ def check_stated_numbers(
 def drifted(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[tuple[str, str]]:
-    """The same as field and number: `("title", "0.40 m/s")`, `("params", "0.40 m/s")`."""
+    """The contradicted numbers as field and text: `("title", "0.40 m/s")`."""
     for name, text in requirement.entry.params.items():
         if _has_drifted(text, _propositions(requirement, declarations, name)):
             yield "params", text
@@ -60,10 +60,10 @@ def first_unit(requirements: Iterable[FormalizedRequirement]) -> Diagnostic | No
                 if isinstance(part, Quantity):
                     return Diagnostic(
                         Code.UNIT_IN_SENTENCE,
-                        f"`{part.digits} {part.unit}`: FRET knows no units; `--emit fret-json` "
+                        f"`{part.digits} {part.unit}`: FRET has no units; `--emit fret-json` "
                         "writes each number in the unit of its signal",
                         part.span,
-                        help="a bare number is in the unit of the signal beside it, in FRET, too",
+                        help="a number without a unit has the unit of its signal, also in FRET",
                         severity=Severity.NOTE,
                     )
     return None
@@ -75,12 +75,12 @@ def first_unit(requirements: Iterable[FormalizedRequirement]) -> Diagnostic | No
 def _parameters(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[Diagnostic]:
-    """F310; a number of `params` belongs to a proposition, or to a signal that is compared."""
+    """F310; a number of `params` belongs to a proposition, or to a compared signal."""
     for name, text in requirement.entry.params.items():
         place = requirement.entry.place("params", name)
-        known = _propositions(requirement, declarations, name)
+        propositions = _propositions(requirement, declarations, name)
         mistaken = {("proposition", name), ("signal", name)} & declarations.mistakes.keys()
-        if not known and not mistaken:
+        if not propositions and not mistaken:
             yield Diagnostic(
                 Code.UNKNOWN_NAME,
                 f"`params` states a number for `{name}`, which has no binding",
@@ -91,45 +91,45 @@ def _parameters(
         if units.quantity(text) is None:
             yield Diagnostic(
                 Code.BAD_FIELD,
-                f"`{text}` is no quantity",
+                f"`{text}` is not a quantity",
                 place,
                 help='write a number and a unit: `"5 cm"`',
             )
-        elif _has_drifted(text, known):
+        elif _has_drifted(text, propositions):
             yield Diagnostic(
                 Code.PARAMETER_DRIFT,
-                f"the requirement states {text} for `{name}`, and its binding has another number",
-                known[0].span,
-                help="make the binding or `params` say what is meant",
+                f"the requirement states {text} for `{name}`, but its binding has another number",
+                propositions[0].span,
+                help="correct the binding or `params`",
                 severity=Severity.WARNING,
             )
 
 
-def _has_drifted(text: str, known: Sequence[Proposition]) -> bool:
-    """Whether a quantity of `params` is a number of none of its propositions."""
+def _has_drifted(text: str, propositions: Sequence[Proposition]) -> bool:
+    """Whether no proposition has the quantity of `params`."""
     stated = units.quantity(text)
-    return stated is not None and bool(known) and not _is_stated(stated, known)
+    return stated is not None and bool(propositions) and not _is_stated(stated, propositions)
 
 
-def _is_stated(number: Exact, known: Iterable[Proposition]) -> bool:
-    return any(number in constants(each.expression) for each in known)
+def _is_stated(number: Exact, propositions: Iterable[Proposition]) -> bool:
+    return any(number in constants(proposition.expression) for proposition in propositions)
 
 
 def _propositions(
     requirement: FormalizedRequirement, declarations: Declarations, name: str
 ) -> list[Proposition]:
-    """The proposition of that name; for a signal those of the sentence that read it."""
+    """The proposition with the name; for a signal the propositions of the sentence that read it."""
     if name in declarations.propositions:
         return [declarations.propositions[name]]
-    own = (declarations.propositions.get(each) for each in requirement.watched)
-    return [each for each in own if each is not None and name in each.signals]
+    own = (declarations.propositions.get(watched) for watched in requirement.watched)
+    return [proposition for proposition in own if proposition and name in proposition.signals]
 
 
 # Title and text
 
 
 def _prose(requirement: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
-    """F351 for each quantity in title and text that is none of those that are judged."""
+    """F351 for each quantity in title and text that the requirement does not use."""
     for field, words, elsewhere in _drifted_words(requirement, declarations):
         yield _differs(requirement, field, words, requirement.entry.place(field), elsewhere)
 
@@ -137,11 +137,11 @@ def _prose(requirement: FormalizedRequirement, declarations: Declarations) -> It
 def _drifted_words(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[tuple[str, str, Span | None]]:
-    """Field, quantity, and where the requirement rests on another one of its dimension."""
-    known = _numbers(requirement, declarations)
+    """Field, quantity, and the span of the number of its dimension that the requirement uses."""
+    numbers = _numbers(requirement, declarations)
     for field in ("title", "text"):
         for words, stated in _quantities(getattr(requirement.entry, field)):
-            rivals = [(number, span) for number, span in known if number[0] == stated[0]]
+            rivals = [(number, span) for number, span in numbers if number[0] == stated[0]]
             if not rivals or any(number == stated for number, _ in rivals):
                 continue
             yield field, words, rivals[0][1]
@@ -150,23 +150,23 @@ def _drifted_words(
 def _numbers(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> list[tuple[Exact, Span | None]]:
-    """Every number of the sentence and of what it is bound to, and where it stands."""
+    """Every number of the sentence and its bindings, with its span."""
     bound = [declarations.propositions.get(name) for name in requirement.watched]
-    found = [
-        (number, each.span)
-        for each in bound
-        if each is not None
-        for number in constants(each.expression)
+    numbers = [
+        (number, proposition.span)
+        for proposition in bound
+        if proposition is not None
+        for number in constants(proposition.expression)
     ]
     duration = syntax.duration(requirement.sentence.timing)
     if duration is not None and duration.unit in _SECONDS:
         seconds = duration.amount * _SECONDS[duration.unit]
-        found.append(((units.SECOND.dimension, seconds), duration.span))
-    return found
+        numbers.append(((units.SECOND.dimension, seconds), duration.span))
+    return numbers
 
 
 def _quantities(text: str) -> Iterator[tuple[str, Exact]]:
-    """The quantities that a text states: `5 cm`, `0.4 m/s`, `20 percent`, `200 milliseconds`."""
+    """The quantities in a text: `5 cm`, `0.4 m/s`, `20 percent`, `200 milliseconds`."""
     for match in _QUANTITY.finditer(text):
         word = match["unit"]
         single = word[:-1] if word.endswith("s") and len(word) > 2 else word

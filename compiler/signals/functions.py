@@ -1,7 +1,7 @@
-"""What stands beside a monitor, in whatever language: functions from samples to its inputs.
+"""The functions beside a monitor, from samples to its inputs, for any language.
 
-Names, their order, what is left to the caller and the sentences about it are decided here; a
-target places them in its template, and says by a `Language` how it writes what is computed.
+Names, their order, which values the caller computes, and the comments are decided here. A target
+puts them into its template, and a `Language` writes the expressions.
 """
 
 from __future__ import annotations
@@ -19,31 +19,32 @@ from fretish.bindings.declarations import Aggregate, Reading, Reduce
 
 @dataclass(frozen=True, slots=True)
 class SignalFunction:
-    """From one message to the number of a signal's sample."""
+    """A function from one message to the number of a signal's sample."""
 
     name: str
     place: str
-    """The field that it is read from, with its unit."""
+    """The field of the message, with its unit."""
     text: str
-    """What the function gives."""
+    """The description of the result."""
     form: str
-    """`number` of a field, `array` of elements, `word`; or `given` by the caller."""
+    """The kind of input: a `number` of a field, an `array` of elements, a `word`, or `given` by the
+    caller."""
     reduce: Reduce | None
     max_age: int | None
-    """Nanoseconds."""
+    """Nanoseconds after which the sample is too old."""
     valid: str | None
-    """The truth of `x`, by numbers `n_<field>`."""
+    """The validity of `x` as an expression over numbers `n_<field>`; None: always valid."""
     fields: tuple[str, ...]
     invalid: tuple[Reading, Reading, Reading, Reading]
-    """What NaN, +inf, -inf and a number that is not valid mean."""
+    """The meaning of NaN, +inf, -inf and of an invalid number."""
     words: tuple[str, ...]
     numbers: tuple[int, ...]
-    """By which messages mean the words; none: by their letters."""
+    """The numbers by which messages encode the enumeration values; empty: by their text."""
 
 
 @dataclass(frozen=True, slots=True)
 class Duration:
-    """What has to hold for a duration, an input of an instant."""
+    """A condition that has to hold for a duration; an input at an instant."""
 
     name: str
     text: str
@@ -52,11 +53,11 @@ class Duration:
 
 @dataclass(frozen=True, slots=True)
 class PropositionFunction:
-    """The truth of a proposition at an instant, by numbers `s_<signal>`."""
+    """A function for the truth of a proposition at an instant, over numbers `s_<signal>`."""
 
     proposition: str
     name: str
-    """The input of the monitor."""
+    """The name of the monitor's input."""
     truth: str
     aggregate: Aggregate
     on_unknown: bool | None
@@ -64,17 +65,17 @@ class PropositionFunction:
 
 @dataclass(frozen=True, slots=True)
 class Functions:
-    """All of them, for one monitor."""
+    """All functions for one monitor."""
 
     notes: tuple[str, ...]
-    """What the file is, and what it leaves out."""
+    """Comments at the top of the file: its purpose, and what it leaves out."""
     signals: tuple[SignalFunction, ...]
     held: tuple[Duration, ...]
     propositions: tuple[PropositionFunction, ...]
 
 
 def file_name(monitor: str) -> str:
-    """Of the file that stands beside `r1_monitor`."""
+    """The name of the file beside `r1_monitor`."""
     return f"{monitor.removesuffix('_monitor')}_signals"
 
 
@@ -84,62 +85,73 @@ def functions(
     language: Language,
     reserved: Container[str] = (),
 ) -> Functions | None:
-    """The functions for a monitor; None where no bindings say what its propositions are.
+    """The functions for a monitor; None if there are no bindings.
 
     Args:
-        requirements: those of the monitor.
+        requirements: the requirements of the monitor.
         names: the monitor's input of each proposition.
-        language: in which they are written.
-        reserved: what no name may be.
+        language: the syntax of the target language.
+        reserved: reserved names.
     """
-    found = instant(requirements)
-    if found is None:
+    at_instant = instant(requirements)
+    if at_instant is None:
         return None
-    signals = legal_names((each.signal.name for each in found.policies), reserved)
+    signals = legal_names((policy.signal.name for policy in at_instant.policies), reserved)
     given = {name: f"s_{legal}" for name, legal in signals.items()}
-    durations = _durations(found, names, reserved)
+    durations = _durations(at_instant, names, reserved)
     printers = {
         name: Printer(language, given, tuple(map(language.held.format, mine)))
         for name, mine in durations.items()
     }
     return Functions(
-        _notes(requirements, found),
-        tuple(_signal(each, signals[each.signal.name], language) for each in found.policies),
+        _notes(requirements, at_instant),
+        tuple(
+            _signal(policy, signals[policy.signal.name], language) for policy in at_instant.policies
+        ),
         tuple(
             Duration(
                 name,
-                f"{each.name}: its part number {part}, for {duration} ns",
-                printers[each.name].truth(truth),
+                f"{meaning.name}: its part number {part}, for {duration} ns",
+                printers[meaning.name].truth(truth),
             )
-            for each in found.meanings
+            for meaning in at_instant.meanings
             for part, (name, (truth, duration)) in enumerate(
-                zip(durations[each.name], each.held, strict=True), 1
+                zip(durations[meaning.name], meaning.held, strict=True), 1
             )
         ),
-        tuple(_proposition(each, names[each.name], printers[each.name]) for each in found.meanings),
+        tuple(
+            _proposition(meaning, names[meaning.name], printers[meaning.name])
+            for meaning in at_instant.meanings
+        ),
     )
 
 
-def _notes(requirements: Sequence[FormalizedRequirement], found: Instant) -> tuple[str, ...]:
+def _notes(requirements: Sequence[FormalizedRequirement], at_instant: Instant) -> tuple[str, ...]:
     title = ", ".join(requirement.id for requirement in requirements)
     return (
         f"What samples say of the propositions of {title}, as `fretc audit` reads them.",
         "Samples in, truth values out: functions without memory.",
-        *(f"given by the caller, as it looks back by ticks: {name}" for name in found.left_out),
+        *(
+            f"given by the caller, as it looks back by ticks: {name}"
+            for name in at_instant.left_out
+        ),
         f"Generated by fretc {__version__}; the file is yours, under any terms.",
     )
 
 
 def _durations(
-    found: Instant, names: Mapping[str, str], reserved: Container[str]
+    at_instant: Instant, names: Mapping[str, str], reserved: Container[str]
 ) -> Mapping[str, tuple[str, ...]]:
-    """The inputs of each proposition that say what has held."""
+    """The inputs of each proposition for conditions that have held for a duration."""
     wanted = {
-        each.name: [f"{names[each.name]}_for_{part + 1}" for part in range(len(each.held))]
-        for each in found.meanings
+        meaning.name: [f"{names[meaning.name]}_for_{part + 1}" for part in range(len(meaning.held))]
+        for meaning in at_instant.meanings
     }
-    legal = legal_names((name for some in wanted.values() for name in some), reserved)
-    return {each: tuple(legal[name] for name in some) for each, some in wanted.items()}
+    legal = legal_names((name for input_names in wanted.values() for name in input_names), reserved)
+    return {
+        meaning: tuple(legal[name] for name in input_names)
+        for meaning, input_names in wanted.items()
+    }
 
 
 def _signal(policy: Policy, name: str, language: Language) -> SignalFunction:

@@ -1,8 +1,8 @@
-"""Expressions of bindings → numbers and truths of one instant.
+"""Expressions of bindings as numbers and truth values of one instant.
 
-Units are settled here: each constant becomes one in the unit of the signals that it meets, and
-signals in different units are converted where they meet. It is what
-`fretc.logs.signals.measures` does of whole columns.
+Units are resolved here: each constant is converted into the unit of the signals that it meets, and
+signals in different units are converted where they meet. `fretc.logs.signals.measures` does the
+same for whole columns.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from fretish.units import ONE, Unit
 
 @dataclass(frozen=True, slots=True)
 class _Measure:
-    """A number that is no constant: times `scale` it is in base units. None: always unknown."""
+    """A number that is not constant, with its scale to base units. None: always unknown."""
 
     number: n.Number | None
     scale: Fraction = Fraction(1)
@@ -47,19 +47,19 @@ _SIGNS: Mapping[e.ComparisonOperator, e.ComparisonOperator] = {
 
 @dataclass(slots=True)
 class Lowering:
-    """Of the expressions of one proposition, or of one `valid`."""
+    """The lowering of the expressions of one proposition, or of one `valid`."""
 
     scales: Mapping[str, Fraction] = field(default_factory=dict)
-    """Factors to base units of the names; 1 where none is given."""
+    """Factors to base units by name; the default is 1."""
     words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """What each signal of words may be: its number is the place of its word."""
+    """The values of each enumerated signal; its number is the index of the value."""
     unit: Unit = ONE
-    """In which quantities are read."""
+    """The unit in which quantities are read."""
     held: list[tuple[n.Truth, int]] = field(default_factory=list)
-    """What is asked to have held, and for how many nanoseconds, in the order of `HeldFor.place`."""
+    """Conditions that must have held, with nanoseconds, in the order of `HeldFor.place`."""
 
     def truth(self, tree: e.Expression) -> n.Truth:
-        """The truth of an expression that the reader of bindings accepts, without `pre`."""
+        """The truth value of an expression that the reader of bindings accepts, without `pre`."""
         match tree:
             case e.Truth(value):
                 return n.Known(value)
@@ -127,7 +127,7 @@ class Lowering:
 
 
 def _together(left: _Measure, right: _Term) -> tuple[n.Number | None, n.Number | None, Fraction]:
-    """Both in one unit, and the scale of it."""
+    """Both numbers in one unit, and the scale of the unit."""
     if isinstance(right, Fraction):
         return left.number, n.Constant(right / left.scale), left.scale
     if left.scale == right.scale:
@@ -178,16 +178,16 @@ def _power(base: _Term, exponent: _Term) -> _Term:
 
 
 def _end(name: Literal["min", "max"], args: Sequence[_Term]) -> _Term:
-    """The least or the greatest, two at a time from left to right."""
-    found, *rest = args
+    """The least or the greatest argument, computed pairwise from left to right."""
+    extreme, *rest = args
     for term in rest:
-        if isinstance(found, Fraction):
+        if isinstance(extreme, Fraction):
             if isinstance(term, Fraction):
-                found = called(name, [found, term])
+                extreme = called(name, [extreme, term])
                 continue
-            found, term = term, found
-        x, y, scale = _together(found, term)
+            extreme, term = term, extreme
+        x, y, scale = _together(extreme, term)
         if x is None or y is None:
             return _UNKNOWN
-        found = _Measure(n.MinMax("lesser" if name == "min" else "greater", x, y), scale)
-    return found
+        extreme = _Measure(n.MinMax("lesser" if name == "min" else "greater", x, y), scale)
+    return extreme

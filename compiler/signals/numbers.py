@@ -1,9 +1,9 @@
-"""Numbers and truths of one instant, as every language computes them.
+"""Numbers and truth values of one instant, with the same result in every language.
 
-A number is a 32-bit float, a 64-bit float, or exact: a whole number of 64 bits from 2^53 on, and
-what the least or the greatest of it and another one is. A number may be unknown, and what is
-computed of it is unknown, too. `monitors.kernel.readings` has a function for each of these nodes
-but `SignalValue`; a constant becomes the nearest number of the kind that it meets.
+A number is a 32-bit float, a 64-bit float, or exact: an integer of 64 bits from 2^53 on, or the
+least or greatest of such an integer and another number. A number may be unknown, and so is every
+number computed from it. `monitors.kernel.readings` has a function for each of these nodes except
+`SignalValue`; a constant becomes the nearest number of the kind that it meets.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ class SignalValue:
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A constant in the unit of what it meets; it stands beside no other constant."""
+    """A constant in the unit of the number that it is combined with, which is not constant."""
 
     value: Fraction
 
 
 @dataclass(frozen=True, slots=True)
 class UnaryCall:
-    """A function of one number: of the same kind as that."""
+    """A function of one number; the result is of the same kind."""
 
     function: Literal["negative", "absolute"]
     arg: Number
@@ -37,7 +37,7 @@ class UnaryCall:
 
 @dataclass(frozen=True, slots=True)
 class Computed:
-    """Arithmetic in 64-bit floats, rounded once; unknown where it divides by zero.
+    """Arithmetic in 64-bit floats, rounded once; a division by zero is unknown.
 
     `modulo` has the sign of the right side.
     """
@@ -51,7 +51,7 @@ class Computed:
 class MinMax:
     """The less or the greater of two numbers, of the kind that holds both.
 
-    Where the right side is a constant, whole numbers become 64-bit floats first.
+    If the right side is a constant, integers become 64-bit floats first.
     """
 
     function: Literal["lesser", "greater"]
@@ -80,21 +80,21 @@ Number = SignalValue | Constant | UnaryCall | Computed | MinMax | Power | ToBase
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """A truth that no number changes; None: unknown."""
+    """A constant truth value; None: unknown."""
 
     value: bool | None
 
 
 @dataclass(frozen=True, slots=True)
 class Flag:
-    """A signal as a truth: 1 is true, 0 is false, any other number is unknown."""
+    """A signal as a truth value: 1 is true, 0 is false, any other number is unknown."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """`left sign right`; only the right side may be a constant. Unknown where a side is."""
+    """`left sign right`; only the right side may be a constant. Unknown if a side is."""
 
     sign: str
     left: Number
@@ -103,7 +103,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class HeldFor:
-    """Whether a truth has held for a duration: an input, the `place`-th of its proposition."""
+    """Whether a condition has held for a duration: the `place`-th such input of its proposition."""
 
     place: int
 
@@ -131,7 +131,7 @@ class Some:
 
 @dataclass(frozen=True, slots=True)
 class Iff:
-    """Kleene's equivalence: unknown where a side is."""
+    """Kleene's equivalence: unknown if a side is."""
 
     left: Truth
     right: Truth

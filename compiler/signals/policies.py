@@ -1,8 +1,8 @@
-"""Bindings → what each signal's sample says, and each proposition's truth at an instant.
+"""The meaning of bindings: numbers of samples, and truth values of propositions at an instant.
 
-The door is `instant`: it has, for some requirements, the policies of all signals that their
-propositions read, and the truths of these propositions. Printers of languages turn both into
-functions:
+The entry point is `instant`: for some requirements it has the policies of all signals that their
+propositions read, and the truth values of these propositions. Printers turn both into functions of
+a language:
 
 - a message's field → `Policy` (elements that are no measurement, `valid`, least or greatest) → a
   number of the sample, or unknown;
@@ -11,9 +11,10 @@ functions:
 - the numbers of all signals → `Meaning.truth` at an instant;
 - the truths of all instants of a tick → `Meaning.aggregate`, then `Meaning.on_unknown`.
 
-What depends on more than one instant is an input: `... for 200 ms` is `HeldFor`. What looks back by
-ticks (`pre`) is no function of an instant at all, and stands in `Instant.left_out`. A mean and a
-clearance are not exact in other languages: their signals are given as one number (`is_given`).
+A value that depends on several instants is an input: `... for 200 ms` is `HeldFor`. A proposition
+that looks back by ticks (`pre`) is not a function of an instant, and is listed in
+`Instant.left_out`. A mean and a clearance are not exact in other languages: their signals are given
+as one number (`is_given`).
 """
 
 from __future__ import annotations
@@ -31,11 +32,11 @@ from fretish.bindings.expressions import ticks_back
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """From the field of one message to the number of a sample.
+    """How the field of one message becomes the number of a sample.
 
-    An element is NaN, +inf, -inf, a finite number for which `valid` is not true, or a
-    measurement; `signal.invalid` says of each of the first four what it means. `valid` compares
-    `SignalValue("x")`, the element, with fields of the same message, which are 64-bit floats.
+    An element is NaN, +inf, -inf, a finite but invalid number, or a measurement; `signal.invalid`
+    defines the first four. `valid` compares `SignalValue("x")`, the element, with fields of the
+    same message, which are 64-bit floats.
     """
 
     signal: Signal
@@ -45,12 +46,12 @@ class Policy:
 
     @property
     def is_given(self) -> bool:
-        """Whether the caller computes the number: a mean, in the field's unit; or a clearance."""
+        """Whether the caller computes the number: a mean in the field's unit, or a clearance."""
         return self.signal.reduce in (Reduce.MEAN, Reduce.OUTLINE)
 
     @property
     def is_array(self) -> bool:
-        """Whether it takes all elements of an array, of which `signal.reduce` chooses one."""
+        """Whether the field is an array, of which `signal.reduce` selects one element."""
         return self.signal.path.each and not self.is_given
 
 
@@ -61,26 +62,26 @@ class Meaning:
     name: str
     truth: n.Truth
     held: tuple[tuple[n.Truth, int], ...]
-    """What has to hold for a duration, and for how many nanoseconds; in the order of `HeldFor`."""
+    """Conditions that have to hold for a duration, with nanoseconds, in the order of `HeldFor`."""
     aggregate: Aggregate
     on_unknown: bool | None
 
 
 @dataclass(frozen=True, slots=True)
 class Instant:
-    """What the samples of one instant say."""
+    """The signals and propositions of one instant."""
 
     policies: tuple[Policy, ...]
     meanings: tuple[Meaning, ...]
     left_out: tuple[str, ...]
-    """Propositions that are bound and look back by ticks: their truth is given."""
+    """Bound propositions that look back by ticks: the caller gives their truth value."""
 
 
 def instant(requirements: Sequence[FormalizedRequirement]) -> Instant | None:
-    """Of all propositions that the requirements watch; None where no bindings say what they are."""
+    """The instant of all propositions of the requirements; None if there are no bindings."""
     bound = _bound(requirements)
-    pure = [each for each in bound if not ticks_back(each.expression)]
-    read = dict.fromkeys(name for each in pure for name in each.signals)
+    pure = [proposition for proposition in bound if not ticks_back(proposition.expression)]
+    read = dict.fromkeys(name for proposition in pure for name in proposition.signals)
     signals = {
         name: signal
         for requirement in requirements
@@ -91,23 +92,25 @@ def instant(requirements: Sequence[FormalizedRequirement]) -> Instant | None:
     if not pure:
         return None
     policies = tuple(policy(signals[name]) for name in read)
-    meanings = tuple(meaning(each, signals.values()) for each in pure)
-    left_out = tuple(each.name for each in bound if ticks_back(each.expression))
+    meanings = tuple(meaning(proposition, signals.values()) for proposition in pure)
+    left_out = tuple(
+        proposition.name for proposition in bound if ticks_back(proposition.expression)
+    )
     return Instant(policies, meanings, left_out)
 
 
 def _bound(requirements: Sequence[FormalizedRequirement]) -> list[Proposition]:
-    found: dict[str, Proposition] = {}
+    propositions: dict[str, Proposition] = {}
     for requirement in requirements:
-        known = (
+        declared = (
             requirement.declarations.propositions if requirement.declarations is not None else {}
         )
-        found |= {name: known[name] for name in requirement.watched if name in known}
-    return [*found.values()]
+        propositions |= {name: declared[name] for name in requirement.watched if name in declared}
+    return [*propositions.values()]
 
 
 def policy(signal: Signal) -> Policy:
-    """What a sample of the signal says."""
+    """The policy of a signal."""
     if signal.valid is None:
         return Policy(signal)
     fields = dict.fromkeys(name.id for name in e.names(signal.valid) if name.id != "x")
@@ -115,7 +118,7 @@ def policy(signal: Signal) -> Policy:
 
 
 def meaning(proposition: Proposition, signals: Iterable[Signal]) -> Meaning:
-    """The truth of a proposition that does not look back by ticks, over declared signals."""
+    """The meaning of a proposition without `pre`, over declared signals."""
     scales, words = {}, {}
     for signal in signals:
         scales[signal.name], words[signal.name] = signal.scale, signal.values

@@ -1,4 +1,4 @@
-"""Numbers and truths as text: calls of the functions that a language has beside them."""
+"""Numbers and truth values as text: calls of a language's functions."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ from compiler.signals import numbers as n
 from monitors.kernel.readings import DOUBLES_END, Single, exact
 
 _HALVES_END = 2**52
-"""From here on 64-bit floats hold whole numbers only."""
+"""From this value on, 64-bit floats are integers."""
 _WHOLE_END = 2**64
-"""From here on no whole number is recorded."""
+"""Recorded integers are below this value."""
 
 
 class ConstantEncodings(NamedTuple):
-    """A constant as the number of each kind that it may meet; NaN: none is equal to it."""
+    """A constant as a number of each kind that it may meet; NaN: no number equals it."""
 
     single: float
     is_single: bool
-    """Whether the number beside 32-bit floats is one of them; it may be too large."""
+    """Whether the number compared with 32-bit floats is one itself; it may be too large."""
     double: float
     exact: float
     magnitude: int
-    """Of the exact number, if it is whole and from 2^53 on; else 0."""
+    """The magnitude of the exact number if it is an integer from 2^53 on; else 0."""
 
 
 def encode_constant(value: Fraction, sign: str = "") -> ConstantEncodings:
-    """The numbers for which `x sign number` says of each `x` of their kind what the fraction says.
+    """The numbers for which `x sign number` equals the exact comparison for each `x` of their kind.
 
-    It is what an audit compares samples with; without a sign they are the nearest ones.
+    An audit compares samples with them; without a sign they are the nearest numbers.
     """
-    found = exact(str(value))
-    double, wide, magnitude = found.double, found.double, 0
+    constant = exact(str(value))
+    double, wide, magnitude = constant.double, constant.double, 0
     if sign and _HALVES_END <= abs(value) < _WHOLE_END:
         if value.denominator != 1 and sign in ("=", "!="):
             wide = nan
@@ -45,32 +45,32 @@ def encode_constant(value: Fraction, sign: str = "") -> ConstantEncodings:
             wide = float(whole)
             magnitude = abs(whole) if DOUBLES_END <= abs(whole) < _WHOLE_END else 0
         double = wide if abs(value) < DOUBLES_END else double
-    is_single = isinstance(found.single, Single)
-    return ConstantEncodings(float(found.single), is_single, double, wide, magnitude)
+    is_single = isinstance(constant.single, Single)
+    return ConstantEncodings(float(constant.single), is_single, double, wide, magnitude)
 
 
 class Language(NamedTuple):
-    """How a language writes numbers and truths."""
+    """A language's syntax of numbers and truth values."""
 
     prefix: str
-    """Of each function."""
+    """The prefix of each function."""
     truths: Mapping[bool | None, str]
     signs: Mapping[str, str]
     held: str
-    """The input `{}` that says what has held."""
+    """The format of an input for a condition that has held."""
     scale: Callable[[Fraction], str]
-    """The factor to base units, as one or two arguments."""
+    """Writes a factor to base units, as one or two arguments."""
     fixed: Callable[[Fraction], str]
-    """A constant in arithmetic."""
+    """Writes a constant in arithmetic."""
     chosen: Callable[[str, str, Fraction], str]
-    """A function, a number, and a constant: the less or the greater of both."""
+    """Writes the less or the greater of a number and a constant, by function."""
     compared: Callable[[str, str, Fraction], str]
-    """A number, a sign and a constant."""
+    """Writes a comparison of a number with a constant, by sign."""
 
 
 @dataclass(frozen=True, slots=True)
 class Printer:
-    """The text of what is computed, over what names and durations are called."""
+    """Prints expressions over given names of signals and durations."""
 
     language: Language
     given: Mapping[str, str]
@@ -133,7 +133,7 @@ def parts(value: Fraction) -> tuple[float, float]:
 
 
 def letters(word: str, escape: str) -> str:
-    """The bytes of a word for a literal: letters and digits as they are, others by `escape`."""
+    """The bytes of a word for a literal: letters and digits unchanged, others by `escape`."""
     return "".join(
         chr(byte) if chr(byte).isascii() and chr(byte).isalnum() else escape.format(byte)
         for byte in word.encode()

@@ -1,4 +1,4 @@
-"""Small changes of an expression: one operand, one operator, one threshold."""
+"""Small changes of an expression, for mutants: one operand, one operator, one threshold."""
 
 from __future__ import annotations
 
@@ -6,38 +6,38 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import islice
 
-from compiler.situations.thresholds import written
+from compiler.situations.thresholds import literal_number
 from fretish import expressions as e
 from fretish.printer import expression
 
 MOST_PARTS = 100
-"""Of an expression with more, as a tree, no part is changed alone."""
+"""Maximum number of nodes of an expression whose parts are changed one by one."""
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class ExpressionChange:
     """An expression with one thing changed."""
 
     operator: str
     """`dropped`, `negated`, `operator`, `compared` or `threshold`."""
     about: str
-    """As it is printed: the operand that is dropped or negated, else what stands there now."""
+    """The text to print: the dropped or negated operand, else the new text."""
     words: str
     whole: e.Expression
 
 
-def changes(whole: e.Expression) -> Iterator[Change]:
-    """Each change of one part of an expression, outer parts first; none of a large one."""
+def changes(whole: e.Expression) -> Iterator[ExpressionChange]:
+    """Each change of one part of an expression, outer parts first; none if it is large."""
     if not is_large(whole):
         yield from _changes(whole)
 
 
 def is_large(whole: e.Expression) -> bool:
-    """Whether its parts are not looked at one by one."""
+    """Whether the expression is too large to change its parts one by one."""
     return sum(1 for _ in islice(e.parts(whole), MOST_PARTS + 1)) > MOST_PARTS
 
 
-def _changes(whole: e.Expression) -> Iterator[Change]:
+def _changes(whole: e.Expression) -> Iterator[ExpressionChange]:
     yield from _dropped(whole)
     yield from _other_operator(whole)
     match whole:
@@ -49,7 +49,7 @@ def _changes(whole: e.Expression) -> Iterator[Change]:
             pass  # what a call is about is its own
 
 
-def _within(whole: e.Expression) -> Iterator[Change]:
+def _within(whole: e.Expression) -> Iterator[ExpressionChange]:
     """Changes of one operand."""
     operands = e.children(whole)
     for place, operand in enumerate(operands):
@@ -62,23 +62,23 @@ def _within(whole: e.Expression) -> Iterator[Change]:
 
 
 def opposite(part: e.Expression) -> e.Expression:
-    """Its negation, without two of them in a row."""
+    """The negation, without double negation."""
     return part.arg if isinstance(part, e.Not) else e.Not(part)
 
 
-def _dropped(whole: e.Expression) -> Iterator[Change]:
-    """One operand of a conjunction or disjunction is left out."""
+def _dropped(whole: e.Expression) -> Iterator[ExpressionChange]:
+    """The changes that drop one operand of a conjunction or disjunction."""
     if not isinstance(whole, e.And | e.Or):
         return
     for place, operand in enumerate(whole.args):
         rest = (*whole.args[:place], *whole.args[place + 1 :])
         text = expression(operand)
         less = rest[0] if len(rest) == 1 else replace(whole, args=rest)
-        yield Change("dropped", text, f"without `{text}`", less)
+        yield ExpressionChange("dropped", text, f"without `{text}`", less)
 
 
-def _other_operator(whole: e.Expression) -> Iterator[Change]:
-    """`|` for `&`, and the like."""
+def _other_operator(whole: e.Expression) -> Iterator[ExpressionChange]:
+    """The changes of an operator, such as `|` for `&`."""
     match whole:
         case e.And(args):
             yield _replaced("operator", whole, e.with_children(e.Or(args), args))
@@ -102,10 +102,10 @@ _NEAR: Mapping[e.ComparisonOperator, tuple[e.ComparisonOperator, ...]] = {
     "=": (),
     "!=": (),
 }
-"""For `=` there is `negated` already."""
+"""Similar comparison operators; `=` has none, since `negated` covers it."""
 
 
-def _comparison(whole: e.Comparison) -> Iterator[Change]:
+def _comparison(whole: e.Comparison) -> Iterator[ExpressionChange]:
     for op in _NEAR[whole.op]:
         yield _replaced("compared", whole, replace(whole, op=op))
     for other in _moved(whole.left):
@@ -115,13 +115,13 @@ def _comparison(whole: e.Comparison) -> Iterator[Change]:
 
 
 def _moved(side: e.Expression) -> Iterator[e.Expression]:
-    """A number by a step more, and less."""
-    number = written(side)
+    """The number plus and minus one step."""
+    number = literal_number(side)
     if number is not None:
         yield from (number.moved(number.step), number.moved(-number.step))
 
 
-def _replaced(operator: str, old: e.Expression, new: e.Expression) -> Change:
+def _replaced(operator: str, old: e.Expression, new: e.Expression) -> ExpressionChange:
     was, now = expression(old), expression(new)
     about = was if operator == "negated" else now
-    return Change(operator, about, f"`{now}` in place of `{was}`", new)
+    return ExpressionChange(operator, about, f"`{now}` in place of `{was}`", new)

@@ -1,9 +1,9 @@
-"""What decides alone: each operand of a mode, condition, response or stop condition.
+"""The operands of a sentence, and the formula for the ticks at which each alone decides.
 
-An operand decides where the opposite value of it would change the whole expression, and that would
-change what the sentence demands. So each is shown true and shown false where it decides; operands
-that cannot change alone, since they read the same numbers, need no pair of ticks that differ in
-nothing else: that is the masking form of the criterion.
+An operand decides at a tick if its opposite value would change the whole expression, and that would
+change what the sentence demands. Each operand has to be shown true and shown false at such a tick.
+Operands that cannot change alone, because they read the same numbers, need no pair of ticks that
+are otherwise equal: that is the masking form of the criterion.
 
 Source: Chilenski, An investigation of three forms of the modified condition decision coverage
 criterion, DOT/FAA/AR-01/18, 2001.
@@ -27,55 +27,57 @@ from fretish import syntax as s
 
 @dataclass(frozen=True, slots=True)
 class Operand:
-    """A part of an expression that `&`, `!` and the like join: a name, a comparison, a call."""
+    """An operand of Boolean operators: a name, a comparison, or a call."""
 
     part: str
     """`mode`, `condition`, `response` or `stop condition`."""
     expression: e.Expression
     atom: str | None
-    """Its name in formulas; None where it speaks of other ticks."""
+    """The name in formulas; None if the operand refers to other ticks."""
     whole: f.Formula
-    """The expression that it is in."""
+    """The expression that contains the operand."""
     decides: f.Formula
-    """Its value at this tick decides something; the formula does not ask what it is there."""
+    """Formula: the value of the operand at this tick decides; independent of that value."""
     alone: bool
-    """Whether it is the whole, or that negated."""
+    """Whether the operand is the whole expression, or its negation."""
 
 
-def operands(requirement: FormalizedRequirement, known: TickPredicates) -> Iterator[Operand]:
-    """Those of each part of a sentence; of a large part none."""
+def operands(requirement: FormalizedRequirement, predicates: TickPredicates) -> Iterator[Operand]:
+    """The operands of each part of a sentence; none of a large part."""
     sentence = requirement.sentence
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
     past, kind = Past(), scope.kind if scope else None
-    inside = partial(boolean, expand=past.inside(kind, known.whole.mode))
+    inside = partial(boolean, expand=past.inside(kind, predicates.whole.mode))
     if scope is not None:
         read = partial(boolean, expand=past.alone())
-        yield from _operands("mode", scope.mode, read, known.asks_for_mode)
+        yield from _operands("mode", scope.mode, read, predicates.asks_for_mode)
     if condition is not None:
-        asked = known.asks_for_condition
+        asked = predicates.asks_for_condition
         yield from _operands("condition", condition.expression, inside, asked)
-    yield from _operands("response", sentence.response, inside, known.asks_for_answer)
+    yield from _operands("response", sentence.response, inside, predicates.asks_for_answer)
     if stop is not None:
-        yield from _operands("stop condition", stop, inside, known.asks_for_stop)
+        yield from _operands("stop condition", stop, inside, predicates.asks_for_stop)
 
 
 def _operands(part: str, whole: e.Expression, read: Read, asked: f.Formula) -> Iterator[Operand]:
     if is_large(whole):
         return
-    found = [*dict.fromkeys(_joined(whole))]
-    for each in found:
-        value = read(each)
+    joined = [*dict.fromkeys(_joined(whole))]
+    for operand in joined:
+        value = read(operand)
         name = value.name if isinstance(value, f.Atom) else None
-        changes = f.xor(read(_with(whole, each, value=True)), read(_with(whole, each, value=False)))
+        changes = f.xor(
+            read(_with(whole, operand, value=True)), read(_with(whole, operand, value=False))
+        )
         decides = f.and_(asked, changes)
-        yield Operand(part, each, name, read(whole), decides, alone=len(found) == 1)
+        yield Operand(part, operand, name, read(whole), decides, alone=len(joined) == 1)
 
 
 def _joined(whole: e.Expression) -> Iterator[e.Expression]:
     match whole:
         case e.Not() | e.And() | e.Or() | e.Xor() | e.Implies() | e.Iff():
-            for each in e.children(whole):
-                yield from _joined(each)
+            for child in e.children(whole):
+                yield from _joined(child)
         case e.Truth():
             return
         case _:
@@ -83,10 +85,10 @@ def _joined(whole: e.Expression) -> Iterator[e.Expression]:
 
 
 def _with(whole: e.Expression, operand: e.Expression, *, value: bool) -> e.Expression:
-    """The expression with a truth value in place of an operand, wherever it stands."""
+    """The expression with an operand replaced by a truth value everywhere."""
     match whole:
         case e.Not() | e.And() | e.Or() | e.Xor() | e.Implies() | e.Iff():
-            parts = [_with(each, operand, value=value) for each in e.children(whole)]
+            parts = [_with(child, operand, value=value) for child in e.children(whole)]
             return e.with_children(whole, parts)
         case _:
             return e.Truth(value) if whole == operand else whole

@@ -1,7 +1,7 @@
-"""Sentences that somebody might have written, or meant, in place of the right one.
+"""Mutants: sentences that differ slightly from a requirement, as in mutation testing.
 
-Tests that cannot tell a sentence from its mutants would not notice that it is wrong. The operators
-are those of `OPERATORS`, each at every place where it fits, in their order.
+Tests that cannot distinguish a sentence from its mutants would not detect that it is wrong. The
+operators are those of `OPERATORS`, each applied wherever it fits, in their order.
 
 Source: Fraser, Wotawa, Complementary criteria for testing temporal logic properties, TAP 2009;
 Black, Okun, Yesha, Mutation operators for specifications, ASE 2000.
@@ -36,25 +36,26 @@ OPERATORS: Mapping[str, str] = {
     "compared": "`<=` for `<` and the other way, `>` for `<` and the other way",
     "threshold": "a number in a comparison, more or less by one unit of its last digit",
 }
-"""What each does. A part is the mode, the condition, the response or the stop condition."""
+"""Mutation operators with their descriptions. A part is the mode, the condition, the response or
+the stop condition."""
 _UNBOUND = s.Duration(3, "tick")
 
 
 @dataclass(frozen=True, slots=True)
 class Mutant:
-    """A sentence that somebody might have written, or meant, in place of the right one."""
+    """A requirement with one small change."""
 
     key: str
-    """An operator of `OPERATORS`, behind a colon the place; unique within a requirement."""
+    """The operator of `OPERATORS`, a colon and the place; unique within a requirement."""
     words: str
-    """For people: what stands in place of what."""
+    """The change in words."""
     requirement: FormalizedRequirement
-    """Of the same id and bindings."""
+    """The mutated requirement, with the same id and bindings."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Draft:
-    """A mutant that may say nothing new, or nothing at all."""
+    """A candidate for a mutant, which may equal the original or be invalid."""
 
     key: str
     words: str
@@ -63,20 +64,20 @@ class _Draft:
 
 @with_recursion_limit
 def mutants(requirement: FormalizedRequirement) -> tuple[Mutant, ...]:
-    """Those of a requirement; no two have the same sentence, and none has that of the requirement.
+    """The mutants of a requirement; their sentences differ from each other and from the original.
 
-    A sentence that cannot be formalized is none.
+    Sentences that cannot be formalized are left out.
     """
     seen = {canonical(requirement.written)}
-    found: dict[str, Mutant] = {}
+    by_key: dict[str, Mutant] = {}
     for draft in _drafts(requirement):
         text = canonical(draft.sentence)
         formalized = None if text in seen else _formalized(requirement, draft.sentence)
         seen.add(text)
         if formalized is not None:
-            key = _unique(draft.key, found)
-            found[key] = Mutant(key, draft.words, formalized)
-    return tuple(found.values())
+            key = _unique(draft.key, by_key)
+            by_key[key] = Mutant(key, draft.words, formalized)
+    return tuple(by_key.values())
 
 
 def _unique(key: str, taken: Mapping[str, Mutant]) -> str:
@@ -102,9 +103,9 @@ def _drafts(requirement: FormalizedRequirement) -> Iterator[_Draft]:
     yield from _conditions(sentence)
     yield from _timings(sentence)
     yield from _bounds(requirement)
-    found = [draft for part in _parts(sentence) for draft in _of_part(sentence, *part)]
+    drafts = [draft for part in _parts(sentence) for draft in _of_part(sentence, *part)]
     order = [*OPERATORS]
-    yield from sorted(found, key=lambda draft: order.index(draft.key.partition(":")[0]))
+    yield from sorted(drafts, key=lambda draft: order.index(draft.key.partition(":")[0]))
 
 
 # The template -----------------------------------------------------------------------------------
@@ -203,6 +204,6 @@ def _of_part(sentence: s.Sentence, name: str, part: e.Expression) -> Iterator[_D
 
 
 def _with(sentence: s.Sentence, name: str, part: e.Expression) -> s.Sentence:
-    """The sentence with another expression in one place."""
-    place = {id(each): part if key == name else each for key, each in _parts(sentence)}
-    return s.with_expressions(sentence, lambda each: place[id(each)])
+    """The sentence with one part replaced by another expression."""
+    place = {id(own_part): part if key == name else own_part for key, own_part in _parts(sentence)}
+    return s.with_expressions(sentence, lambda own_part: place[id(own_part)])

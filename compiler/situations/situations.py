@@ -1,8 +1,8 @@
-"""The ways in which a run can meet a sentence: what tests should show, and recorded runs show.
+"""Coverage goals (situations): the ways in which a run can meet a sentence.
 
-A list for each sentence, always in the order of `MEANINGS`. What makes no sense for a sentence is
-not in its list (no last tick without a bound); what makes sense and cannot happen is, for only a
-search can tell.
+Each sentence has a list of goals, always in the order of `MEANINGS`. Meaningless goals are left out
+(no last tick without a bound). Goals that cannot be reached are included, because only a search can
+decide that.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from compiler.formalization.obligation import TRAITS, Kind, Trait
 from compiler.logic import formula as f
 from compiler.situations.decisions import Operand, operands
 from compiler.situations.demands import of_demand
-from compiler.situations.thresholds import Place, places
-from compiler.situations.tick_predicates import TickPredicates, facts
+from compiler.situations.thresholds import ThresholdPosition, threshold_positions
+from compiler.situations.tick_predicates import TickPredicates, tick_predicates
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, calls, conditions
@@ -62,77 +62,83 @@ MEANINGS: Mapping[str, str] = {
     "threshold-above": "`{measured}` one step above the threshold of `{operand}` ({number})",
     "unknown": "`{operand}` is unknown where it decides the {part}",
 }
-"""What a run shows, by the key of the situation."""
+"""The description of each goal, by the first part of its key."""
 
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """A way in which a run can meet a sentence: what a test or a recorded run should show.
+    """A coverage goal: a way to meet a sentence that a test or a recorded run should show.
 
-    A run has come by it at the first tick at which all holds that it asks for.
+    A run reaches the goal at the first tick at which all of its conditions hold.
     """
 
     key: str
-    """From `MEANINGS`, behind a colon what it is about; unique within a requirement."""
+    """A key of `MEANINGS`, a colon and its subject; unique within a requirement."""
     words: str
-    """For people."""
+    """The description for people."""
     formula: f.Formula
-    """Of the past, over the atoms of the sentence."""
+    """A past-time formula over the atoms of the sentence."""
     at_end: bool = False
-    """Whether the last tick of a run alone counts."""
+    """Whether only the last tick of a run counts."""
     unknown: str | None = None
-    """An atom that must be unknown at that tick. The formula says that its value decides; where
-    parts of the sentence share the atom, it has to hold whatever the atom is there."""
-    place: Place | None = None
-    """Where a number must be at that tick, too: over signals as bindings have them, or over the
-    variables of the sentence, where none are bound."""
+    """An atom that must be unknown at that tick. The formula says that the value of the atom
+    decides; if parts of the sentence share the atom, the formula must hold for both of its
+    values."""
+    place: ThresholdPosition | None = None
+    """The required position of a number relative to a threshold at that tick: over signals as in
+    the bindings, or over the variables of the sentence without bindings."""
 
 
 @with_recursion_limit
 def situations(requirement: FormalizedRequirement, *, exact: bool = False) -> tuple[Situation, ...]:
-    """Those of a requirement, in the order of `MEANINGS`.
+    """The coverage goals of a requirement, in the order of `MEANINGS`.
 
-    None of a sentence with predicates that look ahead: no formula of the past says what they are.
+    A sentence with predicates that look ahead has none, because no past-time formula describes
+    them.
 
     Args:
-        requirement: of which they are.
-        exact: exact after a missed deadline, too, for recorded runs
+        requirement: the requirement.
+        exact: whether formulas are exact after a missed deadline, too, for recorded runs
             (`compiler.situations.tick_predicates`); formulas for a search are not.
     """
-    if any(name in LOOK_AHEAD for each in conditions(requirement.sentence) for name in calls(each)):
+    if any(
+        name in LOOK_AHEAD
+        for expression in conditions(requirement.sentence)
+        for name in calls(expression)
+    ):
         return ()
-    known, read = facts(requirement, exact=exact), {*requirement.propositions}
+    predicates, read = tick_predicates(requirement, exact=exact), {*requirement.propositions}
     return tuple(
-        each
-        for each in (*_of_time(requirement, known), *_of_operands(requirement, known))
-        if each.formula != f.FALSE and read.issuperset(f.atoms(each.formula))
+        goal
+        for goal in (*_of_time(requirement, predicates), *_of_operands(requirement, predicates))
+        if goal.formula != f.FALSE and read.issuperset(f.atoms(goal.formula))
     )
 
 
-def _of_time(requirement: FormalizedRequirement, known: TickPredicates) -> Iterator[Situation]:
-    """Those that ask when something happens."""
-    passing = dict([*_of_scope(known), *_of_triggers(known), *of_demand(known)])
-    passing["scope-ends-open"] = _ends_open(known)
-    ending = dict(_of_the_end(known))
-    found, words = {**passing, **ending}, _words(requirement, known)
+def _of_time(requirement: FormalizedRequirement, predicates: TickPredicates) -> Iterator[Situation]:
+    """The goals about the time of events."""
+    passing = dict([*_of_scope(predicates), *_of_triggers(predicates), *of_demand(predicates)])
+    passing["scope-ends-open"] = _ends_open(predicates)
+    ending = dict(_of_the_end(predicates))
+    rows, words = {**passing, **ending}, _words(requirement, predicates)
     for key, meaning in MEANINGS.items():
-        if key in found:
+        if key in rows:
             shown = meaning.format_map(words)
-            yield Situation(key, shown, found[key], at_end=key in ending)
+            yield Situation(key, shown, rows[key], at_end=key in ending)
 
 
 _Rows = Iterator[tuple[str, f.Formula]]
 
 
-def _of_scope(known: TickPredicates) -> _Rows:
-    """How the interval comes, and comes again."""
-    inside, triggered = known.inside, known.triggered
-    scope, mode = known.whole.scope, known.whole.mode
+def _of_scope(predicates: TickPredicates) -> _Rows:
+    """The goals about the begin and the recurrence of intervals."""
+    inside, triggered = predicates.inside, predicates.triggered
+    scope, mode = predicates.whole.scope, predicates.whole.mode
     match scope:
         case None:
             return
         case s.ScopeKind.IN | s.ScopeKind.NOT_IN | s.ScopeKind.ONLY_IN:
-            ended_before = f.once(known.ended)
+            ended_before = f.once(predicates.ended)
             yield "first-interval", f.and_(triggered, f.not_(ended_before))
             yield "second-interval", f.and_(triggered, ended_before)
         case s.ScopeKind.BEFORE:
@@ -145,15 +151,15 @@ def _of_scope(known: TickPredicates) -> _Rows:
             yield "mode-again", f.and_(f.not_(inside), mode)
         case _:
             assert_never(scope)
-    if known.whole.condition is not None:
-        p = known.whole.trigger
+    if predicates.whole.condition is not None:
+        p = predicates.whole.trigger
         yield "condition-outside", f.and_(p, f.not_(inside))
         if not _begins_with_run(scope):
-            yield "condition-across-entry", f.and_(known.stage.left, p, f.previous(p))
+            yield "condition-across-entry", f.and_(predicates.stage.left, p, f.previous(p))
 
 
 def _begins_with_run(scope: s.ScopeKind) -> bool:
-    """Whether its one interval begins at tick 0, or never."""
+    """Whether the scope's single interval begins at tick 0, or never."""
     match scope:
         case s.ScopeKind.BEFORE | s.ScopeKind.ONLY_AFTER:
             return True
@@ -165,25 +171,27 @@ def _begins_with_run(scope: s.ScopeKind) -> bool:
             assert_never(scope)
 
 
-def _of_triggers(known: TickPredicates) -> _Rows:
-    """When a demand begins, and again."""
-    triggered = known.triggered
-    scope, each = known.whole.scope, known.whole.condition is None
-    if not (each and (scope is None or _begins_with_run(scope))):  # else each first one does
+def _of_triggers(predicates: TickPredicates) -> _Rows:
+    """The goals about first and repeated triggers."""
+    triggered = predicates.triggered
+    scope, is_unconditional = predicates.whole.scope, predicates.whole.condition is None
+    if not (
+        is_unconditional and (scope is None or _begins_with_run(scope))
+    ):  # else each first one does
         yield "triggered-at-start", f.and_(f.FIRST, triggered)
-    if each:
+    if is_unconditional:
         return
-    p = known.whole.trigger
-    yield "triggered-later", f.and_(triggered, f.not_(known.stage.left))
-    yield "triggered-while-open", f.and_(triggered, known.was_open)
+    p = predicates.whole.trigger
+    yield "triggered-later", f.and_(triggered, f.not_(predicates.stage.left))
+    yield "triggered-while-open", f.and_(triggered, predicates.was_open)
     yield "condition-stays", f.and_(p, f.previous(triggered))
-    if not _lasts(known.demand.kind):
+    if not _lasts(predicates.demand.kind):
         before = f.previous(f.once(triggered))
-        yield "triggered-again", f.and_(triggered, before, f.not_(known.was_open))
+        yield "triggered-again", f.and_(triggered, before, f.not_(predicates.was_open))
 
 
 def _lasts(kind: Kind) -> bool:
-    """Whether a demand is open as long as its interval, whatever is answered."""
+    """Whether a demand stays open as long as its interval, whatever is answered."""
     match kind:
         case Kind.FINALLY | Kind.ALWAYS:
             return True
@@ -195,38 +203,40 @@ def _lasts(kind: Kind) -> bool:
             assert_never(kind)
 
 
-def _ends_open(known: TickPredicates) -> f.Formula:
-    """The interval is over, and a demand was open that its end decides or voids."""
-    if Trait.LAST in TRAITS[known.demand.kind]:
+def _ends_open(predicates: TickPredicates) -> f.Formula:
+    """Formula: the interval is over, and its end decided or cancelled an open demand."""
+    if Trait.LAST in TRAITS[predicates.demand.kind]:
         return f.FALSE  # it says already which last ticks there are
-    return f.and_(known.ended, f.previous(known.open))
+    return f.and_(predicates.ended, f.previous(predicates.open))
 
 
-def _of_the_end(known: TickPredicates) -> _Rows:
-    """What the last tick of the whole run tells."""
-    if known.stage.left != f.FIRST:  # else the first tick lies in it
-        yield "never-enforced", f.not_(f.once(known.inside))
-    if known.whole.condition is not None:
-        yield "never-triggered", f.not_(f.once(known.triggered))
-    if Trait.LAST in TRAITS[known.demand.kind]:
-        yield "run-ends-answered", f.and_(known.waiting, known.answer)
-        yield "run-ends-missed", f.and_(known.waiting, f.not_(known.answer))
-    elif not _lasts(known.demand.kind):
-        yield "run-ends-open", known.open
+def _of_the_end(predicates: TickPredicates) -> _Rows:
+    """The goals about the last tick of the run."""
+    if predicates.stage.left != f.FIRST:  # else the first tick lies in it
+        yield "never-enforced", f.not_(f.once(predicates.inside))
+    if predicates.whole.condition is not None:
+        yield "never-triggered", f.not_(f.once(predicates.triggered))
+    if Trait.LAST in TRAITS[predicates.demand.kind]:
+        yield "run-ends-answered", f.and_(predicates.waiting, predicates.answer)
+        yield "run-ends-missed", f.and_(predicates.waiting, f.not_(predicates.answer))
+    elif not _lasts(predicates.demand.kind):
+        yield "run-ends-open", predicates.open
 
 
 # What decides -----------------------------------------------------------------------------------
 
 
-def _of_operands(requirement: FormalizedRequirement, known: TickPredicates) -> Iterator[Situation]:
-    """Those of single operands, by their keys in the order of `MEANINGS`."""
-    found = [
-        each
-        for operand in operands(requirement, known)
-        for each in _of_operand(requirement, operand)
+def _of_operands(
+    requirement: FormalizedRequirement, predicates: TickPredicates
+) -> Iterator[Situation]:
+    """The goals about single operands, in the order of `MEANINGS`."""
+    goals = [
+        goal
+        for operand in operands(requirement, predicates)
+        for goal in _of_operand(requirement, operand)
     ]
     order = [*MEANINGS]
-    yield from sorted(found, key=lambda each: order.index(each.key.partition(":")[0]))
+    yield from sorted(goals, key=lambda goal: order.index(goal.key.partition(":")[0]))
 
 
 def _of_operand(requirement: FormalizedRequirement, operand: Operand) -> Iterator[Situation]:
@@ -238,7 +248,10 @@ def _of_operand(requirement: FormalizedRequirement, operand: Operand) -> Iterato
     texts = {"operand": expression(shown), "part": operand.part}
 
     def situation(
-        key: str, formula: f.Formula, place: Place | None = None, unknown: str | None = None
+        key: str,
+        formula: f.Formula,
+        place: ThresholdPosition | None = None,
+        unknown: str | None = None,
     ) -> Situation:
         numbers = {} if place is None else _numbers(place)
         words = MEANINGS[key].format(**texts, **numbers)
@@ -250,22 +263,24 @@ def _of_operand(requirement: FormalizedRequirement, operand: Operand) -> Iterato
         yield situation("alone-true", f.and_(operand.decides, operand.whole))
         yield situation("alone-false", f.and_(operand.decides, f.not_(operand.whole)))
     for comparison, key, place in _places(stated):
-        found = situation(key, operand.decides, place)
+        goal = situation(key, operand.decides, place)
         several = "" if comparison == shown else f":{_short(comparison)}"
-        yield replace(found, key=f"{found.key}{several}")
+        yield replace(goal, key=f"{goal.key}{several}")
     if operand.atom is not None:
         yield situation("unknown", operand.decides, unknown=operand.atom)
 
 
-def _numbers(place: Place) -> Mapping[str, str]:
+def _numbers(place: ThresholdPosition) -> Mapping[str, str]:
     return {"measured": expression(place.measured), "number": expression(place.number)}
 
 
-def _places(stated: e.Expression) -> Iterator[tuple[e.Comparison, str, Place]]:
-    """Those of each comparison in an operand, or in the proposition that it is."""
+def _places(stated: e.Expression) -> Iterator[tuple[e.Comparison, str, ThresholdPosition]]:
+    """The thresholds of each comparison in an operand, or in its proposition."""
     for part in dict.fromkeys(e.parts(stated)):
         if isinstance(part, e.Comparison):
-            yield from ((part, f"threshold-{key}", place) for key, place in places(part))
+            yield from (
+                (part, f"threshold-{key}", place) for key, place in threshold_positions(part)
+            )
 
 
 def _short(part: e.Expression) -> str:
@@ -275,8 +290,8 @@ def _short(part: e.Expression) -> str:
 # Words ------------------------------------------------------------------------------------------
 
 
-def _words(requirement: FormalizedRequirement, known: TickPredicates) -> Mapping[str, str]:
-    """What stands in `MEANINGS` for the parts of a sentence."""
+def _words(requirement: FormalizedRequirement, predicates: TickPredicates) -> Mapping[str, str]:
+    """The words for the placeholders in `MEANINGS`."""
     sentence = requirement.written
     stop, response = s.stop(sentence.timing), expression(sentence.response)
     texts = {
@@ -285,20 +300,25 @@ def _words(requirement: FormalizedRequirement, known: TickPredicates) -> Mapping
         "stop": "" if stop is None else expression(stop),
     }
     given = (f"`{response}`", f"no `{response}`")
-    answer, none = reversed(given) if _is_negative(sentence, known.demand.kind) else given
+    answer, none = reversed(given) if _is_negative(sentence, predicates.demand.kind) else given
     quoted = {name: f"`{text}`" for name, text in texts.items()}
-    return {**quoted, "answer": answer, "none": none, "last": _last(sentence, known.demand.kind)}
+    return {
+        **quoted,
+        "answer": answer,
+        "none": none,
+        "last": _last(sentence, predicates.demand.kind),
+    }
 
 
 def _is_negative(sentence: s.Sentence, kind: Kind) -> bool:
-    """Whether the response is demanded to be false."""
+    """Whether the response must be false."""
     never = s.SHAPES[type(sentence.timing)].quantifier is s.Quantifier.NONE
     negates = sentence.scope is not None and sentence.scope.kind.negates
     return never is not (negates and Trait.OPPOSITES not in TRAITS[kind])
 
 
 def _last(sentence: s.Sentence, kind: Kind) -> str:
-    """The last tick that a demand is about."""
+    """The words for the last tick of a demand."""
     bound = s.duration(sentence.timing)
     span = "" if bound is None else duration_text(bound)
     several = sentence.condition is not None

@@ -1,7 +1,7 @@
-"""Numbers that comparisons are made with, and the places beside them.
+"""Thresholds of comparisons, and the numbers one step below and above.
 
-A step is one unit of the last digit of a threshold as it is written: 0.1 m of `1.2 m`, 1 cm of
-`120 cm`. No more than that is known of how finely a signal is measured.
+A step is one unit of the last digit of a threshold as written: 0.1 m for `1.2 m`, 1 cm for
+`120 cm`. The resolution of the measurement is not known.
 """
 
 from __future__ import annotations
@@ -13,31 +13,31 @@ from decimal import Decimal
 from fretish import expressions as e
 
 _MOST_DIGITS = 25
-"""Fewer than what `Decimal` computes with."""
+"""Maximum number of digits; `Decimal` computes with more."""
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
-    """A number, perhaps with a unit and a sign."""
+class LiteralNumber:
+    """A literal number, possibly with a unit and a sign."""
 
     unsigned: e.Number | e.Quantity
     value: Decimal
     step: Decimal
 
     def moved(self, by: Decimal) -> e.Expression:
-        """The number so much more, in the same unit."""
+        """The number increased by `by`, in the same unit."""
         value, unsigned = self.value + by, self.unsigned
         digits = f"{abs(value):f}"
         match unsigned:
             case e.Number():
-                found: e.Expression = e.Number(digits)
+                moved_number: e.Expression = e.Number(digits)
             case e.Quantity(_, unit):
-                found = e.Quantity(digits, unit)
-        return e.Negation(found) if value < 0 else found
+                moved_number = e.Quantity(digits, unit)
+        return e.Negation(moved_number) if value < 0 else moved_number
 
 
-def written(side: e.Expression) -> Written | None:
-    """The number that stands there; None where something else does, or a very long one."""
+def literal_number(side: e.Expression) -> LiteralNumber | None:
+    """The literal number of an expression; None for any other, or one with too many digits."""
     unsigned = side.arg if isinstance(side, e.Negation) else side
     if not isinstance(unsigned, e.Number | e.Quantity):
         return None
@@ -47,30 +47,30 @@ def written(side: e.Expression) -> Written | None:
     if size >= _MOST_DIGITS:
         return None
     step = Decimal(1).scaleb(int(exponent))
-    return Written(unsigned, -exact if isinstance(side, e.Negation) else exact, step)
+    return LiteralNumber(unsigned, -exact if isinstance(side, e.Negation) else exact, step)
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class ThresholdPosition:
     """A number at a threshold, or one step beside it."""
 
     measured: e.Expression
-    """What is compared."""
+    """The compared expression."""
     number: e.Expression
-    """Where it is."""
+    """The number at the position."""
     least: e.Expression
-    """Half a step below."""
+    """The number half a step below."""
     limit: e.Expression
-    """Half a step above."""
+    """The number half a step above."""
 
     @property
     def exact(self) -> e.Comparison:
-        """It is this number: so a test sets it."""
+        """The comparison that the value equals the number, as a test sets it."""
         return e.Comparison("=", self.measured, self.number)
 
     @property
     def near(self) -> e.And:
-        """Rounded to a step, it is: so a recorded run may have it."""
+        """The condition that the value rounded to a step equals the number, for recorded runs."""
         at_least = e.Comparison(">=", self.measured, self.least)
         return e.And((at_least, e.Comparison("<", self.measured, self.limit)))
 
@@ -78,13 +78,20 @@ class Place:
 STEPS: Mapping[str, int] = {"below": -1, "at": 0, "above": 1}
 
 
-def places(comparison: e.Comparison) -> Iterator[tuple[str, Place]]:
-    """Just below, at, and just above the number that something else is compared with."""
+def threshold_positions(comparison: e.Comparison) -> Iterator[tuple[str, ThresholdPosition]]:
+    """The positions one step below, at, and one step above the threshold of a comparison."""
     left, right = comparison.left, comparison.right
-    number, measured = (written(left), right) if written(left) else (written(right), left)
+    number, measured = (
+        (literal_number(left), right) if literal_number(left) else (literal_number(right), left)
+    )
     if number is None or not any(e.names(measured)):
         return
     half = number.step / 2
     for name, steps in STEPS.items():
         here = steps * number.step
-        yield name, Place(measured, *(number.moved(here + by) for by in (Decimal(0), -half, half)))
+        yield (
+            name,
+            ThresholdPosition(
+                measured, *(number.moved(here + by) for by in (Decimal(0), -half, half))
+            ),
+        )

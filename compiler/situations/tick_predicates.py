@@ -1,16 +1,17 @@
-"""What one tick is to a sentence, as formulas of the past: triggered, open, answered k ticks on.
+"""Past-time formulas about one tick: triggered, open, answered k ticks later.
 
-A demand is open after a tick where what follows can still break it or meet it; the counter of the
-reference automaton is not 0 then, as long as nothing was broken. What a fact says is true after a
-breach, too.
+A demand is open after a tick if later ticks can still break or meet it: the counter of the
+reference automaton is not 0 then, unless something was broken. The formulas are also true after a
+violation.
 
-Two forms tell how far back the first open trigger lies. They differ after a deadline of `within`,
-`after` or the dual of `after` has passed without an answer, and nowhere else. The exact form is for
-recorded runs: it remembers every trigger, which is cheap over columns. The other one is for
+Two forms measure the distance to the first open trigger. They differ only after a deadline of
+`within`, `after` or the dual of `after` has passed without an answer. The exact form is for
+recorded runs: it remembers every trigger, which is cheap over columns. The other form is for
 searches over all runs: a counter that starts with a trigger, so that a long bound costs the
 logarithm of its ticks; after such a deadline it counts again once an answer has come.
 
-Source: `compiler.formalization.reference`, the definition as counters, that the tests hold this to.
+Source: `compiler.formalization.reference`, the definition as counters, with which tests compare
+this module.
 """
 
 from __future__ import annotations
@@ -29,11 +30,11 @@ from fretish.syntax import ConditionKind, ScopeKind
 
 @dataclass(frozen=True)
 class TickPredicates:
-    """Facts of a tick, over the atoms of the sentence."""
+    """Formulas about a tick, over the atoms of the sentence."""
 
     whole: Obligation
     exact: bool = False
-    """Whether distances are exact after a missed deadline, too; see above."""
+    """Whether distances are exact after a missed deadline, too; see the module's description."""
 
     @cached_property
     def stage(self) -> ScopeFormulas:
@@ -42,7 +43,7 @@ class TickPredicates:
 
     @property
     def demand(self) -> Demand:
-        """What a trigger asks for; outside of an `only` scope, the dual of what is written."""
+        """The demand of a trigger; for an `only` scope, the dual of the written timing."""
         return self.whole.demand
 
     @property
@@ -52,17 +53,17 @@ class TickPredicates:
 
     @property
     def ended(self) -> f.Formula:
-        """It is the first tick after an interval; FALSE where no interval ends."""
+        """The tick is the first one after an interval; FALSE if no interval ends."""
         return self.stage.leaves
 
     @property
     def triggered(self) -> f.Formula:
-        """A demand begins here."""
+        """A demand begins at this tick."""
         return self.stage.trigger
 
     @property
     def answer(self) -> f.Formula:
-        """The response is as it is demanded: for `never`, that it is false."""
+        """The response has the demanded value: for `never`, it is false."""
         return self.demand.response
 
     @cached_property
@@ -96,18 +97,18 @@ class TickPredicates:
 
     @cached_property
     def was_open(self) -> f.Formula:
-        """A demand that was open after the tick before still concerns this one."""
+        """A demand that was open after the tick before still applies at this one."""
         return f.and_(self.inside, f.previous(self.open))
 
     @cached_property
     def waiting(self) -> f.Formula:
-        """A demand begins here, or was open after the tick before."""
+        """A demand begins at this tick, or was open after the tick before."""
         return f.or_(self.triggered, self.was_open)
 
     def oldest(self, ticks: int) -> f.Formula:
-        """The first open trigger lies so many ticks back.
+        """The first open trigger lies `ticks` ticks back.
 
-        This tick is not asked for its answer.
+        The answer at this tick is ignored.
         """
         if self.exact:
             older = self._unanswered(ticks + 1, self._longest)
@@ -131,7 +132,7 @@ class TickPredicates:
 
     @property
     def _longest(self) -> int:
-        """The most ticks from a trigger to one that its demand is still open for."""
+        """The maximum number of ticks for which a demand is open."""
         n = self.demand.ticks
         match self.demand.kind:
             case Kind.WITHIN:
@@ -153,18 +154,18 @@ class TickPredicates:
                 assert_never(self.demand.kind)
 
     def _unanswered(self, least: int, most: int) -> f.Formula:
-        """A trigger lies from least to most ticks back, at least one, and no answer came since."""
+        """A trigger lies `least` to `most` ticks back, at least one, without an answer since."""
         if most < least:
             return f.FALSE
         back = f.Interval(least - 1, most - 1)
         return f.and_(self.inside, f.previous(self.stage.open(f.not_(self.answer), back)))
 
     def newest(self, ticks: int, kept: f.Formula = f.TRUE) -> f.Formula:
-        """The last trigger of this interval lies so many ticks back.
+        """The last trigger of this interval lies `ticks` ticks back.
 
         Args:
             ticks: from the trigger to this tick.
-            kept: what has held since, this tick left out.
+            kept: a formula that has held since, this tick excluded.
         """
         if ticks == 0:
             return self.triggered
@@ -208,7 +209,7 @@ class TickPredicates:
 
     @property
     def _takes_a_trigger(self) -> f.Formula:
-        """A trigger here would change what is demanded."""
+        """A trigger at this tick would change what is demanded."""
         unanswered, closed = f.not_(self.answer), f.not_(self.was_open)
         match self.demand.kind:
             case Kind.IMMEDIATELY | Kind.NOT_AFTER:
@@ -233,7 +234,7 @@ class TickPredicates:
 
     @cached_property
     def asks_for_answer(self) -> f.Formula:
-        """The response at this tick decides something, if only one more breach."""
+        """The response at this tick decides something, if only one more violation."""
         stage, demand = self.stage, self.demand
         match demand.kind:
             case Kind.IMMEDIATELY:
@@ -262,6 +263,6 @@ class TickPredicates:
         return self.waiting if Trait.STOPS in TRAITS[self.demand.kind] else f.FALSE
 
 
-def facts(requirement: FormalizedRequirement, *, exact: bool = False) -> TickPredicates:
-    """Of a requirement, its temporal predicates read as formulas of the past."""
+def tick_predicates(requirement: FormalizedRequirement, *, exact: bool = False) -> TickPredicates:
+    """The predicates of a requirement, with temporal predicates as past-time formulas."""
     return TickPredicates(obligation(requirement.sentence, requirement.ticks or 0, Past()), exact)

@@ -1,7 +1,7 @@
-"""The names of comparisons in languages without numbers: `battery_lt_20` for `battery < 20`.
+"""Names of comparisons for languages without numbers: `battery_lt_20` for `battery < 20`.
 
-They are the same in every language, and none is the name of anything else in the project. Beside
-them stands what they mean, and which of them are never true together.
+The names are equal in every language, and unique in the project. The module also gives their
+meanings, and the combinations of comparisons that are impossible.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import atoms_of, excluded
+from compiler.formalization.letters import atoms_of, impossible_combinations
 from compiler.formalization.resolution import candidates
 from compiler.logic import formula as f
 from compiler.logic.identifiers import legal_names
@@ -30,7 +30,7 @@ def comparison_names(requirement: FormalizedRequirement) -> Mapping[str, str]:
 
 @with_recursion_limit
 def in_words(requirement: FormalizedRequirement) -> Mapping[str, str]:
-    """What each of these atoms means, in the units of its signals: `battery < 20 %`."""
+    """The meaning of each of these atoms, in the units of its signals: `battery < 20 %`."""
     parts = dict(candidates(requirement.sentence))
     meanings = {}
     for atom in comparison_names(requirement):
@@ -54,11 +54,11 @@ def _meaning(
 
 
 def definitions(requirement: FormalizedRequirement, names: Mapping[str, str]) -> Mapping[str, str]:
-    """By the names in a text, what stands for something else: `battery_lt_20` for `battery < 20 %`.
+    """The meaning of each name that abbreviates an atom: `battery_lt_20` for `battery < 20 %`.
 
     Args:
         requirement: the requirement.
-        names: what its propositions are called there.
+        names: proposition → its name in the text.
     """
     meanings = in_words(requirement)
     return {
@@ -68,25 +68,25 @@ def definitions(requirement: FormalizedRequirement, names: Mapping[str, str]) ->
     }
 
 
-def impossible(requirement: FormalizedRequirement, names: Mapping[str, str]) -> list[str]:
-    """Which comparisons never have these values together, by the names of a language."""
+def impossible_texts(requirement: FormalizedRequirement, names: Mapping[str, str]) -> list[str]:
+    """The combinations of comparisons that never occur, in a language's names."""
     return [
         ", ".join(f"{names[atom]} {str(value).lower()}" for atom, value in exclusion)
-        for exclusion in excluded(requirement)
+        for exclusion in impossible_combinations(requirement)
     ]
 
 
 def notes(requirement: FormalizedRequirement) -> list[str]:
-    """Definitions, and what no numbers make true, a sentence each."""
+    """The definitions of names, and the impossible combinations, a sentence each."""
     names = comparison_names(requirement)
     return [
         *(f"{name}: {meaning}" for name, meaning in definitions(requirement, names).items()),
-        *(f"never at one tick: {together}" for together in impossible(requirement, names)),
+        *(f"never at one tick: {together}" for together in impossible_texts(requirement, names)),
     ]
 
 
-def renamed(formula: f.Formula, names: Mapping[str, str]) -> f.Formula:
-    """The formula with other names for some atoms."""
+def with_renamed_atoms(formula: f.Formula, names: Mapping[str, str]) -> f.Formula:
+    """The formula with atoms renamed."""
     if isinstance(formula, f.Atom):
         return f.Atom(names.get(formula.name, formula.name))
-    return f.rebuild(formula, lambda part: renamed(part, names))
+    return f.rebuild(formula, lambda part: with_renamed_atoms(part, names))

@@ -36,7 +36,7 @@ from compiler.logic import formula as f
 from compiler.logic.identifiers import legal_names, underlined
 from compiler.logic.spelling.reserved_words import DAFNY
 from compiler.targets.comparison_names import comparison_names, in_words
-from compiler.targets.dafny_claims import CHANNELS, Delay, delay, loopless
+from compiler.targets.dafny_claims import CHANNELS, Delay, delay, no_loop_reason
 from compiler.targets.interceptor_options import options as core
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from fretish import expressions as e
@@ -51,7 +51,7 @@ _ELSEWHERE = "check its monitor with `fretc verify`"
 
 @with_recursion_limit
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """F601 for the first part of the requirement of which nothing could be proved."""
+    """F601 for the first part of the requirement about which nothing can be proved."""
     sentence = requirement.sentence
     if requirement.pctl is not None:
         return not_expressible(
@@ -62,7 +62,7 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
         return not_expressible("Dafny", requirement, f"the scope `{scope}`", _ELSEWHERE)
     predicate = temporal_predicate(sentence)
     if predicate is not None:
-        part = f"the predicate `{predicate}`, which speaks of other ticks,"
+        part = f"the predicate `{predicate}`, which refers to other ticks,"
         return not_expressible("Dafny", requirement, part, _ELSEWHERE)
     return None
 
@@ -95,11 +95,11 @@ def _name(requirement: FormalizedRequirement) -> str:
 
 
 def text(requirement: FormalizedRequirement, declarations: Declarations | None) -> str:
-    """The whole file; the same for the same requirement and declarations.
+    """The text of the file; equal for equal requirement and declarations.
 
     Args:
-        requirement: one that is not refused.
-        declarations: None where no bindings are at hand: then the interceptor is the plain one.
+        requirement: a requirement that is not refused.
+        declarations: None without bindings: then the interceptor is the plain one.
     """
     return render(
         "dafny/requirement.dfy.j2",
@@ -118,21 +118,21 @@ def text(requirement: FormalizedRequirement, declarations: Declarations | None) 
 
 @dataclass(frozen=True, slots=True)
 class Trigger:
-    """When a demand begins, in Dafny."""
+    """The Dafny expressions for the begin of a demand."""
 
     at: str
-    """At tick t of a sequence w."""
+    """The trigger at tick t of a sequence w."""
     now: str
-    """At tick x, for a monitor m."""
+    """The trigger at tick x, for a monitor m."""
     memory: str
-    """What is remembered of tick x."""
+    """The value that the monitor remembers of tick x."""
     remembered: str
-    """The same, of a sequence w after k ticks."""
+    """The remembered value, of a sequence w after k ticks."""
     memory_means: str
     in_loop: str
     loop_memory: str
     always_before: str
-    """What the loop remembers after ticks on which the condition holds."""
+    """The value that the loop remembers after ticks on which the condition holds."""
 
 
 _TRIGGERS: Mapping[ConditionKind | None, Trigger] = {
@@ -209,7 +209,7 @@ _COUNTERS: Mapping[type[s.Timing], str] = {
 
 
 def _bound(requirement: FormalizedRequirement) -> Mapping[str, object]:
-    """How the templates name the bound: a parameter and an argument, where there is one."""
+    """The bound in the templates: a parameter and an argument, if there is one."""
     bounded = s.duration(requirement.sentence.timing) is not None
     return {
         "bounded": bounded,
@@ -220,9 +220,10 @@ def _bound(requirement: FormalizedRequirement) -> Mapping[str, object]:
 
 
 def _fields(atoms: Sequence[str], comparisons: Mapping[str, str]) -> Mapping[str, str]:
-    """Atom → a name in Dafny, no two alike; a tick without propositions has one that nobody reads.
+    """A unique Dafny name for each atom; a tick without propositions gets an unused field.
 
-    A name ends neither with `?` nor in digits that look like an array's, and begins with a letter.
+    A name begins with a letter, and ends neither with `?` nor with digits like those of an array
+    type.
     """
     wanted = {atom: _field(comparisons.get(atom, atom)) for atom in atoms}
     names = legal_names(atoms, DAFNY, names=wanted, variants=underlined)
@@ -230,7 +231,7 @@ def _fields(atoms: Sequence[str], comparisons: Mapping[str, str]) -> Mapping[str
 
 
 def _field(name: str) -> str:
-    """Letters, digits and single `_` between them."""
+    """The name with only letters, digits and single `_`."""
     text = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_") or "p"
     return text if text[0].isalpha() else f"p_{text}"
 
@@ -244,7 +245,7 @@ def _dafny(expression: e.Expression, fields: Mapping[str, str]) -> str:
 
 
 def _text(formula: f.Formula, fields: Mapping[str, str]) -> str:
-    """A formula without time, of tick `x`; every operator in parentheses."""
+    """The text of a formula without time, about tick `x`, with every operator in parentheses."""
 
     def text(part: f.Formula) -> str:
         return _text(part, fields)
@@ -285,7 +286,7 @@ def _interceptor(declarations: Declarations | None) -> str:
 
 
 def _loop(requirement: FormalizedRequirement, declarations: Declarations | None) -> str:
-    reason = loopless(requirement, declarations)
+    reason = no_loop_reason(requirement, declarations)
     if reason is not None:
         return render("dafny/loopless.dfy.j2", reason=reason)
     declared = delay(requirement, declarations)

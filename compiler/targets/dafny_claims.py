@@ -1,4 +1,4 @@
-"""The claims of a file of `--emit dafny`, and how far they cover the closed loop."""
+"""The claims of a file of `--emit dafny`, and their coverage of the closed loop."""
 
 from __future__ import annotations
 
@@ -21,29 +21,31 @@ CHANNELS = (
     ("Scan", "scan", "ScanHeard"),
     ("Command", "command", "CommandHeard"),
 )
-"""The inputs of an interceptor: their names in lemmas, in its numbers, and its events."""
+"""The inputs of an interceptor: their names in lemmas, in its fields, and its events."""
 
 
 @dataclass(frozen=True, slots=True)
 class Delay:
-    """From a trigger to the response, in ticks of the requirement's clock."""
+    """The delay from a trigger to the response, in ticks of the requirement's clock."""
 
     reach: int
-    """A request is heard before the end of the tick so many ticks after the trigger: latency
-    rounded up, less the tick itself, and for each message that may be lost in a row the time to the
-    next one: a tick, or the heartbeat."""
+    """A request arrives before the end of the tick that comes this number of ticks after the
+    trigger: the latency rounded up, less the tick itself, and for each message that may be lost in
+    a row the time to the next one (a tick, or the heartbeat)."""
     braking: int
-    """At so many ends of ticks in a row the wheels have zero: braking rounded up, and the tick in
-    which it began."""
+    """The number of consecutive ticks at whose end the wheels have zero before the response:
+    braking rounded up, and the tick in which it began."""
 
     @property
     def total(self) -> int:
-        """The least bound that the requirement may have."""
+        """The smallest bound that the requirement may have."""
         return self.reach + self.braking
 
 
-def loopless(requirement: FormalizedRequirement, declarations: Declarations | None) -> str | None:
-    """Why the file has no claim about the closed loop; None where it has one."""
+def no_loop_reason(
+    requirement: FormalizedRequirement, declarations: Declarations | None
+) -> str | None:
+    """The reason why the file has no claim about the closed loop; None if it has one."""
     if declarations is None or declarations.interceptor is None:
         return "the bindings have no [interceptor], and the plain form waits for a command to stop"
     if declarations.interceptor.form is InterceptorForm.EVENT:
@@ -61,7 +63,7 @@ def loopless(requirement: FormalizedRequirement, declarations: Declarations | No
 def delay(
     requirement: FormalizedRequirement, declarations: Declarations | None
 ) -> Delay | str | None:
-    """The delay under [assume], or why it is no number of ticks; None without [assume]."""
+    """The delay under [assume], or why it has no number of ticks; None without [assume]."""
     assumed = declarations.assumed if declarations else None
     if assumed is None:
         return None
@@ -83,13 +85,13 @@ class Claim:
     sentence: str
     assumptions: tuple[str, ...] = ()
     unshown: str | None = None
-    """Why the file does not show it."""
+    """The reason why the file does not prove the claim."""
 
 
 def claims(
     requirement: FormalizedRequirement, declarations: Declarations | None
 ) -> tuple[Claim, ...]:
-    """The claims of a requirement's file, in its order; none for a part that it leaves out."""
+    """The claims of a requirement's file, in order; parts that the file lacks have none."""
     return (
         _monitor_claim(requirement),
         _interceptor_claim(declarations),
@@ -136,7 +138,7 @@ _ASSUMED = (
 
 
 def _assumed(declarations: Declarations | None) -> tuple[str, ...]:
-    """On change only, a demand that begins while a stop is requested brings no message with it."""
+    """The assumptions of the closed loop; a request that is sent on change only needs one more."""
     assumed = declarations.assumed if declarations else None
     if assumed is None or assumed.requests is Requests.LEVEL:
         return _ASSUMED
@@ -147,7 +149,7 @@ def _assumed(declarations: Declarations | None) -> tuple[str, ...]:
 def _loop_claims(
     requirement: FormalizedRequirement, declarations: Declarations | None
 ) -> Iterator[Claim]:
-    if loopless(requirement, declarations) is not None:
+    if no_loop_reason(requirement, declarations) is not None:
         return
     assumptions = _assumed(declarations)
     declared, bound = delay(requirement, declarations), requirement.ticks
@@ -163,7 +165,7 @@ def _loop_claims(
 def _declared_claim(
     declared: Delay | str, bound: int | None, assumptions: tuple[str, ...]
 ) -> Claim:
-    """The same for the numbers of [assume]."""
+    """The claim for the numbers of [assume]."""
     at = "the declared delay" if bound is None else f"the bound of {bound} ticks"
     if isinstance(declared, str):
         return Claim(Layer.BOUNDS, f"never late at {at}", assumptions, declared)

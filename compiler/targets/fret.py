@@ -34,7 +34,7 @@ from fretish.printer import expression, identifier, sentence, timing
 
 _STATUSES = {"approved": "completed", "retired": "deprecated"}
 _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
-"""RFC 4122's name space of URLs: the same requirement always has the same `_id`."""
+"""RFC 4122's name space of URLs, so that equal requirements have equal `_id`s."""
 
 
 def emit(
@@ -55,13 +55,13 @@ def emit(
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """F601: FRET has no units, and converts nothing."""
+    """F601: FRET has no units and converts nothing."""
     if _mixes_units(requirement):
         return not_expressible(
             "FRET",
             requirement,
             "a comparison of signals in several units",
-            "bind it under a name of its own, `[proposition.NAME]`, and write that name",
+            "bind it as `[proposition.NAME]`, and write that name",
         )
     if not has_units(requirement.sentence):
         return None
@@ -74,10 +74,10 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
 
 
 def _in_fretish(requirement: FormalizedRequirement) -> FormalizedRequirement:
-    """The requirement of the sentence that FRET reads.
+    """The requirement with the sentence as FRET reads it.
 
-    Its names stand there as they are written, and FRET has what they stand for. Where a unit is
-    among that, or in the sentence, it is the sentence of bare numbers.
+    Names stay as written, and FRET gets their definitions. If a definition or the sentence has a
+    unit, numbers without units are used instead.
     """
     whole = expanded(requirement.written, requirement.definitions)
     assert isinstance(whole, s.Sentence), "it has been formalized"
@@ -87,7 +87,7 @@ def _in_fretish(requirement: FormalizedRequirement) -> FormalizedRequirement:
 
 
 def _in_quotes(requirement: FormalizedRequirement) -> FormalizedRequirement:
-    """The same requirement, with quotes around names that FRET does not read without."""
+    """The requirement with quotes around names that FRET reads only in quotes."""
     wording = requirement.entry.wording
     component = requirement.written.component_span
     places = () if component is None else (component.start - wording.start,)
@@ -106,27 +106,27 @@ _NAMES = re.compile(r'"[^"\n]*"|[A-Za-z][A-Za-z0-9_.%]*')
 
 
 def quoted(text: str, others: Collection[int] = ()) -> str:
-    """A text of FRETish in which `T` is `"T"`: a name that FRET's editor refuses without quotes.
+    """The FRETish text with quotes around names that FRET's editor refuses otherwise.
 
     Args:
         text: a sentence, or a part of it.
-        others: where a name begins that is left alone.
+        others: positions of names that are left unquoted.
     """
     return _NAMES.sub(lambda m: _name(m[0]) if m.start() not in others else m[0], text)
 
 
 def _name(id: str) -> str:
-    """`"T"` for `T`; a key word of FRETish is none of them, whatever its case."""
+    """The name in quotes, `"T"` for `T`, unless it is a key word of FRETish in any case."""
     return f'"{id}"' if id in FRET and id.lower() not in RESERVED else id
 
 
 def _variable_name(id: str) -> str:
-    """As FRET names the variable of a sentence: with the quotes that it has there."""
+    """FRET's name of a variable, with its quotes in the sentence."""
     return f'"{id}"' if id in FRET else identifier(id)
 
 
 def _with_names(requirement: FormalizedRequirement) -> FormalizedRequirement:
-    """The requirement as if the names of its sentence stood for nothing."""
+    """The requirement without definitions of the names of its sentence."""
     assert requirement.declarations is not None, "they define the names"
     variables = {
         name: replace(variable, value=None, of={})
@@ -137,7 +137,7 @@ def _with_names(requirement: FormalizedRequirement) -> FormalizedRequirement:
 
 
 def _mixes_units(requirement: FormalizedRequirement) -> bool:
-    """Whether FRET would compare metres with centimetres: its variables are bare numbers."""
+    """Whether FRET would compare metres with centimetres, since its variables have no units."""
     signals = requirement.declarations.signals if requirement.declarations else {}
     return any(
         isinstance(part, e.Comparison) and is_mixed(part, signals, requirement.entry.wording)
@@ -147,7 +147,7 @@ def _mixes_units(requirement: FormalizedRequirement) -> bool:
 
 
 def _without_units(requirement: FormalizedRequirement) -> FormalizedRequirement:
-    """The requirement as if it had been written with bare numbers, in the signals' own units."""
+    """The requirement with numbers without units, in the signals' units."""
     text = Source(requirement.entry.wording.source.name, sentence(requirement.sentence)).span()
     written = parse(text)
     assert isinstance(written, s.Sentence), "what is printed is a sentence"
@@ -158,18 +158,18 @@ def _without_units(requirement: FormalizedRequirement) -> FormalizedRequirement:
 def _ordered(
     requirements: Sequence[FormalizedRequirement], options: Options
 ) -> list[RequirementEntry]:
-    """Those of requirements and free texts, in the order of their files, and of each file."""
+    """The entries of requirements and free texts, in the order of files and within files."""
     entries = [*(requirement.entry for requirement in requirements), *options.free_texts]
     files = list(dict.fromkeys(entry.wording.source.name for entry in entries))
     return sorted(
-        entries, key=lambda each: (files.index(each.wording.source.name), each.wording.start)
+        entries, key=lambda entry: (files.index(entry.wording.source.name), entry.wording.start)
     )
 
 
 def requirement(
     entry: RequirementEntry, requirement: FormalizedRequirement | None
 ) -> dict[str, Any]:
-    """FRET's record of one requirement; one without a requirement is free text."""
+    """FRET's record of one requirement; an unformalized one becomes free text."""
     fret = entry.fret
     return {
         "reqid": fret.get("reqid", entry.id),
@@ -187,14 +187,14 @@ def requirement(
 
 
 def _own(entry: RequirementEntry) -> dict[str, dict[str, str]]:
-    """Fields that FRET lacks, for `fretc import` of the same file."""
+    """Fields that FRET lacks, for `fretc import` of the file."""
     texts = {"title": entry.title, "text": entry.text}
     own = {name: text for name, text in texts.items() if text}
     return {OWN: own} if own else {}
 
 
 def _status(entry: RequirementEntry) -> str:
-    """FRET's own status where it still means the same, else the nearest."""
+    """FRET's status if it still means the same, else the nearest one."""
     status = entry.fret.get("status", "")
     if STATUSES.get(status, "draft") == entry.status:
         return status
@@ -207,7 +207,7 @@ def _id(entry: RequirementEntry) -> str:
 
 
 def semantics(requirement: FormalizedRequirement) -> dict[str, Any]:
-    """FRET's description of a sentence, with our formulas in FRET's spelling."""
+    """FRET's description of a sentence, with the formulas in FRET's notation."""
     tree = requirement.sentence
     base = requirement.entry.wording.start
     fields: dict[str, Any] = {
@@ -238,7 +238,7 @@ def semantics(requirement: FormalizedRequirement) -> dict[str, Any]:
 
 
 def _parts(tree: s.Sentence) -> dict[str, Any]:
-    """The fields that only some sentences have."""
+    """The fields that depend on the form of the sentence."""
     fields: dict[str, Any] = {}
     if tree.scope is not None:
         fields["scope_mode"] = quoted(expression(tree.scope.mode))
@@ -274,11 +274,10 @@ def _spans(tree: s.Sentence) -> dict[str, Span | None]:
 def variables(
     requirements: Sequence[FormalizedRequirement], declarations: Declarations | None = None
 ) -> list[dict[str, Any]]:
-    """FRET's records of all variables; types and roles as far as the bindings know them.
+    """FRET's records of all variables, with types and roles where the bindings declare them.
 
-    Those that no sentence names follow, and those that `fretc import` has kept without reading
-    them. A kept one stands in the place of what would be said of its project's variable by that
-    of another project.
+    Variables that no sentence names come next, and then the records that `fretc import` kept
+    without reading them. A kept record replaces one that is derived from another project.
     """
     records: dict[tuple[str, str, str], dict[str, Any]] = {}
     for requirement in requirements:
@@ -296,13 +295,13 @@ def variables(
         project, component = variable.fret.get("project", ""), variable.component
         key = (project, component, name)
         own.add(key)
-        if not any(_is_of(key, each) for each in named):
+        if not any(_is_of(key, identity) for identity in named):
             records[key] = _variable(variable, project, component, name)
     return _with_kept(records, own, declarations.fret if declarations else ())
 
 
 def _is_of(variable: tuple[str, str, str], named: tuple[str, str, str]) -> bool:
-    """Whether a sentence names it: who writes bindings by hand need not say whose a variable is."""
+    """Whether a sentence names the variable; hand-written bindings need not name a component."""
     return variable[2] == named[2] and all(
         a == b or not a or (place == 0 and not b)
         for place, (a, b) in enumerate(zip(variable[:2], named[:2], strict=True))
@@ -312,12 +311,12 @@ def _is_of(variable: tuple[str, str, str], named: tuple[str, str, str]) -> bool:
 def _glossary(
     requirements: Sequence[FormalizedRequirement], declarations: Declarations | None
 ) -> Iterator[tuple[str, Variable]]:
-    """Each name with what it is, of each component."""
+    """Each name with its declaration, for each component."""
     if declarations is None:
         yield from requirements[0].glossary.items() if requirements else ()
         return
     for name, variable in declarations.variables.items():
-        yield from ((name, each) for each in (variable, *variable.of.values()))
+        yield from ((name, declared) for declared in (variable, *variable.of.values()))
 
 
 def _with_kept(
@@ -325,18 +324,18 @@ def _with_kept(
     own: Collection[tuple[str, str, str]],
     kept: Sequence[Mapping[str, Any]],
 ) -> list[dict[str, Any]]:
-    """All records: what FRET has said of a variable stands there as it is."""
-    found = dict(records)
+    """All records; FRET's kept record of a variable has priority."""
+    merged = dict(records)
     more: list[dict[str, Any]] = []
-    for each in kept:
+    for record in kept:
         fields = ("project", "component_name", "variable_name")
-        project, component, name = (str(each.get(field, "")) for field in fields)
+        project, component, name = (str(record.get(field, "")) for field in fields)
         key = (project, component, unquoted(name))
-        if key in records and key not in own and found[key] is records[key]:
-            found[key] = {**each, "reqs": records[key]["reqs"]}
+        if key in records and key not in own and merged[key] is records[key]:
+            merged[key] = {**record, "reqs": records[key]["reqs"]}
         else:
-            more.append(dict(each))
-    return [*found.values(), *more]
+            more.append(dict(record))
+    return [*merged.values(), *more]
 
 
 def _variable(glossary: Variable | None, project: str, component: str, name: str) -> dict[str, Any]:
@@ -370,7 +369,7 @@ def _variable(glossary: Variable | None, project: str, component: str, name: str
 
 
 def _assignment(glossary: Variable, fret: Mapping[str, Any]) -> dict[str, Any]:
-    """What a variable stands for, as FRET has it, where it has it; `fretc import` reads our own."""
+    """The assignment of a variable as FRET wrote it, or for FRET; the import reads ours."""
     assert glossary.value is not None
     field = assignment_field(glossary.role)
     kept = fret.get(field, "")

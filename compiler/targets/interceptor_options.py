@@ -1,4 +1,4 @@
-"""The interceptor that the bindings declare, as its core counts it: in ticks of its own timer."""
+"""The options of the interceptor that the bindings declare, in ticks of its own timer."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from monitors.interceptor import Options
 def options(interception: Interception) -> Options:
     """Durations become ticks, rounded up.
 
-    Ticks come at their own times: `hold` of n ticks ends with the n-th tick after the request, more
-    than n - 1 periods after it; a timeout of n ticks halts no later than n periods after the last
-    message.
+    Ticks are not synchronized with requests: `hold` of n ticks ends with the n-th tick after the
+    request, more than n - 1 periods after it; a timeout of n ticks halts at most n periods after
+    the last message.
     """
     if interception.form is InterceptorForm.EVENT:
         return Options(0, 0, 0, 0, event_driven=True, latching=interception.latching)
@@ -35,13 +35,13 @@ def options(interception: Interception) -> Options:
 
 
 ASSUMED = "[interceptor] and [assume]"
-"""The name, among the artefacts of a proof about the closed loop, of its assumptions."""
+"""The name of the assumptions among the artefacts of a proof about the closed loop."""
 
 
-def assumed(declarations: Declarations) -> str:
-    """SHA-256 of `[interceptor]` and `[assume]`; "" where there is no `[assume]`.
+def assumptions_digest(declarations: Declarations) -> str:
+    """SHA-256 of `[interceptor]` and `[assume]`; "" without `[assume]`.
 
-    Equal meanings have equal digests; the clock is part of it, for times are counted in ticks.
+    Equal meanings have equal digests. The clock is included, since times are counted in ticks.
     """
     if declarations.assumed is None:
         return ""
@@ -51,16 +51,16 @@ def assumed(declarations: Declarations) -> str:
 
 
 def ticks(duration: int, period: int) -> int:
-    """How many periods cover the duration; both in nanoseconds, the period above 0."""
+    """The number of periods that cover the duration; both in nanoseconds, the period above 0."""
     return -(-duration // period)
 
 
 def repetition(assumption: LoopAssumptions, tick: int) -> int | None:
-    """Ticks after which a request that does not change is sent again; None: never.
+    """Ticks after which an unchanged request is sent again; None: never.
 
     Args:
-        assumption: what the bindings say of the safety function.
-        tick: of its clock, nanoseconds.
+        assumption: the assumptions about the safety function.
+        tick: the length of its tick in nanoseconds.
     """
     if assumption.requests is Requests.LEVEL:
         return 1

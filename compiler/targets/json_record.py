@@ -1,4 +1,4 @@
-"""`--emit json`: everything that is known of a requirement, for other programs."""
+"""`--emit json`: a requirement with its formulas, for other programs."""
 
 from __future__ import annotations
 

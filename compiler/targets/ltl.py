@@ -1,4 +1,4 @@
-"""`--emit ltl`: the formulas, readable."""
+"""`--emit ltl`: the formulas for people to read."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def emit(
 
 
 def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
-    """What a person reads: the sentence, its meaning, and its formulas."""
+    """The text of a file: the sentence, its meaning, and its formulas."""
     dialect = printing.DIALECTS[options.notation]
     names = _names(requirement, dialect)
     if names:
@@ -62,7 +62,7 @@ def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
 
 
 def _names(requirement: FormalizedRequirement, dialect: printing.Dialect) -> Mapping[str, str]:
-    """What propositions are called in a notation, where it is not what they are."""
+    """The propositions with a different name in the notation."""
     if dialect == printing.SPOT:
         return comparison_names(requirement)  # any other is in quotes where it has to be
     if dialect != printing.NUSMV:
@@ -74,7 +74,7 @@ def _names(requirement: FormalizedRequirement, dialect: printing.Dialect) -> Map
 
 
 def _simplified(requirement: FormalizedRequirement) -> str:
-    """Spot's shorter form, proved equivalent; or why there is none."""
+    """Spot's shorter form, proved equivalent; or the reason why there is none."""
     from compiler.logic.spot import simplified
 
     shorter = simplified(requirement.ft_infinite)

@@ -25,7 +25,7 @@ from compiler.logic import printing
 from compiler.logic.identifiers import legal_names, numbered
 from compiler.logic.printing import identifier as identifier_of
 from compiler.logic.spelling.reserved_words import PRISM
-from compiler.targets.comparison_names import comparison_names, impossible, in_words
+from compiler.targets.comparison_names import comparison_names, impossible_texts, in_words
 from compiler.targets.target import (
     DEFAULT,
     Options,
@@ -42,17 +42,17 @@ from fretish.printer import timing as printing_of
 from fretish.reading.recursion import with_recursion_limit
 
 _MOST_STEPS = 64
-"""Of a chain of `X`: the automaton of a longer one is beyond any model checker."""
+"""Maximum length of a chain of `X`: no model checker handles the automaton of a longer one."""
 
 
 @with_recursion_limit
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """F601 without a probability, and for what PRISM's formulas cannot say."""
+    """F601 without a probability, and for parts that PRISM's formulas cannot express."""
     if requirement.pctl is None:
         return not_expressible(
             "PRISM",
             requirement,
-            "a certainty such as that",
+            "a requirement without a probability, such as that",
             "add `with probability >= 0.99` before the timing, or use `--emit smv` or `hoa`",
         )
     predicate = _looks_back(requirement)
@@ -61,7 +61,7 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
             "PRISM",
             requirement,
             f"the predicate `{predicate}`, which looks back,",
-            "say it by a condition or a timing",
+            "state it by a condition or a timing",
         )
     if _steps(requirement.pctl) > _MOST_STEPS:
         return not_expressible(
@@ -117,12 +117,14 @@ def _files(requirement: FormalizedRequirement) -> Iterator[Artifact]:
     values = {
         "id": requirement.id,
         "identifier": next(
-            each for each in numbered(identifier(requirement)) if each not in names.values()
+            candidate
+            for candidate in numbered(identifier(requirement))
+            if candidate not in names.values()
         ),  # PRISM reads a name in quotes as a property before it takes it for a label
         "sentence": wording(requirement.entry),
         "inputs": inputs,
     }
-    values["impossible"] = impossible(requirement, names)
+    values["impossible"] = impossible_texts(requirement, names)
     for ending, more in (
         ("props", {"property": property_(requirement.pctl, names)}),
         ("prism", {}),
@@ -135,7 +137,7 @@ def _files(requirement: FormalizedRequirement) -> Iterator[Artifact]:
 
 
 def property_(formula: f.Formula, names: Mapping[str, str]) -> str:
-    """PCTL* in PRISM's syntax; each proposition is a label.
+    """The PCTL* formula in PRISM's syntax; each proposition is a label.
 
     Args:
         formula: a state formula, as the outermost `P>=1 [ ... ]` is one.
@@ -154,7 +156,7 @@ class _Property:
         self._dialect = dialect
 
     def state(self, formula: f.Formula) -> str:
-        """A formula that is true or false of a state."""
+        """The text of a state formula."""
         return self._read(formula, self._odds)
 
     def _odds(self, odds: f.ProbabilityBound) -> str:
@@ -168,13 +170,13 @@ class _Property:
         return f"P{odds.op}{odds.bound} {path}"
 
     def _path(self, formula: f.Formula) -> str:
-        """One operator around states keeps its bound; any other formula is LTL, which has none."""
+        """The text of a path formula; one operator around state formulas keeps its bound."""
         if _is_simple(formula):
             return self._read(formula, self._odds)
         return self._read(unrolled(formula), self._odds)
 
     def _read(self, formula: f.Formula, odds: Callable[[f.ProbabilityBound], str]) -> str:
-        """The text, with each probability within it in place."""
+        """The text of the formula, with its probabilities inserted."""
         hidden: dict[str, str] = {}
 
         def hide(part: f.Formula) -> f.Formula:
@@ -201,7 +203,7 @@ def complement(odds: f.ProbabilityBound) -> f.ProbabilityBound:
 
 
 def _is_simple(formula: f.Formula) -> bool:
-    """`F<=n a`, `G<=n a`: what PRISM reads with a bound; a and all else without an operator."""
+    """Whether PRISM reads the formula with its bound, as `F<=n a`, or it has no operator."""
     if isinstance(formula, f.Eventually | f.Globally) and formula.ahead.lo == 0:
         return not _is_temporal(formula.arg)
     return False
@@ -218,7 +220,7 @@ def _is_temporal(formula: f.Formula) -> bool:
 
 
 def unrolled(formula: f.Formula) -> f.Formula:
-    """The formula with chains of `X` for bounds; what stands within a probability is left alone."""
+    """The formula with chains of `X` for bounds; nested probabilities are unchanged."""
     if isinstance(formula, f.ProbabilityBound):
         return formula
     rebuilt = f.rebuild(formula, unrolled)
@@ -240,7 +242,7 @@ def _later(formula: f.Formula, ticks: int) -> f.Formula:
 
 
 def _steps(formula: f.Formula) -> int:
-    """How many `X` the chains of the longest LTL formula within it have."""
+    """The number of `X` in the chains of the longest LTL formula in it."""
     match formula:
         case f.ProbabilityBound(_, _, arg):
             return _steps(arg) if _is_simple(arg) else max(_chain(arg), _steps(arg))

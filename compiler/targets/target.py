@@ -1,4 +1,4 @@
-"""What a target is: a kind of file that requirements become."""
+"""The type of a target: a kind of file that is generated from requirements."""
 
 from __future__ import annotations
 
@@ -18,41 +18,41 @@ from fretish.documents import RequirementEntry
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What some targets want to know beside the requirements; the others pass it over."""
+    """Options that some targets read; the others ignore them."""
 
     notation: str = "plain"
     """A name of `printing.DIALECTS`."""
     simplify: bool = False
-    """Whether a simplified form stands beside the exact one."""
+    """Whether to add a simplified form beside the exact one."""
     one_file: bool = False
     """Whether the monitors of all requirements go into one file."""
     free_texts: tuple[RequirementEntry, ...] = ()
-    """Requirements without a requirement, which only formats for exchange carry."""
+    """Unformalized requirements, which only exchange formats include."""
     weaken: bool = False
-    """Whether a target may say less than the requirement, where it then says so."""
+    """Whether a target may emit a weaker form of the requirement, with a remark."""
     declarations: Declarations | None = None
-    """What the bindings declare, for files about the robot and not about one requirement."""
+    """The bindings, for files about the robot and not about one requirement."""
     attribution: Attribution = NOBODY
-    """Who answers for what is made, for manifests of packages."""
+    """Maintainer and license, for manifests of packages."""
 
 
 DEFAULT = Options()
 
 
 class Emit(Protocol):
-    """Requirements → files."""
+    """A function from requirements to files."""
 
     def __call__(
         self, requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
     ) -> tuple[Artifact, ...]:
-        """Make all files of the requirements; pure."""
+        """The files of the requirements; a pure function."""
 
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """One kind of output. `refuse` is asked first; `emit` then never fails and never weakens.
+    """One kind of output. After `refuse` accepts a requirement, `emit` never fails or weakens it.
 
-    Except where `Options.weaken` allows it, and the target has a `weak` form of itself.
+    With `Options.weaken`, the `weak` form of the target may weaken it.
     """
 
     name: str
@@ -62,25 +62,25 @@ class Target:
     remark: Callable[[FormalizedRequirement], Diagnostic | None] = lambda requirement: None
     """A warning for the user of the output; it does not refuse the output."""
     refuse_project: Callable[[Options], Diagnostic | None] = lambda options: None
-    """Asked once: a reason to refuse the target for any requirements."""
+    """A reason to refuse the target for all requirements."""
     remarks: Callable[[Options], tuple[Diagnostic, ...]] = lambda options: ()
-    """Warnings about the whole output, beside the `remark` on each requirement."""
+    """Warnings about the whole output, in addition to `remark`."""
     per_rule: bool = True
-    """False where all requirements go into one file, for exchange with another tool."""
+    """False if all requirements go into one file, for exchange with another tool."""
     joins: bool = False
     """Whether `Options.one_file` puts all requirements into one file."""
     of_bindings: bool = False
-    """Whether it is made of the bindings alone, and reads no requirement."""
+    """Whether the output depends only on the bindings."""
     of_loop: bool = False
-    """Whether it reads `[interceptor]` and `[assume]` of the bindings."""
+    """Whether the target reads `[interceptor]` and `[assume]` of the bindings."""
     together: bool = False
     """Whether all requirements always become one monitor; `per_rule` is False then."""
     next_step: str = ""
-    """A command for the first file, `{}`, and what it does; for a person who makes one again."""
+    """A command for the first file, `{}`, and its effect."""
     names: Callable[[FormalizedRequirement], Mapping[str, str]] = lambda requirement: {}
-    """What its texts call the propositions of a requirement that it does not refuse."""
+    """The names of a requirement's propositions in the target's files."""
     weak: Target | None = None
-    """The same target where weakening is allowed: it refuses less, and remarks what is lost."""
+    """The target when weakening is allowed: it refuses less, and remarks on the loss."""
 
 
 def stem(requirement: FormalizedRequirement) -> str:
@@ -89,7 +89,7 @@ def stem(requirement: FormalizedRequirement) -> str:
 
 
 def identifier(requirement: FormalizedRequirement) -> str:
-    """Its id in languages whose names begin with a letter: an id may begin with a digit."""
+    """The id as an identifier: an id may begin with a digit."""
     plain = re.sub(r"\W", "_", stem(requirement))
     return f"r{plain}" if plain[:1].isdigit() else plain
 
@@ -97,7 +97,7 @@ def identifier(requirement: FormalizedRequirement) -> str:
 def not_expressible(
     target: str, requirement: FormalizedRequirement, what: str, fix: str
 ) -> Diagnostic:
-    """F601: the target's language has no words for a part of the requirement."""
+    """F601: the target's language cannot express a part of the requirement."""
     return Diagnostic(
         Code.NOT_EXPRESSIBLE,
         f"{target} cannot express {what} of {requirement.id}",
@@ -107,24 +107,24 @@ def not_expressible(
 
 
 _MOST_OPERATORS = 100_000
-"""Of a property."""
+"""Maximum number of operators of a property."""
 
 
 def too_long(
     target: str, requirement: FormalizedRequirement, formula: f.Formula
 ) -> Diagnostic | None:
-    """F670 where the formula is endless once `<->` and `xor` are written with other operators."""
+    """F670 if the formula is too long without `<->` and `xor`."""
     if _size(formula) <= _MOST_OPERATORS:
         return None
     return Diagnostic(
         Code.TOO_LARGE,
         f"the property of {requirement.id} has more than {_MOST_OPERATORS} operators",
         requirement.entry.wording,
-        help=f"{target}'s formulas have no `<->` and no `xor`: give parts names of their own",
+        help=f"{target}'s formulas have no `<->` and no `xor`: bind parts as propositions",
     )
 
 
 def _size(formula: f.Formula) -> int:
-    """How many operators the text has, with the operands of `<->` and `xor` written twice."""
+    """The number of operators in the text, where operands of `<->` and `xor` appear twice."""
     parts = sum(map(_size, f.children(formula)))
     return 1 + (2 * parts if isinstance(formula, f.Iff | f.Xor) else parts)

@@ -1,4 +1,4 @@
-"""Shortest runs to each kind of verdict, for tests beside monitors: words of the reference."""
+"""Shortest runs to each verdict, from the reference automaton, for generated tests."""
 
 from __future__ import annotations
 
@@ -7,7 +7,12 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import MOST_ATOMS, atoms_of, meanings, temporal_predicate
+from compiler.formalization.letters import (
+    MOST_ATOMS,
+    atoms_of,
+    letters_by_valuation,
+    temporal_predicate,
+)
 from compiler.formalization.reference import (
     BROKEN,
     Automaton,
@@ -22,7 +27,7 @@ _MOST_STATES = 2_000
 
 @dataclass(frozen=True, slots=True)
 class RepeatedTick:
-    """Equal ticks, one after the other, after each of which the verdicts are the same."""
+    """Consecutive equal ticks, after each of which the verdicts are equal."""
 
     count: int
     values: dict[str, bool]
@@ -32,29 +37,29 @@ class RepeatedTick:
 
 @dataclass(frozen=True, slots=True)
 class WitnessTrace:
-    """A run to a verdict."""
+    """A run that ends with a verdict."""
 
     name: str
     ticks: tuple[RepeatedTick, ...]
 
 
-def words(requirement: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
-    """The shortest run to each verdict that there is, and to the state that is the last to reach.
+def witness_traces(requirement: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
+    """The shortest run to each possible verdict, and to the state that takes longest to reach.
 
-    There is none where the reference does not know the sentence, or is too large.
+    Empty if the reference cannot express the sentence, or is too large.
     """
     atoms = atoms_of(requirement.sentence)
     if temporal_predicate(requirement.sentence) is not None or len(atoms) > MOST_ATOMS:
         return ()
-    known = meanings(requirement.sentence, atoms)
-    letters = {letter: values for values, letter in reversed([*known.items()])}
+    letter_of = letters_by_valuation(requirement.sentence, atoms)
+    letters = {letter: values for values, letter in reversed([*letter_of.items()])}
     try:
         counted = explore(
             template(requirement.sentence, requirement.ticks or 0), letters, _MOST_STATES
         )
     except TooManyStatesError:
         return ()
-    valuations = [letters[each] for each in counted.letters]
+    valuations = [letters[letter] for letter in counted.letters]
     return tuple(
         WitnessTrace(
             name, tuple(_ticks(counted, [(valuations[place], place) for place in run], atoms))
@@ -64,26 +69,26 @@ def words(requirement: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
 
 
 def _runs(counted: Automaton) -> Iterator[tuple[str, tuple[int, ...]]]:
-    """Places of letters, by breadth first search."""
-    runs: dict[int, tuple[int, ...]] = {0: ()}
+    """For each verdict the indices of the letters of a shortest run, by breadth first search."""
+    run_to: dict[int, tuple[int, ...]] = {0: ()}
     broken: tuple[int, ...] | None = None
     for state in range(len(counted.states)):  # in the order in which they were found
         for place, after in enumerate(counted.moves[state]):
-            run = (*runs[state], place)
+            run = (*run_to[state], place)
             if after != BROKEN:
-                runs.setdefault(after, run)
+                run_to.setdefault(after, run)
             elif broken is None or len(run) < len(broken):
                 broken = run
     yield from ([("soonest_breach", broken)] if broken else [])
-    told: dict[tuple[str, bool], tuple[int, ...]] = {}
-    for state, run in runs.items():
+    runs: dict[tuple[str, bool], tuple[int, ...]] = {}
+    for state, run in run_to.items():
         if run:
             finite = accepts(counted.template, counted.states[state])
-            told.setdefault((counted.verdicts[state], finite), run)
-    for (verdict, finite), run in told.items():
+            runs.setdefault((counted.verdicts[state], finite), run)
+    for (verdict, finite), run in runs.items():
         yield f"soonest_{verdict}{'' if finite else '_unmet'}", run
-    latest = max(runs.values(), key=len)
-    if latest not in told.values():
+    latest = max(run_to.values(), key=len)
+    if latest not in runs.values():
         yield "latest_state", latest
 
 
@@ -91,14 +96,14 @@ def _ticks(
     counted: Automaton, run: Sequence[tuple[tuple[bool, ...], int]], atoms: Sequence[str]
 ) -> Iterator[RepeatedTick]:
     """The run with the verdicts after each of its ticks."""
-    state, told = 0, list[tuple[tuple[bool, ...], str, bool]]()
+    state, ticks = 0, list[tuple[tuple[bool, ...], str, bool]]()
     for values, place in run:
         state = counted.moves[state][place]
         if state == BROKEN:
-            told.append((values, "violated", False))
+            ticks.append((values, "violated", False))
         else:
             finite = accepts(counted.template, counted.states[state])
-            told.append((values, counted.verdicts[state], finite))
-    for (values, verdict, finite), some in groupby(told):
+            ticks.append((values, counted.verdicts[state], finite))
+    for (values, verdict, finite), repeated in groupby(ticks):
         named = dict(zip(atoms, values, strict=True))
-        yield RepeatedTick(len([*some]), named, verdict, finite)
+        yield RepeatedTick(len([*repeated]), named, verdict, finite)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.api.refusal import Refusal, accepted, bounded
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable
 
 from compiler.logic.claims import PROVERS, Layer, Proof
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.api.refusal import Refusal, accepted, bounded
 from fretc.verification.ajpf_results import ajpf_proofs
 from fretc.verification.engines.sandbox import Limits

@@ -6,8 +6,8 @@ import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from compiler.project.folder import Project
 from compiler.project.paths import sibling_path
+from compiler.project.project import Project
 from fretc.analysis.evidence import default_path as analysis_file
 from fretc.api.refusal import Refusal, bounded
 from fretc.attestation.signatures import SIGNERS

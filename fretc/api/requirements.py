@@ -9,7 +9,8 @@ from compiler.files.text_files import read
 from compiler.formalization.formalize import formalize as formalized
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
-from compiler.project.folder import Project, load_folder
+from compiler.project.folder import load_folder
+from compiler.project.project import Project
 from fretc.api.refusal import Refusal, accepted, bounded
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from operator import index
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.python import monitor as python
 from fretc.api.refusal import Refusal, accepted, bounded
 from fretc.audit.plan import Plan, planned

@@ -33,7 +33,7 @@ from securesystemslib.dsse import Envelope
 from securesystemslib.exceptions import UnverifiedSignatureError
 from securesystemslib.signer import CryptoSigner, SSlibKey
 
-from compiler.files.checked_json import Shape, plain
+from compiler.files.checked_json import JsonValue, plain
 
 PAYLOAD_TYPE = "application/vnd.in-toto+json"
 """DSSE's `payloadType` of an in-toto statement; no other payload is signed or read."""
@@ -213,7 +213,7 @@ def read_envelope(line: str) -> DsseEnvelope:
     Raises:
         SchemaError: the JSON has another form.
     """
-    shape = Shape(plain(line))
+    shape = JsonValue(plain(line))
     shape.only("payload", "payloadType", "signatures")
     shape.field("payloadType").one_of((PAYLOAD_TYPE,))
     signatures = shape.field("signatures").items()
@@ -230,7 +230,7 @@ def read_envelope(line: str) -> DsseEnvelope:
     return DsseEnvelope(payload, key_ids, Envelope.from_dict(json.loads(line)))
 
 
-def _bytes(value: Shape) -> bytes:
+def _bytes(value: JsonValue) -> bytes:
     """The bytes that a value has in base64.
 
     Base64 has several texts for some bytes. Only the canonical one is read, so that a payload or a

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from compiler.files.build_id import __version__, build_id
-from compiler.files.checked_json import SchemaError, Shape, plain
+from compiler.files.checked_json import JsonValue, SchemaError, plain
 from compiler.files.records import UNSET
 from compiler.files.shell_quoting import is_sha256
 from compiler.logic.claims import Proof
@@ -107,7 +107,7 @@ def read(payload: bytes) -> Statement:
         SchemaError: it is none that fretc makes.
     """
     try:
-        shape = Shape(plain(payload.decode()))
+        shape = JsonValue(plain(payload.decode()))
     except UnicodeDecodeError:
         raise SchemaError("the payload is not UTF-8 text") from None
     shape.only("_type", "subject", "predicateType", "predicate")
@@ -120,7 +120,7 @@ def read(payload: bytes) -> Statement:
     return Statement(about, subjects, says)
 
 
-def _subject(at: Shape, about: str) -> Subject:
+def _subject(at: JsonValue, about: str) -> Subject:
     at.only("name", "digest")
     at.field("digest").only("sha256")
     kind, colon, name = at.field("name").text().partition(":")

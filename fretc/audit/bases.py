@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.audit.evidence.basis import Basis, basis
 from fretc.audit.refusals import active_requirements, refusals
 

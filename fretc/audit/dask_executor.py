@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from compiler.files.build_id import build_id
-from compiler.files.processes import shield
+from compiler.files.processes import isolate_imports
 from fretc.audit.many_logs import EVALUATIONS, Engine, LogAudits, LogResult, audited, given_up
 from fretc.audit.plan import Plan, packed, unpacked
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -89,7 +89,7 @@ def _own_cluster(jobs: int) -> Iterator[Client]:
     from dask import config
     from distributed import Client, LocalCluster, Security
 
-    shield()
+    isolate_imports()
     _be_quiet()
     with contextlib.ExitStack() as stack:
         # One death may be chance; what has died twice is tried once more, alone.

@@ -10,7 +10,7 @@ from statistics import median
 import numpy as np
 
 from compiler.situations.situations import Situation
-from compiler.situations.thresholds import Place
+from compiler.situations.thresholds import ThresholdPosition
 from fretc.audit.evidence.schema import Health, Situations
 from fretc.audit.evidence.writer import RunResult, health
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judged
@@ -227,7 +227,7 @@ def _near(recording: Recording, declarations: Declarations, ticks: int) -> Near:
     nowhere = nowhere_known(ticks)
 
     @cache
-    def named(name: str, place: Place) -> Column:
+    def named(name: str, place: ThresholdPosition) -> Column:
         proposition = Proposition(name, place.near)
         if not declarations.signals.keys() >= {*proposition.signals}:
             return nowhere(place)

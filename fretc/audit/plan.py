@@ -13,7 +13,7 @@ from compiler.files.build_id import build_id
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.situations.situations import situations
 from compiler.targets.python import monitor as monitors
 from fretc.audit.bases import bases

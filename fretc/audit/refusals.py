@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from compiler.formalization.binding_agreement import unbound
+from compiler.formalization.binding_agreement import unbound_propositions
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.evidence.basis import Basis
 from fretish.bindings.declarations import Declarations
@@ -84,4 +84,4 @@ def _not_auditable(
 ) -> tuple[Diagnostic, ...]:
     """Why no log can be judged by a requirement; empty where one can."""
     refused = monitors.refuse(replace(requirement, pctl=None))
-    return (*([refused] if refused else []), *unbound(requirement, declarations))
+    return (*([refused] if refused else []), *unbound_propositions(requirement, declarations))

@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from compiler.project.folder import Project, load
+from compiler.project.folder import load
 from compiler.project.paths import requirement_files
+from compiler.project.project import Project
 from compiler.targets.python import interceptor as interceptors
 from compiler.targets.python import monitor as monitors
 from compiler.targets.target import Options as TargetOptions

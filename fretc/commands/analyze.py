@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from compiler.formalization.formalized import FormalizedRequirement
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.analysis.analysis import Options
     from fretc.analysis.arena.roles import Roles
     from fretc.analysis.findings import Analysis

@@ -12,7 +12,7 @@ from fretc.terminal.output import EVIDENCE, STORE, not_written, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 if TYPE_CHECKING:
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.audit.evidence.briefs import EvidenceSource
     from fretc.audit.evidence.probabilities import Estimated
     from fretc.audit.evidence.schema import Result
@@ -74,7 +74,7 @@ def check(target: Target, parquet: str | None) -> None:
         return
     if not target.is_store:
         if path.exists() and not path.is_file():
-            stop(not_written(str(path), "it is no regular file"))
+            stop(not_written(str(path), "it is not a regular file"))
         return
     if not path.is_dir():
         stop(_no_folder(path))
@@ -88,7 +88,7 @@ def _check_table(parquet: str, evidence: Path) -> None:
     if parquet == "-":
         stop(not_written(parquet, "a table is a file"))
     if os.path.exists(parquet) and not os.path.isfile(parquet):
-        stop(not_written(parquet, "it is no regular file"))
+        stop(not_written(parquet, "it is not a regular file"))
     if os.path.realpath(parquet) == os.path.realpath(evidence):
         stop(not_written(parquet, "two outputs would go there"))
 

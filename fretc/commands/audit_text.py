@@ -9,7 +9,7 @@ from shlex import quote
 from typing import Any
 
 from compiler.formalization.record import wording
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.declared_units import without_samples
 from fretc.audit.evidence.probabilities import Estimated

@@ -35,7 +35,7 @@ from fretc.terminal.output import (
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
 
 
 @click.command(
@@ -207,7 +207,7 @@ def _unbound(project: Project) -> list[Diagnostic]:
 
     Retired requirements do not count: no audit judges them.
     """
-    from compiler.formalization.binding_agreement import unbound
+    from compiler.formalization.binding_agreement import unbound_propositions
 
     assert project.declarations is not None
     requirements = [
@@ -216,7 +216,7 @@ def _unbound(project: Project) -> list[Diagnostic]:
     return [
         missing
         for requirement in requirements
-        for missing in unbound(requirement, project.declarations)
+        for missing in unbound_propositions(requirement, project.declarations)
     ]
 
 

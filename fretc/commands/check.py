@@ -26,7 +26,7 @@ from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.rendering import as_json, visible
 
 if TYPE_CHECKING:
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.analysis.evidence import AnalyzedSet
 
 
@@ -165,11 +165,11 @@ def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnosti
 
 def _fix(folder: str) -> None:
     """Apply the safe fixes, to all files or to none, and list each."""
-    from compiler.project.fixes import fixed
+    from compiler.project.fixes import fixed_files
     from compiler.project.paths import requirement_files
 
     paths = requirement_files(folder)
-    files = () if isinstance(paths, Diagnostic) else fixed(paths)
+    files = () if isinstance(paths, Diagnostic) else fixed_files(paths)
     deliver({Path(file.path): file.text for file in files})
     for fix in (fix for file in files for fix in file.fixes):
         place = f"{fix.span.source.name}:{fix.span.line}:{fix.span.column}"

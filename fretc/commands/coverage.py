@@ -38,7 +38,7 @@ from fretish.diagnostics.rendering import visible
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.audit.evidence.briefs import EvidenceSource
     from fretc.audit.plan import Plan
     from fretc.coverage.coverage import Coverage

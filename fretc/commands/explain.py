@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from compiler.formalization.formalized import FormalizedRequirement
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretish.documents import RequirementEntry
 
 
@@ -147,9 +147,9 @@ def _rules(
 ) -> list[FormalizedRequirement]:
     """The requirements asked for; exits where there is none."""
     from compiler.project.folder import load
-    from compiler.project.paths import listed, requirement_files
+    from compiler.project.paths import expanded_paths, requirement_files
 
-    paths = listed([what]) if is_file else requirement_files(folder)
+    paths = expanded_paths([what]) if is_file else requirement_files(folder)
     if isinstance(paths, Diagnostic):
         stop(_unknown_code(what) or paths)
     project = load(paths, bindings, reads=())

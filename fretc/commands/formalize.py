@@ -30,8 +30,7 @@ from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from compiler.formalization.formalized import FormalizedRequirement
-    from compiler.project.folder import Project
-    from compiler.project.refusals import Refused
+    from compiler.project.project import Project, Refused
     from compiler.targets.target import Options, Target
 
 _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
@@ -85,7 +84,7 @@ def compile_(
     Example: fretc requirements/r1.fret --emit monitor --emit c
     """
     from compiler.project.folder import load
-    from compiler.project.paths import listed
+    from compiler.project.paths import expanded_paths
 
     if one_file and not any(TARGETS[kind].joins for kind in kinds):
         *most, last = (f"`--emit {name}`" for name, each in TARGETS.items() if each.joins)
@@ -93,7 +92,7 @@ def compile_(
         stop(Diagnostic(Code.BAD_USAGE, f"`--one-file` is for {joining}", help="add one of them"))
     if weaken:
         _check_weaken(kinds)
-    paths = listed(files)
+    paths = expanded_paths(files)
     if isinstance(paths, Diagnostic):
         stop(paths)
     of_loop = any(TARGETS[kind].of_loop for kind in kinds)
@@ -145,13 +144,13 @@ def _check_weaken(kinds: Sequence[str]) -> None:
 
 def _deliver_formulas(project: Project, output: str) -> None:
     """The array of `--emit ltl --format json`, in the order of the files."""
-    from compiler.emit import renamed
+    from compiler.emit import renamed_propositions
     from compiler.files.templating import to_json
     from compiler.formalization.record import failed, formulas
 
     records = {}
     for requirement in project.formalized:
-        names = renamed(requirement)
+        names = renamed_propositions(requirement)
         records[id(requirement.entry)] = formulas(requirement) | ({"names": names} if names else {})
     records |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
     records |= {id(r.requirement): failed(r.requirement, r.why[0]) for r in project.refused}
@@ -279,13 +278,13 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
 
     Example: fretc fmt requirements/*.fret
     """
-    from compiler.project.formatting import formatted
-    from compiler.project.paths import listed
+    from compiler.project.formatting import formatted_files
+    from compiler.project.paths import expanded_paths
 
-    paths = listed(files)
+    paths = expanded_paths(files)
     if isinstance(paths, Diagnostic):
         stop(paths)
-    texts, wrong = formatted(paths)
+    texts, wrong = formatted_files(paths)
     if wrong:
         stop(*wrong)
     changed = [file for file in texts if file.before != file.after]

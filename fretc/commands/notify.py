@@ -40,10 +40,10 @@ def notify(command: Sequence[str], summary: Mapping[str, Any]) -> None:
     """Give the summary to the command, and say how that ended: it changes nothing else."""
     import subprocess
 
-    from compiler.files.processes import shield
+    from compiler.files.processes import isolate_imports
     from compiler.files.templating import to_json
 
-    shield()
+    isolate_imports()
     try:
         done = subprocess.run(
             command,

@@ -16,7 +16,7 @@ from fretish.diagnostics.rendering import visible
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.audit.plan import Plan
 
 
@@ -36,10 +36,10 @@ def project_of(
         reads: the shared tables of the bindings that the command reads.
     """
     from compiler.project.folder import load
-    from compiler.project.paths import listed, requirement_files
+    from compiler.project.paths import expanded_paths, requirement_files
 
     (first, *_) = places(files, requirements)
-    paths = listed(files) if files else requirement_files(requirements)
+    paths = expanded_paths(files) if files else requirement_files(requirements)
     if isinstance(paths, Diagnostic):
         stop(paths)
     project = load(paths, bindings, reads=reads)

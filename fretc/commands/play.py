@@ -22,7 +22,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
     from compiler.formalization.formalized import FormalizedRequirement
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.play.recorded import Recorded
     from fretc.play.starts import Start
     from fretc.play.versions import Side

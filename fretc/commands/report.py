@@ -28,7 +28,7 @@ from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say
 from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
 
 if TYPE_CHECKING:
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.audit.evidence.briefs import EvidenceSource
     from fretc.report.model.views import Report
     from fretc.report.page.html import Inset

@@ -43,7 +43,7 @@ from fretish.reading.natural_order import natural
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.report.traceability.chain import Chain
     from fretc.report.traceability.lock import Lock, Review
 
@@ -97,7 +97,7 @@ def lock(
 
     Example: fretc lock --reviewer "A. Meier" --role "safety engineer" --comment "first review"
     """
-    from compiler.files.dates import is_date, is_to_come, today
+    from compiler.files.dates import is_date, is_in_future, today
     from compiler.files.templating import to_json
     from fretc.report.traceability.lock import (
         Acceptance,
@@ -116,7 +116,7 @@ def lock(
     day = day or today()
     if not is_date(day):
         stop(Diagnostic(Code.BAD_USAGE, f"`{day}` is no date", help="write it as `2026-11-22`"))
-    if is_to_come(day):
+    if is_in_future(day):
         message = f"`{day}` is still to come, and nobody can have reviewed then"
         stop(Diagnostic(Code.BAD_USAGE, message, help="leave `--date` out: then it is today"))
     project, chains, refuted = _chains(requirements, evidence, verification, analysis, accept=True)

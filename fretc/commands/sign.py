@@ -203,10 +203,10 @@ def _json(path: str, verification: str | None) -> Signable:
 
 def _schema(source: Source) -> object:
     """What the file says it is; whatever is wrong with it, its own reader says."""
-    from compiler.files.checked_json import SchemaError, Shape, plain
+    from compiler.files.checked_json import JsonValue, SchemaError, plain
 
     try:
-        whole = Shape(plain(source.text))
+        whole = JsonValue(plain(source.text))
         return whole.field("schema").value
     except SchemaError as error:
         stop(

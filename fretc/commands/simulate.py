@@ -186,7 +186,7 @@ def _file(out: str) -> Path:
     if out == "-":
         stop(not_written(out, "it is a file of its own"))
     if path.exists() and not path.is_file():
-        stop(not_written(out, "it is no regular file"))
+        stop(not_written(out, "it is not a regular file"))
     _folder(path.parent, out)
     return path
 

@@ -15,7 +15,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.testing.log_synthesis.logs import StagedTest
     from fretc.testing.log_synthesis.scenarios import Aim, Found
     from fretc.testing.suite import Suite

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from compiler.logic.claims import Proof
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.verification.layers.request import Request
     from fretc.verification.text_output import Line
     from fretish.diagnostics.source import Source

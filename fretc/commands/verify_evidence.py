@@ -47,7 +47,7 @@ from fretish.diagnostics.rendering import visible
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.analysis.evidence import AnalyzedSet
     from fretc.attestation.signatures import SignatureBook
     from fretc.audit.evidence.reader import EvidenceFile

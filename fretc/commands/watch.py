@@ -27,7 +27,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.audit.plan import Plan
     from fretc.watch.news import RunEnded
     from fretc.watch.publishing.publishing import Publisher

@@ -12,9 +12,9 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 
-from compiler.formalization.formalized import FormalizedRequirement, plain
-from compiler.formalization.resolution import extended
-from compiler.project.folder import Project
+from compiler.formalization.formalized import FormalizedRequirement, without_probability
+from compiler.formalization.resolution import with_propositions
+from compiler.project.project import Project
 from compiler.situations.mutants import Mutant, mutants
 from compiler.targets.python import monitor as monitors
 from fretc.audit.measurements.judgement import Judgement, each_judged
@@ -99,7 +99,7 @@ def inquiry(project: Project, plan: Plan) -> MutationJob:
     assert declarations is not None, "there is a plan"
     for own in (mutant.requirement.declarations for one in found for mutant in one.mutants):
         if own is not None:
-            declarations = extended(declarations, own.propositions, own.mistakes)
+            declarations = with_propositions(declarations, own.propositions, own.mistakes)
     declarations = replace(declarations, signals=plan.declarations.signals)
     names = dict.fromkeys(name for one in found for name in one.monitor.PROPOSITIONS)
     known = tuple(name for name in names if _is_told(declarations, name))
@@ -117,7 +117,7 @@ def suspects(requirement: FormalizedRequirement) -> MutantBatch:
     judged: list[Mutant] = []
     refused: list[tuple[Mutant, str]] = []
     for mutant in mutants(requirement):
-        why = monitors.refuse(plain(mutant.requirement))
+        why = monitors.refuse(without_probability(mutant.requirement))
         if why is None:
             judged.append(mutant)
         else:

@@ -16,7 +16,13 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import TRAITS, Trait, Uninterpreted, boolean, obligation
 from compiler.logic import formula as f
 from compiler.targets.javascript.monitor import Body, body
-from compiler.targets.python.comparisons import NUMBER, Compared, InputAdapter, numbers, threshold
+from compiler.targets.python.comparisons import (
+    NUMBER,
+    CompiledComparison,
+    InputAdapter,
+    numbers,
+    threshold,
+)
 from compiler.targets.target import stem
 from fretc.play.starts import MOST, Start
 from fretc.report.model.phrases import visible
@@ -247,7 +253,7 @@ def _written(name: str, requirements: Sequence[FormalizedRequirement]) -> str:
     )
 
 
-def _limit(compared: Compared, places: Mapping[str, int]) -> tuple[int, float] | None:
+def _limit(compared: CompiledComparison, places: Mapping[str, int]) -> tuple[int, float] | None:
     """A threshold: the place of its variable, and the number."""
     found = threshold(compared)
     value = _finite(found[1]) if found else None

@@ -11,7 +11,7 @@ from types import MappingProxyType
 
 from compiler.files.build_id import __version__
 from compiler.logic.claims import Proof
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
 from fretc.audit.evidence.briefs import Briefs, EvidenceSource

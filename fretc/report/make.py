@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from compiler.files.dates import today
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.analysis.evidence import read as read_analysis
 from fretc.attestation.signatures import read_signatures
 from fretc.audit.store.anywhere import source

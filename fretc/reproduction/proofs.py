@@ -15,7 +15,7 @@ from dataclasses import replace
 from compiler.files.build_id import __version__
 from compiler.files.records import plain
 from compiler.logic.claims import ALL, METHODS, PROVERS, Layer, Proof, Result
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.reproduction.outcome import PROOFS, Finding, Recheck, differs, unknown
 from fretc.reproduction.texts import other_build, remade

@@ -103,7 +103,7 @@ class Words:
     def preceding(self, ticks: Function) -> Function:
         """The states from which one of these ticks can come."""
         self._budget.check()
-        return bdd.some_of_both(self._safe, ticks, self._cube)
+        return bdd.and_exists(self._safe, ticks, self._cube)
 
     def moved(self, states: Function) -> Function:
         """Over a state and a letter: whether the state after it is one of these.
@@ -114,7 +114,7 @@ class Words:
         if found is None:
             bit, high, low = bdd.branches(states)
             after = self.transition.step(bit)
-            found = bdd.choice(after, self.moved(high), self.moved(low))
+            found = bdd.ite(after, self.moved(high), self.moved(low))
             self._moves[states] = found
         return found
 

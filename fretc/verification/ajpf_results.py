@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePath
 
-from compiler.files.checked_json import SchemaError, Shape, plain
+from compiler.files.checked_json import JsonValue, SchemaError, plain
 from compiler.files.text_files import content, sha256
 from compiler.files.text_files import read as read_text
 from compiler.formalization.formalized import FormalizedRequirement
@@ -153,7 +153,7 @@ def read(path: str) -> AjpfResult | Diagnostic:
     if isinstance(source, Diagnostic):
         return source
     try:
-        return _result(Shape(plain(source.text)), path)
+        return _result(JsonValue(plain(source.text)), path)
     except SchemaError as error:
         return _wrong(source, f"is not what `run.py` writes: {error}")
     except (ValueError, AssertionError):
@@ -179,7 +179,7 @@ def _foreign(result: AjpfResult) -> Diagnostic:
     )
 
 
-def _result(file: Shape, path: str) -> AjpfResult:
+def _result(file: JsonValue, path: str) -> AjpfResult:
     if file.field("schema").text() != SCHEMA:
         raise file.field("schema").wrong(f"`{SCHEMA}`")
     own, commit = file.field("agent"), file.field("mcapl").field("commit")
@@ -195,7 +195,7 @@ def _result(file: Shape, path: str) -> AjpfResult:
     )
 
 
-def _check(at: Shape) -> Check:
+def _check(at: JsonValue) -> Check:
     states, trace = at.field("states"), at.field("trace")
     return Check(
         at.field("role").text(),
@@ -213,7 +213,7 @@ def _check(at: Shape) -> Check:
     )
 
 
-def _trace(at: Shape) -> Trace:
+def _trace(at: JsonValue) -> Trace:
     names = tuple(name.text() for name in at.field("names").items())
     rows = tuple(
         tuple(None if cell.value is None else cell.flag() for cell in row.items())
@@ -339,6 +339,6 @@ def _conclusion(result: AjpfResult) -> Outcome:
     sizes = ", ".join("?" if c.states is None else f"{c.states:,}" for c in checks)
     seconds = sum(check.seconds for check in checks)
     return proved(
-        f"AJPF says all that is expected of the property, its controls and the mutant ({sizes} "
+        f"AJPF gives every expected verdict for the property, its controls and the mutant ({sizes} "
         f"states, {seconds:.1f} s)"
     )

@@ -8,7 +8,7 @@ from dataclasses import replace
 from compiler.files import records
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Proof, Result
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.verification.layers.request import Request
 from fretc.verification.layers.table import TABLE

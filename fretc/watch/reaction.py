@@ -11,7 +11,7 @@ from contextlib import suppress
 from threading import Thread
 from typing import Any
 
-from compiler.files.processes import shield
+from compiler.files.processes import isolate_imports
 from compiler.files.templating import to_json
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
@@ -64,7 +64,7 @@ class Reaction:
             _kill(process)
 
     def _run(self, facts: Mapping[str, Any]) -> None:
-        shield()
+        isolate_imports()
         named = {
             f"FRETC_{name.upper()}": str(value)
             for name, value in facts.items()

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from compiler.project.fixes import fixed
+from compiler.project.fixes import fixed_files
 from fretish.diagnostics.source import Source
 from fretish.parser import MOST_ERRORS, find_errors, parse
 from fretish.syntax import Sentence
@@ -34,7 +34,7 @@ def test_the_fixes_of_the_table_are_sure(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     written, meant = row
-    (file,) = fixed([write("r.fret", written)])
+    (file,) = fixed_files([write("r.fret", written)])
     assert file.text == meant
     assert isinstance(parse(Source("r.fret", meant).span()), Sentence)
 

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from compiler.project.folder import Project, load
+from compiler.project.folder import load
 from compiler.project.paths import requirement_files
+from compiler.project.project import Project
 from fretc.audit.many_logs import SEQUENTIAL, Audit, audit_logs
 from fretc.audit.plan import Plan, planned
 from fretc.coverage import mutation_output, mutation_record, record, text_output

@@ -17,7 +17,7 @@ from compiler.project.folder import load
 from compiler.project.paths import requirement_files
 from compiler.situations.mutants import OPERATORS
 from compiler.situations.situations import MEANINGS, situations
-from compiler.situations.tick_predicates import facts
+from compiler.situations.tick_predicates import tick_predicates
 from fretc.analysis.text_output import Line
 from fretc.testing.assembly import jobs, suite
 from fretc.testing.conformance.text_output import lines as lines_of
@@ -110,7 +110,7 @@ def table_of_situations(subject: str) -> str:
     every: set[Place] = set()
     for drawn in templates((2,)):
         made = requirement(drawn.sentence)
-        place = facts(made).demand.kind, drawn.scope, drawn.condition
+        place = tick_predicates(made).demand.kind, drawn.scope, drawn.condition
         if not {*drawn.columns} <= {*made.propositions}:
             continue  # the scope is the whole run
         every.add(place)

@@ -20,7 +20,7 @@ UNDECIDED = (
     "  --> r1.fret:1:39\n"
     f"   | {R1}\n"
     "   |                                       ^^^^^^^^^^\n"
-    "help: state a bound: `within ...` in place of `eventually`\n"
+    "help: state a bound: `within ...` instead of `eventually`\n"
 )
 
 
@@ -268,7 +268,7 @@ def test_a_directory_without_requirements_is_refused(fretc: Fretc) -> None:
         2,
         "",
         "F901 no requirement (`*.fret`) is in `folder`\n  --> folder\n"
-        "help: name files, or a folder that has some\n",
+        "help: name `.fret` files, or a folder with `.fret` files\n",
     )
 
 
@@ -373,12 +373,12 @@ def test_a_number_of_the_requirement_that_its_binding_does_not_have_is_drift(fre
     header = '+++\nid = "R1"\nparams = { too_close = "5 cm" }\n+++\n'
     run = fretc(write("r1.fret", header + R1))
     assert run.err == (
-        "F310 warning: the requirement states 5 cm for `too_close`, and its binding has another "
+        "F310 warning: the requirement states 5 cm for `too_close`, but its binding has another "
         "number\n"
         "  --> bindings.toml:7:8\n"
         '   | expr = "d < 0.9 m"\n'
         "   |        ^^^^^^^^^^^\n"
-        "help: make the binding or `params` say what is meant\n"
+        "help: correct the binding or `params`\n"
         "\n" + UNDECIDED.replace("r1 or", "R1 or").replace("r1.fret:1", "r1.fret:5")
     )
 
@@ -454,7 +454,7 @@ def test_names_that_become_one_in_one_file_are_refused(fretc: Fretc) -> None:
     assert fretc("req", "--emit", "monitor").status == 0
     found = fretc("req", "--emit", "monitor", "--one-file")
     assert (found.status, found.out) == (2, "")
-    assert "F116 `a.b` and `a_DOT_b` would be one name" in found.err
+    assert "F116 `a.b` and `a_DOT_b` would have the same name" in found.err
 
 
 def test_a_broken_table_does_not_cost_the_clock(fretc: Fretc) -> None:

@@ -94,7 +94,7 @@ def test_every_command_takes_whatever_is_drawn(fretc: Fretc, texts: list[str]) -
         (("analyze",), "F354 nothing says who chooses `mo`"),
         (
             ("requirements", "--emit", "prism"),
-            "F601 PRISM cannot express a certainty such as that of a",
+            "F601 PRISM cannot express a requirement without a probability, such as that of a",
         ),
     ],
 )

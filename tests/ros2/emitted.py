@@ -10,7 +10,7 @@ from typing import Any
 from compiler.emit import TARGETS
 from compiler.files.attribution import Attribution
 from compiler.project.folder import load
-from compiler.project.paths import listed
+from compiler.project.paths import expanded_paths
 from compiler.targets.target import Options
 from fretish.diagnostics.diagnostic import Severity
 from tests.ros2.messages import message_class
@@ -24,7 +24,7 @@ FORWARD = 0.4
 def write(requirements: Path, folder: Path, kind: str = "ros2-package") -> Path:
     """The package of a folder of requirements; its folder."""
     target = TARGETS[kind]
-    paths = listed([str(requirements)])
+    paths = expanded_paths([str(requirements)])
     assert isinstance(paths, list)
     project = load(paths)
     assert {each.severity for each in project.diagnostics} <= {Severity.WARNING}

@@ -1,8 +1,8 @@
-"""Whether real numbers make the comparisons of a sentence true and false as a valuation has them.
+"""Whether real numbers exist that give the comparisons of a sentence the values of a valuation.
 
-It is decided exactly, of whole numbers where a signal has no others. Monitors compute in floats,
-where rounding makes `x + 1 > x` false of a large x. So what is impossible here chooses among
-the traces that people see, and no proof rests on it: `compiler.logic.orders` says on what they do.
+The decision is exact, over integers for signals that have only integers. Monitors compute in
+floats, where rounding makes `x + 1 > x` false for a large x. So impossibility here only selects the
+traces that are displayed, and no proof rests on it; `compiler.logic.orders` is sound for floats.
 """
 
 from __future__ import annotations
@@ -21,46 +21,48 @@ from compiler.logic.orders import Exclusion
 from fretish import expressions as e
 
 MOST_STEPS = 300_000
-"""Of z3 for one question, in its own measure: the same answer on every machine."""
+"""Resource limit of z3 for one query, in z3's own unit, so that every machine gives the same
+answer."""
 MOST_QUESTIONS = 400
-"""About one sentence."""
+"""Maximum number of queries for one sentence."""
 _UNANSWERED = 20
-"""As so many questions counts one that took all of its steps."""
+"""Number of queries that one query counts as if it used its whole limit."""
 MOST_ROUNDS = 10
-"""Of the search for a trace that numbers make."""
+"""Maximum number of rounds of the search for a trace with numbers."""
 MOST_SEARCHED = 10_000
-"""States in each of them: what is refuted must not become undecided by the time that this takes."""
+"""Maximum number of states in each round; the limit must not turn a refutation into an undecided
+result."""
 
 
 @dataclass(frozen=True, slots=True)
 class Possible:
-    """These numbers make it so, of the signals in their units."""
+    """Numbers that give the comparisons these values, in the signals' units."""
 
     numbers: Mapping[str, Fraction]
-    """Without those that are no fractions, such as a root."""
+    """Values by variable; irrational numbers are left out."""
 
 
 @dataclass(frozen=True, slots=True)
 class Impossible:
-    """No real numbers make it so."""
+    """No real numbers give the comparisons these values."""
 
     exclusion: Exclusion
-    """What of it they do not: nothing of that can be spared."""
+    """A minimal part of the valuation that is impossible."""
 
 
 @dataclass(frozen=True, slots=True)
 class Undecided:
-    """It is not known."""
+    """It was not decided whether such numbers exist."""
 
 
 Answer = Possible | Impossible | Undecided
 
 
 class Reals:
-    """The comparisons of a requirement, to be asked about."""
+    """Queries about the comparisons of a requirement."""
 
     def __init__(self, requirement: FormalizedRequirement) -> None:
-        """Nothing is asked yet."""
+        """Prepare the queries; z3 is not called yet."""
         compared = comparisons(requirement)
         terms = Terms([requirement], is_linear=False)
         self._solver = z3.Solver()
@@ -82,26 +84,26 @@ class Reals:
         self._left = MOST_QUESTIONS
 
     def answer(self, valuation: Mapping[str, bool | None]) -> Answer:
-        """Whether numbers make it so; atoms that compare no numbers are free."""
-        for each in self._excluded:
-            if all(valuation.get(name) is value for name, value in each):
-                return Impossible(each)
+        """Whether numbers exist for the valuation; atoms that are not comparisons are free."""
+        for impossible in self._excluded:
+            if all(valuation.get(name) is value for name, value in impossible):
+                return Impossible(impossible)
         literals = tuple(
             (name, value) for name in self._flags if (value := valuation.get(name)) is not None
         )
-        found = self._ask(literals)
-        if found == z3.unsat:
+        result = self._ask(literals)
+        if result == z3.unsat:
             return self._impossible(literals)
-        if found == z3.unknown or any(valuation.get(name) is not None for name in self._unread):
+        if result == z3.unknown or any(valuation.get(name) is not None for name in self._unread):
             return Undecided()
         return Possible(dict(self._numbers()))
 
     def _impossible(self, literals: Exclusion) -> Impossible:
-        """Without literals that can be spared."""
-        core = {str(each) for each in self._solver.unsat_core()}
-        needed = tuple(each for each in literals if str(self._literal(each)) in core)
+        """The impossible literals, reduced to a minimal set."""
+        core = {str(assumption) for assumption in self._solver.unsat_core()}
+        needed = tuple(literal for literal in literals if str(self._literal(literal)) in core)
         for literal in needed:
-            less = tuple(each for each in needed if each != literal)
+            less = tuple(other for other in needed if other != literal)
             if self._ask(less) == z3.unsat:
                 needed = less
         self._excluded.append(needed)
@@ -110,9 +112,9 @@ class Reals:
     def _ask(self, literals: Exclusion) -> Term:
         if self._left <= 0:
             return z3.unknown
-        found = self._solver.check([self._literal(each) for each in literals])
-        self._left -= _UNANSWERED if found == z3.unknown else 1
-        return found
+        status = self._solver.check([self._literal(literal) for literal in literals])
+        self._left -= _UNANSWERED if status == z3.unknown else 1
+        return status
 
     def _literal(self, literal: tuple[str, bool]) -> Term:
         name, value = literal
@@ -127,10 +129,10 @@ class Reals:
 
 
 def _meets_others(name: str, compared: Mapping[str, e.Comparison]) -> bool:
-    """Whether another comparison reads what this one does; else it is free, as far as is known."""
-    own = {each.id for each in e.names(compared[name])}
+    """Whether another comparison reads the same variables; if not, the comparison is free."""
+    own = {name_node.id for name_node in e.names(compared[name])}
     return any(
-        not own.isdisjoint(each.id for each in e.names(part))
+        not own.isdisjoint(name_node.id for name_node in e.names(part))
         for other, part in compared.items()
         if other != name
     )
@@ -140,7 +142,7 @@ def _meets_others(name: str, compared: Mapping[str, e.Comparison]) -> bool:
 
 
 class Counterexample(Protocol):
-    """A trace that shows a fault."""
+    """A trace that refutes a claim."""
 
     @property
     def word(self) -> Sequence[Sequence[bool | None]]:
@@ -150,33 +152,35 @@ class Counterexample(Protocol):
 Found = TypeVar("Found", bound=Counterexample)
 Other = TypeVar("Other")
 
-NOT_DECIDED = "whether numbers make these comparisons true and false so was not decided"
+NOT_DECIDED = (
+    "it was not decided whether numbers can make these comparisons true and false in this way"
+)
 
 
-def only_rounded(exclusion: Exclusion) -> str:
-    """What is to be known of a trace that no numbers make, computed exactly."""
-    made = exclusion_in_words(exclusion)
-    return f"computed exactly, no numbers make {made}; floats that round may"
+def rounding_note(exclusion: Exclusion) -> str:
+    """The note for a trace that no exact numbers make."""
+    literals = exclusion_in_words(exclusion)
+    return f"in exact arithmetic no numbers make {literals}; rounded floats may"
 
 
-def by_numbers(
+def with_numeric_counterexample(
     requirement: FormalizedRequirement,
     atoms: Sequence[str],
     kind: type[Found],
     compare: Callable[[Sequence[Exclusion]], Found | Other],
 ) -> tuple[Found | Other, str]:
-    """What a comparison finds: a counterexample that real numbers make, where it finds one.
+    """The result of a comparison; a counterexample has numbers where possible.
 
     Args:
-        requirement: whose comparisons its atoms are.
+        requirement: the requirement with the compared atoms.
         atoms: the order of the values of a tick.
-        kind: of counterexamples.
-        compare: searches for one without valuations that have any of these, where there are any
-            among at most `MOST_SEARCHED` states.
+        kind: the class of counterexamples.
+        compare: the search for a counterexample without the given combinations, among at most
+            `MOST_SEARCHED` states if there are any combinations.
 
     Returns:
-        What it finds when nothing is left out, or another counterexample; and what is to be said
-        of its numbers. Whatever is left out, a counterexample becomes no proof.
+        The result without excluded combinations, or another counterexample; and a note about its
+        numbers. Excluding combinations never turns a counterexample into a proof.
     """
     first = compare(())
     if not isinstance(first, kind) or not comparisons(requirement):
@@ -185,7 +189,7 @@ def by_numbers(
     for _ in range(MOST_ROUNDS):
         word: Sequence[Sequence[bool | None]] = shown.word
         answers = [reals.answer(dict(zip(atoms, row, strict=False))) for row in word]
-        new = [each.exclusion for each in answers if isinstance(each, Impossible)]
+        new = [answer.exclusion for answer in answers if isinstance(answer, Impossible)]
         if not new:
             return shown, NOT_DECIDED if Undecided() in answers else ""
         excluded += dict.fromkeys(new)
@@ -193,4 +197,4 @@ def by_numbers(
         if not isinstance(other, kind):
             break
         shown = other
-    return first, f"no other trace was found that shows it, and {only_rounded(excluded[0])}"
+    return first, f"no other trace was found that shows it, and {rounding_note(excluded[0])}"

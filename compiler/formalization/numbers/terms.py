@@ -1,6 +1,6 @@
 """Comparisons and propositions over signals as formulas of z3: linear, exact, whole or real.
 
-A variable has the unit of its signal. Where several units meet, all is converted to base units.
+A variable has the unit of its signal. If several units meet, everything is converted to base units.
 """
 
 from __future__ import annotations
@@ -21,34 +21,34 @@ from fretish.printer import expression as printed
 from fretish.reading.recursion import with_recursion_limit
 
 Term = Any
-"""A number or a truth value of z3, which has no types."""
+"""A number or a truth value of z3, which has no type stubs."""
 
 
 class NoTermError(Exception):
-    """What is said of numbers has no formula here; the message says why, in words."""
+    """The expression has no formula here; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
-class Before:
-    """The number that a variable had at the tick before."""
+class PreviousValue:
+    """The value of a variable at the tick before."""
 
     of: str
     first: Term
-    """What it is at the first tick."""
+    """The value at the first tick."""
 
 
 class Terms:
-    """The variables of some requirements, and what is said of them."""
+    """The variables of some requirements, and formulas over them."""
 
     def __init__(
         self, requirements: Sequence[FormalizedRequirement], *, is_linear: bool = True
     ) -> None:
-        """No variable is known yet.
+        """Start without variables.
 
         Args:
-            requirements: whose comparisons are read.
-            is_linear: whether products of variables are refused, and signals without a unit that
-                meet one; else such a signal has a variable of its own in base units.
+            requirements: the requirements with the comparisons.
+            is_linear: whether products of variables are refused, and unitless signals that meet a
+                signal with a unit. Otherwise such a signal gets a separate variable in base units.
         """
         self._is_linear = is_linear
         self._signals = {
@@ -59,32 +59,32 @@ class Terms:
             ).items()
         }
         self._types = {
-            name: each.type
+            name: declared.type
             for requirement in requirements
-            for name, each in requirement.glossary.items()
+            for name, declared in requirement.glossary.items()
         }
         self._words: dict[str, int] = {}
         self.variables: dict[str, Term] = {}
-        """Constants of z3 for all that is read."""
-        self.before: dict[str, Before] = {}
-        """What variables for numbers of the tick before are."""
+        """z3 constants of all variables."""
+        self.before: dict[str, PreviousValue] = {}
+        """The variables that stand for values at the tick before."""
 
     @with_recursion_limit
-    def holds(self, part: e.Expression, value: bool, known: Callable[[Term], Term]) -> Term:
-        """When a part is true, or when it is false, for certain: Kleene's logic.
+    def holds(self, part: e.Expression, value: bool, all_known: Callable[[Term], Term]) -> Term:
+        """The formula for a part being certainly true, or certainly false, in Kleene's logic.
 
         Args:
-            part: an expression that is a truth value.
-            value: which one.
-            known: when all variables of a comparison are known.
+            part: a Boolean expression.
+            value: the truth value.
+            all_known: the formula for all variables of a comparison being known.
 
         Raises:
-            NoTermError: it is not linear, or no comparison of numbers.
+            NoTermError: the part is not linear, or not a comparison of numbers.
         """
-        return self._holds(part, value, known, is_base=self._meets_units(part))
+        return self._holds(part, value, all_known, is_base=self._meets_units(part))
 
     def domain(self, name: str) -> Term:
-        """Which values a variable may have."""
+        """The formula for the domain of a variable."""
         if name in self.before:
             before = self.before[name]
             of, domain = self.variables[before.of], self.domain(before.of)
@@ -101,7 +101,7 @@ class Terms:
         return z3.BoolVal(True)
 
     def shown(self, name: str, value: Fraction) -> int | float | str:
-        """A value of a variable as people write it."""
+        """A value of a variable as displayed."""
         signal = self._signals.get(name)
         if signal is not None and signal.values:
             return next(word for word, place in self._words.items() if place == value)
@@ -115,7 +115,7 @@ class Terms:
         return kind(declared) if declared else None
 
     def _range(self, name: str) -> tuple[int, int] | None:
-        """The least and the greatest number of a message that is one whole number."""
+        """The range of a message type that is one integer."""
         signal = self._signals.get(name)
         if signal is None or signal.type is None or str(signal.path) != f"{signal.path.topic}.data":
             return None
@@ -132,10 +132,10 @@ class Terms:
     # Truth values
 
     def _holds(
-        self, part: e.Expression, value: bool, known: Callable[[Term], Term], *, is_base: bool
+        self, part: e.Expression, value: bool, all_known: Callable[[Term], Term], *, is_base: bool
     ) -> Term:
-        def read(each: e.Expression, is_so: bool) -> Term:
-            return self._holds(each, is_so, known, is_base=is_base)
+        def read(operand: e.Expression, is_so: bool) -> Term:
+            return self._holds(operand, is_so, all_known, is_base=is_base)
 
         match part:
             case e.Truth(is_true):
@@ -143,15 +143,15 @@ class Terms:
             case e.Not(arg):
                 return read(arg, not value)
             case e.And(args):
-                return (z3.And if value else z3.Or)([read(each, value) for each in args])
+                return (z3.And if value else z3.Or)([read(operand, value) for operand in args])
             case e.Or(args):
-                return (z3.Or if value else z3.And)([read(each, value) for each in args])
+                return (z3.Or if value else z3.And)([read(operand, value) for operand in args])
             case e.Comparison(op, left, right):
                 a, b = (self._number(side, is_base=is_base) for side in (left, right))
                 compared = e.COMPARE[op](a, b)
-                return z3.And(compared if value else z3.Not(compared), known(compared))
+                return z3.And(compared if value else z3.Not(compared), all_known(compared))
             case _:
-                raise NoTermError("is no comparison of numbers")
+                raise NoTermError("is not a comparison of numbers")
 
     # Numbers
 
@@ -159,8 +159,8 @@ class Terms:
         if not any(e.names(part)) and not isinstance(part, e.Word | e.Call):
             return _constant(part)
 
-        def read(each: e.Expression) -> Term:
-            return self._number(each, is_base=is_base)
+        def read(operand: e.Expression) -> Term:
+            return self._number(operand, is_base=is_base)
 
         match part:
             case e.Word(text):
@@ -174,28 +174,28 @@ class Terms:
             case e.Call("preInt" | "preReal", (first, e.Name(id))) if not is_base:
                 return self._before(printed(part), read(first), id)
             case e.Call(name, args):
-                return _called(name, [read(each) for each in args])
+                return _called(name, [read(operand) for operand in args])
             case _:
-                raise NoTermError("is no comparison of numbers")
+                raise NoTermError("is not a comparison of numbers")
 
     def _before(self, name: str, first: Term, of: str) -> Term:
-        """The number of the tick before, as a variable of its own."""
+        """The variable for the value at the tick before."""
         now = self._variable(of, is_base=False)
         if now.is_int() and first.is_real():
-            raise NoTermError("begins with what is no whole number")
+            raise NoTermError("begins with a number that is not whole")
         first = z3.ToReal(first) if now.is_real() and first.is_int() else first
-        made = z3.Int(name) if now.is_int() else z3.Real(name)
-        self.before[name] = Before(of, first)
-        return self.variables.setdefault(name, made)
+        constant = z3.Int(name) if now.is_int() else z3.Real(name)
+        self.before[name] = PreviousValue(of, first)
+        return self.variables.setdefault(name, constant)
 
     def _variable(self, name: str, *, is_base: bool) -> Term:
-        signal, known = self._signals.get(name), self._kind(name)
+        signal, kind = self._signals.get(name), self._kind(name)
         is_word = signal is not None and bool(signal.values)
-        if known is Kind.TRUTH:
+        if kind is Kind.TRUTH:
             raise NoTermError("compares a truth value with a number")
-        whole = is_word or known in (Kind.WHOLE, Kind.NATURAL) or self._range(name) is not None
-        made = z3.Int(name) if whole else z3.Real(name)
-        variable = self.variables.setdefault(name, made)
+        whole = is_word or kind in (Kind.WHOLE, Kind.NATURAL) or self._range(name) is not None
+        constant = z3.Int(name) if whole else z3.Real(name)
+        variable = self.variables.setdefault(name, constant)
         if not is_base or is_word:
             return variable
         scale = self._scale(name)
@@ -212,11 +212,11 @@ _RANGES: Mapping[str, tuple[int, int]] = {
     **{f"std_msgs/Int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32, 64)},
     **{f"std_msgs/UInt{n}": (0, 2**n - 1) for n in (8, 16, 32, 64)},
 }
-"""Of their field `data`."""
+"""The range of the field `data` of each type."""
 
 
 def read_by(formula: Term) -> frozenset[str]:
-    """The variables that a formula is about."""
+    """The names of the variables in a formula."""
     names: set[str] = set()
     waiting, seen = [formula], set()
     while waiting:
@@ -236,14 +236,14 @@ def _exact(value: Fraction) -> Term:
 
 def _constant(part: e.Expression) -> Term:
     try:
-        for each in e.parts(part):
-            if isinstance(each, e.Number | e.Quantity):
-                units.number(each.digits)  # it has no more digits than can be computed with
+        for node in e.parts(part):
+            if isinstance(node, e.Number | e.Quantity):
+                units.number(node.digits)  # it has no more digits than can be computed with
         value = constants.number(part)
     except ValueError:
         value = None
     if value is None:
-        raise NoTermError("computes with a number that there is not, or that is too long")
+        raise NoTermError("computes with a number that does not exist, or is too long")
     return _exact(value)
 
 

@@ -1,7 +1,7 @@
-"""What statements about one value cannot be together: each is true in some cells of its range.
+"""Impossible combinations of statements about one value, found by the cells of its range.
 
-`x < 2` and `x > 3` cut the line into five cells, and no cell has both. Cells are few where
-valuations are many: n thresholds make 2n + 1 of them.
+`x < 2` and `x > 3` divide the line into five cells, and no cell has both. There are far fewer cells
+than valuations: n thresholds make 2n + 1.
 """
 
 from __future__ import annotations
@@ -10,34 +10,34 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
 Exclusion = tuple[tuple[int, bool], ...]
-"""Statements by their places, and whether they are true; in the order of places."""
+"""Indices of statements with their truth values, in ascending order."""
 
 
 def exclusions(cells: Iterable[str], steps: int) -> tuple[Exclusion, ...]:
-    """Least sets of literals that no cell has, so that each other valuation of all is a cell's.
+    """Minimal sets of literals that no cell satisfies; every other valuation is possible.
 
     Args:
-        cells: for each cell `1` or `0` at the place of each statement, whether it is true there.
-        steps: that it may take; what it has not come to then is left possible.
+        cells: for each cell a text with `1` or `0` for each statement, whether it is true there.
+        steps: the step limit; combinations that were not tried count as possible.
 
     Returns:
-        What a search through valuations finds that tries one statement after the other, false
-        first, and keeps of each that is impossible what it needs, of the last literals.
+        The exclusions that a search finds which adds one statement after the other, false first,
+        and reduces each impossible valuation to its last needed literals.
     """
     leaves = sorted({*cells})
-    found = sorted(_Levels(leaves, steps).found()) if leaves else []
-    return tuple(exclusion for _, exclusion in found)
+    ordered = sorted(_Levels(leaves, steps).found()) if leaves else []
+    return tuple(exclusion for _, exclusion in ordered)
 
 
 _Place = tuple[int, int, int]
-"""Where a search through valuations comes to it: orders as it does."""
+"""The position of an exclusion in the order of the search."""
 
 
 class _Levels:
-    """The search, statement by statement.
+    """The search through valuations, statement by statement.
 
-    Bit i of a set is the i-th cell. Cells are sorted, so those that begin alike lie together: such
-    a class is a valuation of the first statements that is possible.
+    Bit i of a set is the i-th cell. Cells are sorted, so cells with equal first values are
+    adjacent: such a class is a possible valuation of the first statements.
     """
 
     def __init__(self, leaves: list[str], steps: int) -> None:
@@ -45,8 +45,8 @@ class _Levels:
         self._true = [int("".join(row)[::-1], 2) for row in zip(*leaves, strict=True)]
         self._first_differences = [0] * len(self._true)
         numbers = [int(leaf, 2) for leaf in leaves]
-        for i, (one, next_) in enumerate(pairwise(numbers), start=1):
-            self._first_differences[len(self._true) - (one ^ next_).bit_length()] |= 1 << i
+        for i, (number, next_) in enumerate(pairwise(numbers), start=1):
+            self._first_differences[len(self._true) - (number ^ next_).bit_length()] |= 1 << i
         self._left = steps
 
     def found(self) -> Iterator[tuple[_Place, Exclusion]]:
@@ -67,7 +67,7 @@ class _Levels:
         return self._true[at] if value else self._all ^ self._true[at]
 
     def _least(self, at: int, value: bool, cell: int) -> tuple[Exclusion, int]:
-        """What the literal needs of those of the cell before it; and the cells that have that."""
+        """A minimal set of literals that excludes every cell with this one; and the cells left."""
         chosen, common, left = [(at, value)], self._all, self._where(at, value)
         while left:
             rest, place = left, at
@@ -83,15 +83,15 @@ class _Levels:
 
 
 def _around(marks: int, starts: int) -> int:
-    """All cells of the classes in which a mark lies."""
-    found = 0
+    """All cells of the classes that contain a marked cell."""
+    surrounding = 0
     while marks:
         mark = marks & -marks
         first = (starts & (mark - 1)).bit_length() - 1
         after = _next(starts, mark)
-        found |= (1 << after) - (1 << first)
-        marks &= ~found
-    return found
+        surrounding |= (1 << after) - (1 << first)
+        marks &= ~surrounding
+    return surrounding
 
 
 def _next(starts: int, mark: int) -> int:
@@ -101,5 +101,5 @@ def _next(starts: int, mark: int) -> int:
 
 
 def _place(at: int, value: bool, first: int, starts: int) -> _Place:
-    """False comes before the cells of its class, true after them."""
+    """The position of an exclusion: false comes before the cells of its class, true after them."""
     return (_next(starts, 1 << first), 0, -at) if value else (first, 1, at)

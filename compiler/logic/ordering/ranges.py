@@ -1,7 +1,7 @@
-"""What comparisons of one term cannot be together, where it is compared with constants or words.
+"""Impossible combinations of comparisons of one term with constants or enumeration values.
 
-The constants cut the line into cells, and the term lies in one. Two constants that are no 32-bit
-floats may be one number: then a cell is equal to both.
+The constants divide the line into cells, and the term lies in one of them. Two constants that are
+not 32-bit floats may round to the same number: then a cell equals both.
 """
 
 from __future__ import annotations
@@ -24,49 +24,54 @@ from compiler.logic.ordering.relations import (
 from fretish import expressions as e
 
 MOST = 10_000_000
-"""Cells times comparisons; with more, the further comparisons are left possible."""
+"""Limit of cells times comparisons; further comparisons count as possible."""
 MOST_STEPS = 5_000_000
-"""Of the search among cells, about a second."""
+"""Step limit of the search among cells, about a second."""
 _TRUE: Mapping[e.ComparisonOperator, str] = {
     "<": "<", "<=": "<=", ">": ">", ">=": ">=", "=": "=", "!=": "<>",
 }  # fmt: skip
-"""How the left side lies to the right one where the comparison is true."""
+"""The order of the left and the right side if the comparison is true."""
 _TABLES = [
     str.maketrans({sign: str(int(sign in true)) for sign in "<=>"}) for true in _TRUE.values()
 ]
 
 
 def is_of_one_term(relations: Mapping[str, Relation]) -> bool:
-    """Whether all compare the same term with constants, or with words."""
+    """Whether all relations compare the same term with constants, or with enumeration values."""
     (left, *others) = dict.fromkeys(relation.left for relation in relations.values())
     if others or not isinstance(left, Term) or is_word(left):
         return False
-    return all(isinstance(each.right, Constant) for each in relations.values()) or (
+    return all(isinstance(relation.right, Constant) for relation in relations.values()) or (
         isinstance(left.text, e.Name)
-        and all(is_word(each.right) and each.op in ("=", "!=") for each in relations.values())
+        and all(
+            is_word(relation.right) and relation.op in ("=", "!=")
+            for relation in relations.values()
+        )
     )
 
 
 def exclusions(
     relations: Mapping[str, Relation], words: Mapping[str, Sequence[str]], share: Fraction
 ) -> Sequence[tuple[tuple[str, bool], ...]]:
-    """The least sets of literals that are true in no cell.
+    """The minimal sets of literals that are true in no cell.
 
     Args:
-        relations: of one term, by their names.
-        words: what each enumerated signal may be.
-        share: of the steps that it may take.
+        relations: the comparisons of one term, by their names.
+        words: the values of each enumerated signal.
+        share: the part of the step limit that the search may use.
     """
     names = tuple(relations)
     while True:
-        some = [relations[name] for name in names]
-        most = int(MOST * share) // len(some)
-        columns = tuple(islice(_columns(some, words), most + 1))
+        of_term = [relations[name] for name in names]
+        most = int(MOST * share) // len(of_term)
+        columns = tuple(islice(_columns(of_term, words), most + 1))
         if len(columns) <= most or len(names) == 1:
             break
         names = names[: len(names) // 2]
-    found = cells.exclusions(columns, int(MOST_STEPS * share))
-    return [tuple((names[place], value) for place, value in each) for each in found]
+    combinations = cells.exclusions(columns, int(MOST_STEPS * share))
+    return [
+        tuple((names[place], value) for place, value in combination) for combination in combinations
+    ]
 
 
 def _columns(relations: Sequence[Relation], words: Mapping[str, Sequence[str]]) -> Iterator[str]:
@@ -74,32 +79,32 @@ def _columns(relations: Sequence[Relation], words: Mapping[str, Sequence[str]]) 
     points, signs = _signs(relations, words)
     places = {point: place for place, point in enumerate(points)}
     rows = {op: row * len(points) for row, op in enumerate(_TRUE)}
-    chosen = itemgetter(*(rows[each.op] + places[each.right] for each in relations))
-    for each in signs:
-        yield "".join(chosen("".join(each.translate(table) for table in _TABLES)))
+    chosen = itemgetter(*(rows[relation.op] + places[relation.right] for relation in relations))
+    for cell_signs in signs:
+        yield "".join(chosen("".join(cell_signs.translate(table) for table in _TABLES)))
 
 
 def _signs(
     relations: Sequence[Relation], words: Mapping[str, Sequence[str]]
 ) -> tuple[Sequence[Point], Iterator[str]]:
-    """What the term is compared with; and for each cell, how it lies to each of them there."""
-    limits = {each.right for each in relations if isinstance(each.right, Constant)}
+    """The points that the term is compared with; for each cell the term's order to each."""
+    limits = {relation.right for relation in relations if isinstance(relation.right, Constant)}
     term = relations[0].left
     assert isinstance(term, Term)
     if not limits:
-        spoken = tuple(dict.fromkeys(each.right for each in relations))
+        spoken = tuple(dict.fromkeys(relation.right for relation in relations))
         return spoken, _among(
             spoken, words.get(term.text.id, ()) if isinstance(term.text, e.Name) else ()
         )
     is_magnitude = of_magnitude(term) is not None
-    row = sorted(limits | {ZERO} if is_magnitude else limits, key=lambda each: each.value)
+    row = sorted(limits | {ZERO} if is_magnitude else limits, key=lambda constant: constant.value)
     least = row.index(ZERO) if is_magnitude else None
     return row, (signs for signs in _on_line(row) if least is None or signs[least] != "<")
 
 
 def _on_line(row: Sequence[Constant]) -> Iterator[str]:
-    """Between the constants, and at each, together with those after it that may be the same."""
-    ends = [each.ends for each in row]
+    """The cells between constants, and at each, with later ones that may be equal."""
+    ends = [constant.ends for constant in row]
     for i in range(len(row) + 1):
         yield ">" * i + "<" * (len(row) - i)
         least = None
@@ -111,13 +116,13 @@ def _on_line(row: Sequence[Constant]) -> Iterator[str]:
 
 
 def _among(spoken: Sequence[Point], words: Sequence[str]) -> Iterator[str]:
-    """One of the words, or another one where there is one."""
+    """The cells of an enumerated term: one for each value, and one for other values."""
     for i in range(len(spoken)):
         yield "<" * i + "=" + "<" * (len(spoken) - i - 1)
     texts = {
-        each.text.text
-        for each in spoken
-        if isinstance(each, Term) and isinstance(each.text, e.Word)
+        point.text.text
+        for point in spoken
+        if isinstance(point, Term) and isinstance(point.text, e.Word)
     }
     if not words or not texts.issuperset(words):
         yield "<" * len(spoken)

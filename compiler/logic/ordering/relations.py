@@ -1,7 +1,7 @@
 """Comparisons as relations of two points, each a term or a constant.
 
-Terms are what is measured or computed in floating-point numbers; of a constant that is no 32-bit
-float it is known only that its nearest floats lie near it.
+Terms are measured, or computed in floating-point numbers. A constant that is not a 32-bit float
+stands for any number between its nearest floats.
 """
 
 from __future__ import annotations
@@ -22,23 +22,24 @@ MIRRORED: Mapping[e.ComparisonOperator, e.ComparisonOperator] = {
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """What is measured, or computed of it."""
+    """A measured number, or an expression over measured numbers."""
 
     text: e.Expression
     is_base: bool
-    """Signals of several units meet in base units, and conversion rounds."""
+    """Whether the term is in base units: signals of several units meet there, and conversion
+    rounds."""
 
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A number; where it is no 32-bit float, it is another one beside each term."""
+    """A number; if it is not a 32-bit float, it may differ from term to term."""
 
     value: Fraction
     beside: Term | None = None
 
     @property
     def ends(self) -> tuple[Fraction, Fraction]:
-        """Between which the number lies that is compared in its place."""
+        """The bounds of the number that is compared instead of the constant."""
         if self.beside is None:
             return self.value, self.value
         error = abs(self.value) / 2**23 + Fraction(1, 2**149)
@@ -58,15 +59,17 @@ class Relation:
 
     @property
     def terms(self) -> Iterator[Term]:
-        """Those of its points that are no constants, and what they are the magnitudes of."""
+        """The terms among its points, and the terms of which they are magnitudes."""
         for point in (self.left, self.right):
             if isinstance(point, Term) and not is_word(point):
                 yield point
-                yield from (each for each in (of_magnitude(point),) if each is not None)
+                yield from (
+                    magnitude for magnitude in (of_magnitude(point),) if magnitude is not None
+                )
 
 
 def relation_of(comparison: e.Comparison, scales: Mapping[str, Fraction]) -> Relation:
-    """The comparison, with a constant that it has on its right side."""
+    """The comparison as a relation, with a constant on the right side."""
     factors = {scales.get(name.id) for name in e.names(comparison)}
     is_base = len(factors) > 1 or e.has_unit(comparison)
     left, right = _exact(comparison.left), _exact(comparison.right)
@@ -95,7 +98,7 @@ def _measured(
 
 
 def _beside(value: Fraction, term: Term) -> Constant:
-    """The constant that stands for a number beside a term; its magnitude is of the same kind."""
+    """The constant for a number beside a term; a term and its magnitude have the same one."""
     return Constant(value) if _is_single(value) else Constant(value, of_magnitude(term) or term)
 
 
@@ -109,7 +112,7 @@ def of_magnitude(term: Term) -> Term | None:
 
 
 def _is_single(value: Fraction) -> bool:
-    """Whether a 32-bit float has the value: then no other number is compared in its place."""
+    """Whether a 32-bit float has exactly this value."""
     try:
         (nearest,) = struct.unpack("<f", struct.pack("<f", float(value)))
     except OverflowError:
@@ -118,7 +121,7 @@ def _is_single(value: Fraction) -> bool:
 
 
 def _exact(expression: e.Expression) -> Fraction | None:
-    """A number without names, in base units where it has one; None for anything else."""
+    """The value of an expression without names, in base units if it has a unit; else None."""
     if any(e.names(expression)):
         return None
     try:
@@ -132,11 +135,11 @@ def _exact(expression: e.Expression) -> Fraction | None:
 
 
 _LARGE = 2**127
-"""From about here on 32-bit floats are infinite."""
+"""From about this value on, 32-bit floats are infinite."""
 
 
 def is_word(point: Point) -> bool:
-    """Whether it is a value of an enumerated signal."""
+    """Whether the point is an enumeration value."""
     return isinstance(point, Term) and isinstance(point.text, e.Word)
 
 
@@ -144,5 +147,5 @@ ZERO = Constant(Fraction(0))
 
 
 def negative(term: Term) -> Term:
-    """`-x`, as it is written."""
+    """The term `-x`."""
     return Term(e.Negation(term.text), term.is_base)

@@ -1,8 +1,8 @@
-"""The words that each target's language keeps for itself: no name of the user is written so.
+"""The reserved words of each target's language, which no user's name may be.
 
-A name that stands in the row of a target gets another one in its texts, by `legal_names`, or is in
-quotes. Beside the key words of a language stand the names that our own texts use there, where a
-name of the user would take their place. Each row names its source.
+A name in the table of a target is renamed there by `legal_names`, or quoted. Besides the key words
+of a language, a table has the names in generated code that a user's name would shadow. Each table
+names its source.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Words(Container[str]):
-    """Words, and families of them that a pattern describes."""
+class ReservedWords(Container[str]):
+    """Words, and a pattern for families of words."""
 
     words: frozenset[str]
     family: re.Pattern[str] | None = None
@@ -24,13 +24,13 @@ class Words(Container[str]):
             return True
         return name in self.words
 
-    def __or__(self, more: Collection[str]) -> Words:
-        """These, and some more words."""
-        return Words(self.words.union(more), self.family)
+    def __or__(self, more: Collection[str]) -> ReservedWords:
+        """The words with some more words."""
+        return ReservedWords(self.words.union(more), self.family)
 
 
-def _words(text: str, family: str | None = None) -> Words:
-    return Words(frozenset(text.split()), None if family is None else re.compile(family))
+def _words(text: str, family: str | None = None) -> ReservedWords:
+    return ReservedWords(frozenset(text.split()), None if family is None else re.compile(family))
 
 
 FRET = _words(
@@ -47,7 +47,7 @@ FRET = _words(
 them. Source: NASA FRET 3.1, `FretSemantics.js` (words of NuSMV, words of R2U2)."""
 
 NOTATION = _words("F G H O R S U V X Y Z LAST TRUE FALSE xor")
-"""What formulas are written with: operators, constants, and the mark of the last tick."""
+"""The words of formulas: operators, constants, and the mark of the last tick."""
 
 SMV = _words(
     """

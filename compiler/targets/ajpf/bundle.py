@@ -1,10 +1,10 @@
 """`--emit ajpf-bundle`: an agent, its environment and its properties, ready for AJPF.
 
-A folder for each requirement. What is generated is checked before it is emitted, in the model of
-`compiler/agents/model.py`: the agent keeps the requirement, the controls and a mutant without the
-response do not. An agent for which that is not so is refused. Source: Dennis, Fisher, Verifiable
-autonomous systems, Cambridge University Press (2023), chapter 5 (verification environments);
-MCAPL's environment for verification.
+Each requirement gets a folder. Before files are emitted, they are checked in the model of
+`compiler/agents/model.py`: the agent must satisfy the requirement, and the controls and a mutant
+without the response must not. An agent that fails the check is refused. Source: Dennis, Fisher,
+Verifiable autonomous systems, Cambridge University Press (2023), chapter 5 (verification
+environments); MCAPL's environment for verification.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _WEAKEN = Options(weaken=True)
 
 @with_recursion_limit
 def refusal(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
-    """F601 for what AJPF or the agent cannot express; F614 where the agent is not proved right."""
+    """F601 for what AJPF or the agent cannot express; F614 if the agent is not proved correct."""
     refused = ajpf.refusal(requirement, options)
     if refused is not None:
         return refused
@@ -48,21 +48,21 @@ def refusal(requirement: FormalizedRequirement, options: Options = DEFAULT) -> D
 
 @dataclass(frozen=True, slots=True)
 class CheckedAgent:
-    """An agent, and the evidence of the model about its texts."""
+    """An agent, and the proofs about its texts in the model."""
 
     sif: Sif
     evidence: tuple[Proof, ...]
 
     @property
     def is_proved(self) -> bool:
-        """Whether every line of the evidence is proved."""
+        """Whether all claims are proved."""
         return all(line.result is Result.PROVED for line in self.evidence)
 
 
 def forms(requirement: FormalizedRequirement) -> tuple[Sif, ...] | Diagnostic:
     """The possible agents: one that checks the whole condition, and one that does not.
 
-    Only one where both are the same; F601 where there is none.
+    The result has one agent if both are equal; F601 if there is none.
     """
     asking, bare = sif(requirement), sif(requirement, guarded=False)
     if isinstance(asking, Diagnostic):
@@ -76,15 +76,15 @@ def forms(requirement: FormalizedRequirement) -> tuple[Sif, ...] | Diagnostic:
 def checked_agent(
     requirement: FormalizedRequirement, options: Options = DEFAULT, limit: int | None = None
 ) -> CheckedAgent | Diagnostic:
-    """The first form of the agent that is proved to keep its requirement, the guarded one first.
+    """The first form of the agent that is proved to satisfy its requirement, guarded form first.
 
     Args:
         requirement: one that `ajpf.refusal` does not refuse, with the same options.
         options: `weaken` counts.
-        limit: how many states are explored of each form.
+        limit: the number of states to explore for each form.
 
     Returns:
-        The guarded form where none is proved to keep it; F601 where there is no form.
+        The guarded form if none is proved; F601 if there is no form.
     """
     from compiler.agents.checking import STATES, agent_evidence
 
@@ -110,8 +110,7 @@ def _not_kept(requirement: FormalizedRequirement, evidence: Sequence[Proof]) -> 
             continue
         return Diagnostic(
             Code.NOT_KEPT,
-            f"the agent that would be made of {requirement.id} is not shown to keep it: "
-            f"{line.detail}",
+            f"the agent generated from {requirement.id} is not shown to satisfy it: {line.detail}",
             requirement.entry.wording,
             help="an agent needs time to react: use `eventually`, no scope or stop condition that "
             "may come first, and few triggers",
@@ -146,7 +145,7 @@ def _bundle(requirement: FormalizedRequirement, options: Options) -> Iterator[Ar
 
 
 def package(requirement: FormalizedRequirement) -> str:
-    """The name of the folder, which is that of the Java package: neither has room for more."""
+    """The name of the folder, and of the Java package in it."""
     name = re.sub(r"[^a-z0-9]+", "_", stem(requirement)).strip("_")
     return f"{name if name[:1].isalpha() else f'r{name}'}_ajpf"
 
@@ -154,11 +153,11 @@ def package(requirement: FormalizedRequirement) -> str:
 def texts(
     requirement: FormalizedRequirement, form: Sif, options: Options = DEFAULT
 ) -> dict[str, str]:
-    """The texts that the model examines and the bundle contains, by the names of the files."""
+    """The texts that are checked in the model and written to the bundle, by file name."""
     return {
         "SIF.gwen": _agent(requirement, form, form.plans, "the agent of"),
         "SIF_mutant.gwen": _agent(
-            requirement, form, form.mutant, "an agent without the response, which is to break"
+            requirement, form, form.mutant, "an agent without the response, which must violate"
         ),
         "SIF.psl": ajpf.text(requirement, options),
     }
@@ -190,7 +189,7 @@ def _plan(plan: Reaction) -> str:
 def _configuration(
     requirement: FormalizedRequirement, form: Sif, options: Options
 ) -> dict[str, str]:
-    """The further files for MCAPL and Java PathFinder."""
+    """The other files for MCAPL and Java PathFinder."""
     name = package(requirement)
     texts = {
         "Env.java": render(
@@ -222,7 +221,7 @@ def _checks(requirement: FormalizedRequirement, options: Options) -> list[dict[s
             "SIF_mutant",
             f"{main.key}_mutant",
             ajpf.VIOLATED,
-            "an agent without the response breaks the requirement",
+            "an agent without the response violates the requirement",
         ),
     ]
 
@@ -283,7 +282,7 @@ def _atom(requirement: FormalizedRequirement, form: Sif, name: str) -> dict[str,
 
 
 def _binding(declarations: Declarations | None, name: str) -> dict[str, Any]:
-    """The binding of the proposition to messages; empty where it is not bound."""
+    """The binding of the proposition to messages; empty if it is not bound."""
     bound = declarations.propositions.get(name) if declarations else None
     if declarations is None or bound is None:
         return {}
@@ -331,14 +330,13 @@ def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Di
         return warning
     return Diagnostic(
         Code.OVER_RESPONDS,
-        f"the agent of {requirement.id} responds to every event of its condition, also where the "
-        "rest "
-        "of the condition does not hold",
+        f"the agent of {requirement.id} responds to every event of its condition, even if the "
+        "rest of the condition does not hold",
         requirement.sentence.condition.span
         if requirement.sentence.condition
         else requirement.entry.wording,
-        "percepts are believed one after the other, so that an agent which asks for the rest may "
-        "miss its trigger; where that is too often, bind the whole condition to one proposition",
+        "percepts are believed one after the other, so an agent that also checks the rest may "
+        "miss its trigger; if it responds too often, bind the whole condition to one proposition",
         Severity.WARNING,
     )
 

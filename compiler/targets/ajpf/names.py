@@ -1,4 +1,4 @@
-"""What AJPF and Gwendolen call the propositions of a requirement, and its agent."""
+"""Names in AJPF and Gwendolen for a requirement's propositions and its agent."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from compiler.targets.comparison_names import definitions as meanings
 
 
 def spelt(requirement: FormalizedRequirement) -> Mapping[str, str]:
-    """A functor for each proposition: it begins with a small letter, and is no key word."""
+    """A functor for each proposition: it begins with a small letter, and is not a key word."""
     spoken = comparison_names(requirement)
     atoms = tuple(dict.fromkeys((*requirement.propositions, *atoms_of(requirement.sentence))))
     wanted = {atom: _functor(spoken.get(atom) or identifier(atom)) for atom in atoms}
@@ -27,19 +27,19 @@ def _functor(name: str) -> str:
 
 
 def agent(requirement: FormalizedRequirement) -> str:
-    """The agent's name: the component's, where it can be one."""
+    """The agent's name, which is the component's if that is legal."""
     component = requirement.sentence.component
     name = component if AGENT.fullmatch(component) else None
     return legal_names([component], AJPF, names={component: name} if name else None)[component]
 
 
 def definitions(requirement: FormalizedRequirement) -> Mapping[str, str]:
-    """What each name means that is not the user's own."""
+    """The meaning of each name that differs from the user's."""
     component, own = requirement.sentence.component, agent(requirement)
-    found = meanings(requirement, spelt(requirement))
-    return found if own == component else {**found, own: f"the agent `{component}`"}
+    by_name = meanings(requirement, spelt(requirement))
+    return by_name if own == component else {**by_name, own: f"the agent `{component}`"}
 
 
 def everything(requirement: FormalizedRequirement) -> Mapping[str, str]:
-    """Names of propositions and of the agent; a proposition counts where one has both names."""
+    """Names of propositions and of the agent; a proposition wins if both have the same name."""
     return {requirement.sentence.component: agent(requirement), **spelt(requirement)}

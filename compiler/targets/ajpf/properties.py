@@ -1,11 +1,11 @@
 """`--emit ajpf`: a property file for the AJPF model checker of MCAPL.
 
-AJPF's language is LTL without next, without past, without time: what is emitted is the next-free
-form of the sentence (`compiler/formalization/without_next.py`), and the rest is refused. Beside
-each property stand its controls, which are expected to be violated: where one holds, the property
-holds of nothing. Source: Dennis et al., Model checking agent programming languages, ASE 19 (2012);
-the property parser of MCAPL. Controls: Kupferman and Vardi, Vacuity detection in temporal model
-checking, STTT 4 (2003).
+AJPF's language is LTL without next, past and time. So the next-free form of the sentence is emitted
+(`compiler/targets/ajpf/without_next.py`), and other sentences are refused. Each property has
+controls, which are expected to be violated: if a control holds, the property holds vacuously.
+Source: Dennis et al., Model checking agent programming languages, ASE 19 (2012); the property
+parser of MCAPL. Controls: Kupferman and Vardi, Vacuity detection in temporal model checking, STTT 4
+(2003).
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class ExpectedProperty:
 def properties(
     requirement: FormalizedRequirement, options: Options = DEFAULT
 ) -> tuple[ExpectedProperty, ...]:
-    """The requirement, and the controls that make a verdict about it mean something.
+    """The property of the requirement, and the controls that give its verdict a meaning.
 
     Args:
         requirement: one that `refusal` does not refuse, with the same options.
@@ -102,7 +102,7 @@ def properties(
 
 
 def weakened(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str | None:
-    """The loss in words, where the property is weaker than the requirement; None: no loss."""
+    """The loss in words if the property is weaker than the requirement; None: no loss."""
     if not options.weaken or not _can_be_weakened(requirement):
         return None
     loss = (
@@ -117,9 +117,9 @@ def weakened(requirement: FormalizedRequirement, options: Options = DEFAULT) -> 
 
 
 def _can_be_weakened(requirement: FormalizedRequirement) -> bool:
-    """`within` only: without their numbers the other timings say nothing, or something else.
+    """Whether the requirement has a useful form without its bound, which only `within` has.
 
-    Nor in the `only` scopes, where the demand is that the response is missed for that long.
+    It has none in the `only` scopes, which demand that the response is missed for that long.
     """
     scope = requirement.sentence.scope
     negates = scope is not None and scope.kind.negates
@@ -131,7 +131,7 @@ def _can_be_weakened(requirement: FormalizedRequirement) -> bool:
 
 @with_recursion_limit
 def refusal(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
-    """F601 for the first part of the requirement that AJPF's language cannot say; F604."""
+    """F601 for the first part of the requirement that AJPF's language cannot express; F604."""
     return (
         _refused_timing(requirement, options)
         or _refused_name(requirement)
@@ -164,7 +164,7 @@ def _refused_timing(requirement: FormalizedRequirement, options: Options) -> Dia
 
 
 def _counts_states(timing: s.Timing) -> bool:
-    """A reasoning cycle of an agent is many states: a number of them means nothing, not even 0."""
+    """Whether the timing counts ticks; a cycle of an agent has many states, so AJPF cannot."""
     extent = s.SHAPES[type(timing)].extent
     match extent:
         case s.Extent.NEXT | s.Extent.DURATION | s.Extent.BEYOND:
@@ -184,7 +184,7 @@ def _refused_name(requirement: FormalizedRequirement) -> Diagnostic | None:
     }
     for atom in requirement.propositions:
         if atom in spoken and atom not in compared:
-            fix = "give it a name of its own that begins with a small letter, and bind that"
+            fix = "bind it as a proposition whose name begins with a small letter, and use that"
             return _not(requirement, f"the proposition `{atom}`", fix)
     return None
 
@@ -195,7 +195,7 @@ def _refused_form(
     if formula is None:
         return Diagnostic(
             Code.NOT_PROVED,
-            f"the form of {requirement.id} for AJPF is not proved equal to the requirement",
+            f"the AJPF property of {requirement.id} is not proved equivalent to the requirement",
             requirement.entry.wording,
             help=f"this is a fault of fretc: report it, and {_MONITOR}",
         )
@@ -206,7 +206,7 @@ def _refused_form(
         return long
     levels = _levels(_text(formula, requirement))
     if levels > _MOST_LEVELS:
-        fix = "give parts of the expressions names of their own"
+        fix = "bind parts of the expressions as propositions"
         return _not(requirement, f"{levels} parentheses within each other", fix)
     return None
 
@@ -227,7 +227,7 @@ def _levels(text: str) -> int:
 
 
 def _formula(requirement: FormalizedRequirement, options: Options) -> f.Formula | None:
-    """The requirement's own formula if it has no X, else its next-free form; None: not proved."""
+    """The requirement's formula without X, or its next-free form; None if not proved equal."""
     duty = obligation(requirement.sentence, requirement.ticks or 0)
     condition = duty.condition
     if weakened(requirement, options):
@@ -239,7 +239,7 @@ def _formula(requirement: FormalizedRequirement, options: Options) -> f.Formula 
 
 
 def _controls(requirement: FormalizedRequirement, key: str) -> Iterator[tuple[str, f.Formula, str]]:
-    """Name, formula and reason of each control; it may be constant where an expression is."""
+    """Name, formula and reason of each control; the formula may be constant."""
     duty = obligation(requirement.sentence, requirement.ticks or 0)
     response = boolean(requirement.sentence.response, Uninterpreted().alone())
     never = nextfree.never_begins(duty)
@@ -271,7 +271,7 @@ def _text(formula: f.Formula, requirement: FormalizedRequirement) -> str:
 
 
 def _key(id: str) -> str:
-    """The id as a key: what `target.args` cannot carry becomes `_`."""
+    """The id as a key: characters that `target.args` cannot carry become `_`."""
     return re.sub(r"[^A-Za-z0-9_.-]", "_", id)
 
 

@@ -58,7 +58,7 @@ def main(arguments: Sequence[str]) -> int:
     """Check all keys of the bundle; print a line for each, and write the result."""
     parser = argparse.ArgumentParser(description="Check this bundle with AJPF.")
     parser.add_argument("--timeout", type=float, default=3600, help="seconds for each property")
-    parser.add_argument("--agent", help="an agent of your own, in place of SIF.gwen")
+    parser.add_argument("--agent", help="your own agent, instead of SIF.gwen")
     options = parser.parse_args(arguments)
     here = Path(__file__).resolve().parent
     own = Path(options.agent).resolve() if options.agent else None
@@ -66,8 +66,7 @@ def main(arguments: Sequence[str]) -> int:
         for place in (here, *([own] if own else [])):
             if re.search(r"[^\w./+@~-]", str(place), re.ASCII):
                 raise UnusableError(
-                    "AJPF reads paths of letters, digits and `_ . / + @ ~ -` alone, and not "
-                    f"{place}"
+                    f"AJPF reads only paths of letters, digits and `_ . / + @ ~ -`, not {place}"
                 )
         manifest = intact(here, own)
         programs = tools()
@@ -99,7 +98,7 @@ def main(arguments: Sequence[str]) -> int:
     status, words = conclusion(answers)
     try:
         if digests(here, manifest, own) != ran_on:
-            raise UnusableError("a file was changed while AJPF was at work: run it again")
+            raise UnusableError("a file was changed while AJPF was running: start run.py again")
         write(here, result(manifest, programs, own, ran_on, answers, status))
     except UnusableError as error:
         print(f"error: {error}", file=sys.stderr)
@@ -129,11 +128,11 @@ def intact(here: Path, own: Path | None) -> dict[str, Any]:
         for name, expected in files.items():
             if digest(here / name) != expected and (own is None or name != "SIF.gwen"):
                 more = "; `--agent SIF.gwen` checks an agent of your own" * (name == "SIF.gwen")
-                raise UnusableError(f"{name} is not the file that manifest.json tells of{more}")
+                raise UnusableError(f"{name} is not the file that manifest.json lists{more}")
         if {check["role"] for check in checks} != {"requirement", "control", "mutant"}:
-            raise UnusableError("manifest.json does not name all that is to be checked")
+            raise UnusableError("manifest.json does not list all files and checks")
         if any(c["expected"] not in (HOLDS, VIOLATED) or c["jpf"] not in files for c in checks):
-            raise UnusableError("manifest.json names something that cannot be checked")
+            raise UnusableError("manifest.json lists a check that cannot be run")
         if own is not None:
             check_name(own, manifest["agent"])
         return manifest
@@ -150,7 +149,7 @@ def digests(here: Path, manifest: Mapping[str, Any], own: Path | None) -> dict[s
 
 
 def alone(here: Path) -> IO[str]:
-    """A lock, as long as it is open: two runs in one folder would read each other's files."""
+    """A lock, held while the file is open: two runs in one folder would read each other's files."""
     file = (here / "run.lock").open("w")
     try:
         import fcntl
@@ -160,12 +159,12 @@ def alone(here: Path) -> IO[str]:
         pass  # a system without such locks
     except OSError:
         file.close()
-        raise UnusableError(f"another run.py is at work in {here}") from None
+        raise UnusableError(f"another run.py is running in {here}") from None
     return file
 
 
 def check_name(own: Path, name: str) -> None:
-    """Demand of the user's own agent the name in the properties: AJPF crashes on another."""
+    """Check that the user's agent has the name in the properties: AJPF crashes on any other."""
     match = re.search(r"^\s*:name:\s*(\S+)", own.read_text(encoding="utf-8"), re.MULTILINE)
     if match is None or match[1] != name:
         fault = f"is called `{match[1]}`" if match else "has no `:name:`"
@@ -189,26 +188,26 @@ def tools() -> Tools:
 
 
 def java_version(java: str) -> str:
-    """`11.0.22`; any other than Java 11 dies within Java PathFinder."""
+    """The version, such as `11.0.22`; Java PathFinder runs on Java 11 only."""
     try:
         done = subprocess.run(
             [java, "-version"], capture_output=True, text=True, errors="replace", timeout=60
         )
     except (OSError, subprocess.TimeoutExpired) as error:
-        raise UnusableError(f"{java} does not tell its version: {error}") from error
+        raise UnusableError(f"{java} does not print its version: {error}") from error
     match = re.search(r'version "((?:1\.)?(\d+)[^"]*)"', f"{done.stderr}\n{done.stdout}")
     if match is None:
-        raise UnusableError(f"{java} does not tell its version")
+        raise UnusableError(f"{java} does not print its version")
     if int(match[2]) != JAVA:
         raise UnusableError(
-            f"{java} is Java {match[1]}, and AJPF needs Java {JAVA}: under another it dies with "
+            f"{java} is Java {match[1]}, and AJPF needs Java {JAVA}: other versions fail with "
             f"`NoSuchMethodError`; set JAVA_HOME to a JDK {JAVA}"
         )
     return match[1]
 
 
 def class_path(home: Path) -> str:
-    """What MCAPL has compiled, then all its libraries, the newest ANTLR before the others."""
+    """The class path: MCAPL's classes, then all its libraries, the newest ANTLR first."""
     compiled = [home / "bin", *sorted((home / "build").glob("*"))]
     libraries = sorted((home / "lib").rglob("*.jar"))
     if not any(jar.name == "RunJPF.jar" for jar in libraries):
@@ -294,16 +293,19 @@ def ask(
 
 RESULTS = re.compile(r"^=+ results\s*$", re.MULTILINE)
 EXPLAINED = (
-    ("Could not deserialize ATN", "an ANTLR that is older than MCAPL's parsers comes first"),
+    (
+        "Could not deserialize ATN",
+        "the class path begins with an ANTLR that is older than MCAPL's parsers",
+    ),
     ("NoSuchMethodError", f"AJPF needs Java {JAVA}"),
 )
 
 
 def verdict(text: str, status: int) -> tuple[str, str]:
-    """The verdict of a whole output; ERROR where it is not clear.
+    """The verdict of an output; ERROR if it is not clear.
 
-    A complaint of a parser overrides any verdict: AJPF goes on with another property than the one
-    in the file.
+    A parser error overrides any verdict: AJPF continues with a property that differs from the
+    file's.
     """
     for sign, why in EXPLAINED:
         if sign in text:
@@ -317,7 +319,7 @@ def verdict(text: str, status: int) -> tuple[str, str]:
     if "search constraint" in text:
         return ERROR, "the search was cut short"
     if "MODEL PRODUCED BY AJPF" in text:
-        return ERROR, "only the model was made (`ajpf.model_only`)"
+        return ERROR, "only the model was built (`ajpf.model_only`)"
     parts = RESULTS.split(text)
     results = parts[-1] if len(parts) == 2 else ""
     holds = re.search(r"^no errors detected\s*$", results, re.MULTILINE) is not None
@@ -325,7 +327,7 @@ def verdict(text: str, status: int) -> tuple[str, str]:
     path = 'ajpf.MCAPLListener "An Accepting Path has been found'
     violated = bool(errors) and all(error.startswith(path) for error in errors)
     if holds and (errors or "An Accepting Path has been found" in text):
-        return ERROR, "the output says two things"
+        return ERROR, "the output has two verdicts"
     if violated and status >= 0:
         return VIOLATED, ""
     if holds and status == 0:
@@ -336,7 +338,7 @@ def verdict(text: str, status: int) -> tuple[str, str]:
 
 
 def states(text: str) -> dict[str, int]:
-    """The numbers of the line `states:  new=303,visited=52,...`; none where there is no such."""
+    """The numbers of the line `states:  new=303,visited=52,...`; empty if there is no such line."""
     lines = re.findall(r"^states:\s+(\S+)\s*$", text, re.MULTILINE)
     parts = lines[-1].split(",") if lines else []
     numbers = (re.fullmatch(r"(\w+)=(\d+)", part) for part in parts)
@@ -344,11 +346,11 @@ def states(text: str) -> dict[str, int]:
 
 
 def trace(text: str) -> dict[str, Any] | None:
-    """The run that breaks a property, a row for each state of the program; None: there is none.
+    """The run that violates a property, a row for each state of the program; None if there is none.
 
-    AJPF logs the changes of a state after its `New State is N`; other values stay as they were on
-    the way there, and are None before their first change. It logs an action before the state that
-    the action leads to.
+    AJPF logs the changes of a state after its `New State is N`. Other values are those of the state
+    before, and None before their first change. An action is logged before the state to which it
+    leads.
     """
     path = [int(state) for state in _path(text)]
     if not path:
@@ -381,7 +383,7 @@ def _path(text: str) -> Iterator[str]:
 
 
 def folded(path: Sequence[int]) -> tuple[list[int], int | None]:
-    """The run without its second round, and where its end leads back to; None: nowhere."""
+    """The run without its second round, and the index where its end leads back; None: no loop."""
     for length in range(1, len(path) + 1):
         for start in range(length):
             period = length - start
@@ -392,7 +394,7 @@ def folded(path: Sequence[int]) -> tuple[list[int], int | None]:
 
 
 def logged(text: str) -> tuple[dict[int, dict[str, bool]], dict[int, str]]:
-    """Of each new state, its changes of truth values, and the action that led there."""
+    """The changes of truth values of each new state, and the action that led to it."""
     changes: dict[int, dict[str, bool]] = {}
     actions: dict[int, str] = {}
     state, action = None, ""
@@ -425,9 +427,9 @@ def conclusion(answers: Sequence[Mapping[str, Any]]) -> tuple[int, str]:
     if any(check["role"] == "requirement" and check["told"] == VIOLATED for check in answers):
         return REFUTED, "AJPF refutes the requirement"
     if any(check["told"] != check["expected"] for check in answers):
-        words = "not shown: without each of these, the verdict about the requirement says nothing"
+        words = "not shown: the verdict about the requirement counts only if each of these is shown"
         return NOT_SHOWN, words
-    return SHOWN, "AJPF says all that is expected of it"
+    return SHOWN, "AJPF gives every expected verdict"
 
 
 def result(
@@ -455,7 +457,7 @@ def result(
 
 
 def commit(home: Path) -> str | None:
-    """The commit of a checkout, read off its `.git`; None where there is none."""
+    """The commit of a checkout, from its `.git`; None if there is none."""
     try:
         git = home / ".git"
         head = (git / "HEAD").read_text(encoding="utf-8").strip()

@@ -1,14 +1,14 @@
-"""The safety instrumented function of one requirement: which agent reacts to its trigger.
+"""The safety instrumented function of one requirement: the agent that reacts to its trigger.
 
 A condition in disjunctive form becomes plans: one for each event that can make it true, guarded by
-what else has to hold. The response is an action for each of its propositions, and the belief that
-it was done. Percepts come one after the other: where one of them is negated, a property sees the
-condition true between two of them, and by the time the event is planned the guard drops it. The
-form without those guards responds to every such event, also where the rest does not hold.
-One trigger with one response is released when it goes, without a guard: with one, the event of a
-trigger that comes back during the release is discarded, and the response is lost. All others are
-not released: events would come faster than they are handled. They respond once, and a guard tells
-that they have.
+the rest of the condition. The response is an action for each of its propositions, and the belief
+that it was done. Percepts are believed one after the other. If one of them is negated, a property
+sees the condition true between two of them, but when the event is planned the guard rejects it. The
+form without those guards responds to every such event, even if the rest does not hold. One trigger
+with one response is released when the trigger goes, without a guard: with a guard, the event of a
+trigger that returns during the release would be discarded, and the response lost. All other
+responses are not released, because events would come faster than they are handled. They respond
+once, and a guard records that.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from compiler.agents.gwendolen import Action, Change, Deed, Guard
+from compiler.agents.gwendolen import Action, BeliefChange, Deed, Guard
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.spelling.reserved_words import AJPF_ACTIONS
 from compiler.targets.ajpf import names
@@ -34,7 +34,7 @@ _TARGET = "an agent"
 class Reaction:
     """A plan of the agent."""
 
-    event: Change
+    event: BeliefChange
     guards: tuple[Guard, ...]
     deeds: tuple[Deed, ...]
 
@@ -48,18 +48,18 @@ class Sif:
     """Propositions of the scope, the condition and the stop condition, in this order."""
     responses: tuple[str, ...]
     names: Mapping[str, str]
-    """What percepts, responses and other propositions are called in the texts."""
+    """The names of percepts, responses and other propositions in the texts."""
     plans: tuple[Reaction, ...]
     mutant: tuple[Reaction, ...]
     """The plans without the deeds that make the response true."""
     released: bool
     """Whether the response is taken back when the trigger goes."""
     over_responds: bool
-    """Whether plans skip the rest of the condition, and so respond without it too."""
+    """Whether plans ignore the rest of the condition, and so respond without it, too."""
 
     @property
     def drawn(self) -> tuple[str, ...]:
-        """The percepts by their names in the texts."""
+        """The names of the percepts in the texts."""
         return tuple(self.names[name] for name in self.percepts)
 
 
@@ -68,16 +68,16 @@ Term = tuple[tuple[str, bool], ...]
 
 
 def sif(requirement: FormalizedRequirement, guarded: bool = True) -> Sif | Diagnostic:
-    """The agent that reacts as the requirement demands; or F601 if there is no such agent.
+    """The agent that reacts as the requirement demands; F601 if there is no such agent.
 
     Args:
         requirement: the requirement.
-        guarded: whether plans ask for the rest of the condition, where there is any.
+        guarded: whether plans check the rest of the condition, if there is any.
     """
     sentence = requirement.sentence
     comparison = next(iter(comparison_names(requirement)), None)
     if comparison is not None:
-        fix = "give it a name of its own, and bind that; `--emit ajpf` writes the property alone"
+        fix = "bind it as a proposition, and use that; `--emit ajpf` writes only the property"
         return not_expressible(_TARGET, requirement, f"`{comparison}`", fix)
     if sentence.condition is None:
         fix = "an agent reacts to an event: state what triggers it, `whenever ...`"
@@ -121,10 +121,10 @@ def _terms(
         literals = [_literal(x) for x in (part.args if isinstance(part, e.And) else (part,))]
         term = tuple(literal for literal in literals if literal is not None)
         if len(term) < len(literals):
-            fix = "write it as `a`, `a & b` or `(a & !b) | c`, or give its parts names"
+            fix = "write it as `a`, `a & b` or `(a & !b) | c`, or bind its parts as propositions"
             return not_expressible(_TARGET, requirement, "the shape of the condition", fix)
         if not any(positive for _, positive in term):
-            fix = "an absence at the start raises no event: name the opposite, and bind that"
+            fix = "a belief that is absent at the start raises no event: bind the opposite"
             return not_expressible(_TARGET, requirement, "a condition that only negates", fix)
         terms.append(term)
     return tuple(terms)
@@ -151,7 +151,7 @@ def _responses(requirement: FormalizedRequirement) -> tuple[str, ...] | Diagnost
     ids = [part.id for part in parts if isinstance(part, e.Name)]
     if len(ids) == len(parts):
         return tuple(dict.fromkeys(ids))
-    fix = "an agent does things: state what is to be so, as `a` or `a & b`"
+    fix = "an agent reacts by actions: state the response as `a` or `a & b`"
     return not_expressible(_TARGET, requirement, "the shape of the response", fix)
 
 
@@ -172,27 +172,29 @@ def _wrong_name(
 ) -> Diagnostic | None:
     for name in percepts:
         if name in responses:
-            fix = "an environment that shows the response verifies any agent: use two names"
+            fix = "if the environment shows the response, every agent is verified: use two names"
             return not_expressible(_TARGET, requirement, f"`{name}` as trigger and response", fix)
         if _modality(requirement, name) is not Modality.BELIEF:
-            fix = 'the environment shows it: leave its `modality`, or make it "B"'
+            fix = 'a trigger is a percept: remove its `modality`, or make it "B"'
             return not_expressible(
-                _TARGET, requirement, f"the trigger `{name}`, not a belief,", fix
+                _TARGET, requirement, f"the trigger `{name}` (not a belief)", fix
             )
     for name in responses:
         if _modality(requirement, name) not in (Modality.BELIEF, Modality.DONE):
             fix = 'an agent brings about a belief ("B") or does an action ("D")'
-            return not_expressible(_TARGET, requirement, f"the response `{name}`, neither,", fix)
+            return not_expressible(
+                _TARGET, requirement, f"the response `{name}` (neither a belief nor an action)", fix
+            )
         done = _modality(requirement, name) is Modality.DONE
         action = _spelt(requirement)[name] if done else _action(requirement, name)
         if action in AJPF_ACTIONS:
-            fix = "MCAPL has an action or a word of that name: use another"
+            fix = "MCAPL reserves this name: use another"
             return not_expressible(_TARGET, requirement, f"the action `{action}`", fix)
     return None
 
 
 def _spelt(requirement: FormalizedRequirement) -> Mapping[str, str]:
-    """The names in the texts, also by names as the syntax tree has them: without quotes."""
+    """The names in the texts, also by names in the syntax tree, which have no quotes."""
     spelt = names.spelt(requirement)
     return {**spelt, **{atom[1:-1]: spelt[atom] for atom in spelt if atom.startswith('"')}}
 
@@ -207,14 +209,14 @@ def _is_belief(requirement: FormalizedRequirement, *names: str) -> bool:
 
 
 def _answer(requirement: FormalizedRequirement, name: str) -> tuple[Deed, ...]:
-    """An action and the belief that it was done; only the action where that is the response."""
+    """An action and the belief that it was done; only the action if that is the response."""
     if not _is_belief(requirement, name):
         return (Action(_spelt(requirement)[name]),)
-    return Action(_action(requirement, name)), Change("+", _spelt(requirement)[name])
+    return Action(_action(requirement, name)), BeliefChange("+", _spelt(requirement)[name])
 
 
 def _action(requirement: FormalizedRequirement, name: str) -> str:
-    """What the agent does to make it true, as the bindings call it."""
+    """The action that makes the proposition true, as the bindings name it."""
     declared = requirement.glossary.get(name)
     return (declared.action if declared else "") or f"do_{_spelt(requirement)[name]}"
 
@@ -225,7 +227,7 @@ def _reactions(
     """A plan for each event that can make a term true; the guard `last` blocks a second answer."""
     plans = [
         Reaction(
-            Change("+" if positive else "-", name),
+            BeliefChange("+" if positive else "-", name),
             (
                 *(Guard(value, other) for other, value in term if other != name),
                 *([last] if last else []),
@@ -239,7 +241,7 @@ def _reactions(
 
 
 def _releases(terms: tuple[Term, ...], response: str) -> tuple[Reaction, ...]:
-    """The only response is taken back when the only trigger goes."""
+    """The plan that takes the only response back when the only trigger goes."""
     (((trigger, _),),) = terms
-    deeds = (Action(f"undo_{response}"), Change("-", response))
-    return (Reaction(Change("-", trigger), (), deeds),)
+    deeds = (Action(f"undo_{response}"), BeliefChange("-", response))
+    return (Reaction(BeliefChange("-", trigger), (), deeds),)

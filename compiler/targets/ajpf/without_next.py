@@ -1,12 +1,12 @@
 """Sentences without the operator X: for languages whose steps are not ticks.
 
-A sentence that counts no ticks does not change its verdict when a trace stutters, so it has a form
-without X, though its formula in `compiler/formalization/future.py` marks the ends of intervals by
-X. Here the form is built from two dual operators that keep within an interval of the scope, and
-each of its shapes is proved equal to that formula by Spot, with plain propositions for the
-expressions: what holds of propositions holds of whatever stands in their places. Source: Peled and
-Wilke, Stutter-invariant temporal properties are expressible without the next-time operator, IPL 63
-(1997), for the existence of such forms; the forms are our own.
+A sentence that counts no ticks has the same verdict when a trace stutters. So it has a form without
+X, though its formula in `compiler/formalization/future.py` marks the ends of intervals by X. Here
+the form is built from two dual operators that stay within an interval of the scope. Spot proves
+each of its shapes equal to that formula, with plain propositions for the expressions: a result
+about propositions holds for all expressions in their places. Source: Peled and Wilke,
+Stutter-invariant temporal properties are expressible without the next-time operator, IPL 63 (1997),
+for the existence of such forms; the forms are our own.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from fretish.syntax import ConditionKind, ScopeKind, ends_with_run
 
 
 def is_next_free(formula: Formula) -> bool:
-    """Whether it is logic, F, G, U and R, with no bound."""
+    """Whether the formula has only Boolean operators, F, G, U and R, without bounds."""
     match formula:
         case f.Eventually(_, ahead) | f.Globally(_, ahead) if ahead != f.EVER:
             return False
@@ -59,7 +59,7 @@ def is_next_free(formula: Formula) -> bool:
 
 
 def next_free(obligation: Obligation) -> Formula | None:
-    """The formula on infinite traces without X; None where the demand counts ticks."""
+    """The formula on infinite traces without X; None if the demand counts ticks."""
     if Trait.STEPS in TRAITS[obligation.demand.kind]:
         return None
     return _Interval(obligation.scope, obligation.mode).everywhere(obligation)
@@ -76,11 +76,11 @@ def is_proved(scope: ScopeKind | None, condition: ConditionKind | None, kind: Ki
 
 
 def unbounded(obligation: Obligation) -> Formula | None:
-    """`within n` without its n: the response, or the end of the interval, at some time.
+    """The formula of `within n` without n: the response, or the end of the interval, at some time.
 
-    `within` is satisfied by an interval that ends too soon, so that `eventually`, which is not,
-    would be stronger where intervals end. None for all other demands, and for the `only` scopes,
-    where a demand within a bound is one that is not met for that long.
+    An interval that ends too soon satisfies `within` but not `eventually`, which would be stronger
+    if intervals end. None for all other demands, and for the `only` scopes, where a demand within a
+    bound means that the response is missed for that long.
     """
     scope = obligation.scope
     if not _has_deadline(obligation.demand.kind) or (scope is not None and scope.negates):
@@ -99,10 +99,10 @@ def _has_deadline(kind: Kind) -> bool:
 
 @cache
 def is_weaker(scope: ScopeKind | None, condition: ConditionKind | None) -> bool:
-    """Whether Spot finds the unbounded shape to be what remains of `within n` for any n.
+    """Whether Spot proves the unbounded shape equal to `within n` without its bound.
 
-    The bounds of the formula stand under no negation, so that it implies itself without them,
-    whatever n is; and that is what the shape is equal to.
+    The bounds of the formula are under no negation, so the formula implies its unbounded form for
+    any n; and the shape is equal to that form.
     """
     from compiler.logic.spot import equivalent
 
@@ -118,10 +118,10 @@ def _without_bounds(formula: Formula) -> Formula:
 
 
 def never_begins(obligation: Obligation) -> Formula | None:
-    """That the sentence never demands anything: no interval has a trigger.
+    """The formula that the sentence never demands anything: no interval has a trigger.
 
-    Without a condition: that no interval begins; where one begins at the start of every trace,
-    that its mode never comes. None where neither scope nor condition says when.
+    Without a condition, it says that no interval begins; if an interval begins at the start of
+    every trace, that its mode never comes. None if the sentence has neither scope nor condition.
     """
     m, c = obligation.mode, obligation.trigger
     waits = obligation.condition is not None
@@ -146,7 +146,7 @@ def never_begins(obligation: Obligation) -> Formula | None:
 def _shape(
     scope: ScopeKind | None, condition: ConditionKind | None, kind: Kind, ticks: int = 0
 ) -> Obligation:
-    """A sentence about plain propositions."""
+    """The obligation of a sentence over plain propositions."""
     m, c, r, q = map(f.Atom, ("m", "c", "r", "q"))
     return Obligation(
         scope,
@@ -158,21 +158,21 @@ def _shape(
 
 
 class _Interval:
-    """An interval of the scope, from any tick inside of it on.
+    """An interval of the scope, seen from any tick inside of it.
 
-    `inside` is true at its ticks; where it is None, the interval has no end, or (only after) it
-    ends behind the first run of the mode.
+    `inside` is true at the ticks of the interval. If it is None, the interval has no end, or (only
+    after) it ends after the first run of the mode.
     """
 
     def __init__(self, scope: ScopeKind | None, mode: Formula) -> None:
         self.scope = scope
         self.m = mode
         self.last = mode if scope in (ScopeKind.IN, ScopeKind.ONLY_AFTER) else not_(mode)
-        """What is true where the interval may end, and false right behind it."""
+        """A formula that is true where the interval may end, and false right after it."""
 
     @property
     def outside(self) -> Formula:
-        """False at each tick of the interval, and true behind its end."""
+        """A formula that is false at each tick of the interval, and true after its end."""
         return FALSE if ends_with_run(self.scope) else not_(self.last)
 
     def release(self, frees: Formula, x: Formula) -> Formula:
@@ -195,11 +195,11 @@ class _Interval:
         return until(and_(before, g), or_(and_(before, h), and_(self.m, here)))
 
     def throughout(self, x: Formula) -> Formula:
-        """X from here on, inside."""
+        """X from the present tick on, inside."""
         return self.release(FALSE, x)
 
     def everywhere(self, obligation: Obligation, demanded: Formula | None = None) -> Formula:
-        """The obligation in all intervals of the scope, seen from the first tick."""
+        """The obligation in all intervals of the scope, from the first tick of the trace."""
         m = self.m
         first, always = self._enforced(obligation, demanded)
         kept = and_(first, self.throughout(always))
@@ -221,7 +221,7 @@ class _Interval:
     def _enforced(
         self, obligation: Obligation, demanded: Formula | None
     ) -> tuple[Formula, Formula]:
-        """What holds at the first tick of an interval, and what holds at all of its ticks."""
+        """The formulas for the first tick of an interval, and for all of its ticks."""
         demand = demanded if demanded is not None else self._demanded(obligation.demand)
         c = obligation.trigger
         if obligation.condition is None:
@@ -232,7 +232,7 @@ class _Interval:
         return given, or_(c, self.release(c, given))
 
     def _demanded(self, demand: Demand) -> Formula:
-        """The demand at a trigger, here and now."""
+        """The demand at a trigger at the present tick."""
         r, q = demand.response, demand.stop
         match demand.kind:
             case Kind.IMMEDIATELY:

@@ -1,9 +1,9 @@
-"""The automaton of a sentence with its expressions on the edges, for tools and for pictures.
+"""The reference automaton of a sentence with its expressions on the edges.
 
-States that decide become one each: `violated`, from which nothing satisfies the sentence, and
-`satisfied`, from which nothing violates it. So a run enters them at the first tick that decides.
-Source of the verdicts: Bauer, Leucker, Schallhart, Runtime verification for LTL and TLTL, TOSEM
-20 (2011).
+Deciding states are merged: into `violated`, from which nothing satisfies the sentence, and
+`satisfied`, from which nothing violates it. A run enters them at the first tick that decides.
+Source of the verdicts: Bauer, Leucker, Schallhart, Runtime verification for LTL and TLTL, TOSEM 20
+(2011).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from functools import lru_cache
 from typing import assert_never
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import occurring, parts
+from compiler.formalization.letters import parts, possible_letters
 from compiler.formalization.obligation import Kind, obligation
 from compiler.formalization.reference import (
     BROKEN,
@@ -33,25 +33,25 @@ from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import ScopeKind
 
 MOST_STATES = 100_000
-"""A larger automaton is not written: no tool would read it."""
+"""Maximum number of states of a file; tools cannot read larger automata."""
 PLACES = ("mode", "condition", "response", "stop")
-"""The names of the places of a letter."""
+"""The names of the positions of a letter."""
 
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """Deterministic, and complete over the letters that occur; the start comes first."""
+    """A deterministic automaton, complete over the possible letters, initial state first."""
 
     template: Template
     inputs: Mapping[int, f.Formula]
-    """The expressions that the sentence has, by their place in a letter."""
+    """The expressions of the sentence, by their position in a letter."""
     letters: tuple[Letter, ...]
-    """All letters that can occur, and perhaps some that no valuation of the propositions has."""
+    """All possible letters, and perhaps some that no valuation of the propositions has."""
     states: tuple[State, ...]
-    """Those that have not decided."""
+    """The states that have not decided."""
     moves: tuple[tuple[int, ...], ...]
-    """For each of these states and each letter: the index of the next state, which may be one of
-    the two below."""
+    """For each of these states and each letter: the index of the next state, which may be
+    `violated` or `satisfied`."""
     start: int
 
     @property
@@ -65,7 +65,7 @@ class Chart:
         return len(self.states) + 1
 
     def accepts(self, index: int) -> bool:
-        """Büchi acceptance: an infinite run satisfies the sentence by such states for ever."""
+        """Whether the state accepts: an infinite run that visits such states for ever satisfies."""
         if index >= len(self.states):
             return index == self.satisfied
         return accepting(self.template, self.states[index])
@@ -75,12 +75,12 @@ class Chart:
         return index in {self.start, *(after for row in self.moves for after in row)}
 
     def guard(self, letters: Iterable[Letter]) -> list[Term]:
-        """The letters as conjunctions over the places of `inputs`; an empty one is true."""
+        """The letters as conjunctions over the positions of `inputs`; the empty one is true."""
         chosen = set(letters)
         places = tuple(self.inputs)
 
-        def vectors(some: Iterable[Letter]) -> list[tuple[bool, ...]]:
-            return sorted(tuple(letter[place] for place in places) for letter in some)
+        def vectors(chosen_letters: Iterable[Letter]) -> list[tuple[bool, ...]]:
+            return sorted(tuple(letter[place] for place in places) for letter in chosen_letters)
 
         terms = cover(vectors(chosen), vectors(set(self.letters) - chosen))
         return [{places[i]: value for i, value in term.items()} for term in terms]
@@ -118,7 +118,7 @@ def explored(requirement: FormalizedRequirement) -> Automaton:
         TooManyStatesError: it has more than `MOST_STATES`.
     """
     kind = template(requirement.sentence, requirement.ticks or 0)
-    return _cached(kind, occurring(requirement.sentence))
+    return _cached(kind, possible_letters(requirement.sentence))
 
 
 @lru_cache(maxsize=4)  # a requirement is asked whether it is refused before it is emitted
@@ -133,12 +133,12 @@ def kind(requirement: FormalizedRequirement) -> Kind:
 
 
 def words(demanded: Kind, template: Template, state: State) -> tuple[str, ...]:
-    """The memory of a state in words; its counter comes last, but before `condition was true`.
+    """The description of a state; its counter comes last, before `condition was true`.
 
     Args:
         demanded: the `kind` of the requirement.
-        template: of its sentence.
-        state: one that has not decided.
+        template: the template of its sentence.
+        state: a state that has not decided.
     """
     enforced = state.phase in (Phase.INSIDE, Phase.LAST_RUN)
     phrases = []
@@ -155,7 +155,7 @@ def words(demanded: Kind, template: Template, state: State) -> tuple[str, ...]:
 
 
 START = "start"
-"""The name of the state before the first tick, where no other tick leads to it."""
+"""The name of the state before the first tick, if no tick leads to it."""
 _FROM_THE_START = (None, ScopeKind.BEFORE, ScopeKind.ONLY_AFTER)
 """The scopes in which no tick lies before an interval."""
 _PHASES: Mapping[Phase, str] = {

@@ -19,17 +19,18 @@ from compiler.logic import printing
 from compiler.logic.implicants import Term
 from compiler.targets.automata.chart import PLACES, chart
 from compiler.targets.automata.expressibility import refusal
-from compiler.targets.automata.folding import OPEN, SATISFIED, VIOLATED, Edge, Node, folded
-from compiler.targets.comparison_names import comparison_names, notes, renamed
+from compiler.targets.automata.folding import OPEN, SATISFIED, VIOLATED, Edge, Node, folded_chart
+from compiler.targets.comparison_names import comparison_names, notes, with_renamed_atoms
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.meaning import meaning
 from fretish.reading.recursion import with_recursion_limit
 
 _LONGEST = 32
-"""Characters of an expression on an edge; a longer one gets a name, and stands below."""
+"""Maximum number of characters of an expression on an edge; a longer one gets a name, and is
+printed below."""
 _WIDTH = 76
-"""Characters of a line below the picture."""
+"""Width of a line below the picture."""
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
@@ -49,10 +50,10 @@ def emit(
 
 
 def _text(requirement: FormalizedRequirement) -> str:
-    picture = folded(requirement)
+    picture = folded_chart(requirement)
     automaton = chart(requirement)
     names = comparison_names(requirement)
-    inputs = {i: renamed(part, names) for i, part in automaton.inputs.items()}
+    inputs = {i: with_renamed_atoms(part, names) for i, part in automaton.inputs.items()}
     guard = automaton.guard
     long = {i: part for i, part in inputs.items() if len(printing.readable(part)) > _LONGEST}
     spelt = {i: f.Atom(PLACES[i]) if i in long else part for i, part in inputs.items()}
@@ -123,7 +124,7 @@ def _expression(terms: Sequence[Term], spelt: Mapping[int, f.Formula]) -> str:
 
 
 def _lines(texts: Iterable[str]) -> str:
-    """A label in double quotes, one text a line; none of it is a command of Graphviz."""
+    """A label in double quotes, one text a line; Graphviz interprets no escape in it."""
     escaped = (text.replace("\\", "\\\\").replace('"', '\\"') for text in texts)
     return '"' + r"\n".join(escaped) + '"'
 

@@ -1,4 +1,4 @@
-"""Sentences that no automaton of a target can tell, each with its diagnostic."""
+"""Refusals of sentences that have no automaton, or one that is too large."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 
 def refusal(requirement: FormalizedRequirement, target: str) -> Diagnostic | None:
-    """F601 or F670 where the sentence has no automaton, or none that is small enough."""
+    """F601 or F670 if the sentence has no automaton, or one that is too large."""
     return no_automaton(requirement, target) or _too_large(requirement)
 
 
 def no_automaton(requirement: FormalizedRequirement, target: str) -> Diagnostic | None:
-    """F601 for a sentence that says more than a counter automaton can tell."""
+    """F601 for a sentence that a counter automaton cannot express."""
     if requirement.pctl is not None:
         return not_expressible(
             target, requirement, "the probability", "leave it out, or use `--emit prism`"
@@ -27,7 +27,7 @@ def no_automaton(requirement: FormalizedRequirement, target: str) -> Diagnostic 
             target,
             requirement,
             f"the predicate `{predicate}`",
-            "say it by a condition or a timing, or check it with `--emit monitor`",
+            "state it by a condition or a timing, or check it with `--emit monitor`",
         )
     return None
 

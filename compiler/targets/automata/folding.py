@@ -1,7 +1,7 @@
-"""A chart that stays small: states that differ in their counter only are one node.
+"""Folded charts: states that differ only in their counter are one node.
 
-A bound of 1 000 ticks is one node `open: k = 1..1000` with conditions on k, and changes of k, on
-its edges: readable, and nothing is lost.
+A bound of 1 000 ticks becomes one node `open: k = 1..1000`, with conditions on k and changes of k
+on its edges. The folded chart is readable and exact.
 """
 
 from __future__ import annotations
@@ -16,46 +16,46 @@ from compiler.targets.automata.chart import START, Chart, chart, kind, words
 
 VIOLATED, SATISFIED = "violated", "satisfied"
 OPEN = ("open", "open twice", "owed")
-"""The words of nodes that count."""
+"""The names of nodes that count."""
 
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """States that differ in their counter only."""
+    """States that differ only in their counter."""
 
     name: str
     words: tuple[str, ...]
     counts: tuple[int, int] | None
-    """The least and the greatest k; None where nothing is counted."""
+    """The least and the greatest k; None if nothing is counted."""
     accepts: bool
-    """A run may stay here for ever."""
+    """Whether a run that stays in the node for ever is accepted."""
 
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """From all states of a node for which the condition holds."""
+    """An edge from all states of a node for which the condition holds."""
 
     source: str
     target: str
     letters: frozenset[Letter]
-    """Of mode, condition, response and stop condition."""
+    """The letters, each of mode, condition, response and stop condition."""
     condition: str = ""
-    """On k, or on triggers of the past; empty: always."""
+    """The condition on k, or on past triggers; empty: none."""
     change: str = ""
-    """Of k; empty where the target counts nothing, or k stays."""
+    """The change of k; empty if the target counts nothing, or k stays."""
 
 
 @dataclass(frozen=True, slots=True)
-class Folded:
-    """Deterministic, as the chart is; what has decided has no edges."""
+class FoldedChart:
+    """A deterministic folded chart; deciding nodes have no edges."""
 
     nodes: tuple[Node, ...]
     edges: tuple[Edge, ...]
     start: str
 
 
-def folded(requirement: FormalizedRequirement) -> Folded:
-    """The chart of a requirement, folded; a start that does as another node does is that node.
+def folded_chart(requirement: FormalizedRequirement) -> FoldedChart:
+    """The folded chart of a requirement; an initial node that equals another one is merged with it.
 
     Raises:
         TooManyStatesError: the automaton has more than `chart.MOST_STATES` states.
@@ -92,7 +92,7 @@ class _Folding:
             count = (count > 0) - (count < 0)
         return state.phase, state.held, count
 
-    def result(self) -> Folded:
+    def result(self) -> FoldedChart:
         edges = [
             edge
             for members in self.groups.values()
@@ -102,10 +102,10 @@ class _Folding:
         for index, name in ((self.chart.violated, VIOLATED), (self.chart.satisfied, SATISFIED)):
             if self.chart.has(index):
                 nodes.append(Node(name, (name,), None, name == SATISFIED))
-        return Folded(tuple(nodes), tuple(edges), self.names[self.chart.start])
+        return FoldedChart(tuple(nodes), tuple(edges), self.names[self.chart.start])
 
     def _count(self, index: int) -> int | None:
-        """The counter of a state: k ticks, or the register of its triggers."""
+        """The counter of a state: k ticks, or the register of triggers."""
         if index >= len(self.chart.states):
             return None
         count = self.chart.states[index].counted
@@ -132,7 +132,7 @@ class _Folding:
         )
 
     def _edges(self, source: str, members: Sequence[int]) -> Iterator[Edge]:
-        """Letters that lead to the same node, under the same condition, are one edge."""
+        """The edges of a node; letters with the same target and condition share an edge."""
         edges: dict[tuple[str, str, str], list[Letter]] = {}
         for place, letter in enumerate(self.chart.letters):
             targets: dict[str, list[tuple[int, int]]] = {}
@@ -149,17 +149,19 @@ class _Folding:
     def _condition(self, chosen: Sequence[int], members: Sequence[int]) -> str:
         if len(chosen) == len(members):
             return ""
-        some = sorted(k for index in chosen if (k := self._count(index)) is not None)
+        counts = sorted(k for index in chosen if (k := self._count(index)) is not None)
         every = sorted(k for index in members if (k := self._count(index)) is not None)
         if self.registers:
-            due = {k >> self.ticks & 1 for k in some}
+            due = {k >> self.ticks & 1 for k in counts}
             assert len(due) == 1, "the trigger of n + 1 ticks ago decides"
             word = "an" if due == {1} else "no"
             return f"{word} unanswered trigger {_ago(self.ticks + 1)}"
-        assert some in (every[: len(some)], every[-len(some) :]), "one end of the count decides"
-        if len(some) == 1:
-            return f"k = {some[0]}"
-        return f"k <= {some[-1]}" if some[0] == every[0] else f"k >= {some[0]}"
+        assert counts in (every[: len(counts)], every[-len(counts) :]), (
+            "one end of the count decides"
+        )
+        if len(counts) == 1:
+            return f"k = {counts[0]}"
+        return f"k <= {counts[-1]}" if counts[0] == every[0] else f"k >= {counts[0]}"
 
     def _change(self, moves: Iterable[tuple[int, int]]) -> str:
         if self.registers:
@@ -180,8 +182,8 @@ def _ago(ticks: int) -> str:
     return "1 tick ago" if ticks == 1 else f"{ticks} ticks ago"
 
 
-def _without_twin(picture: Folded) -> Folded:
-    """The picture without its start, where another node accepts alike and has the same edges."""
+def _without_twin(picture: FoldedChart) -> FoldedChart:
+    """The chart without its initial node if another node has equal acceptance and edges."""
     by_name = {node.name: node for node in picture.nodes}
     start = by_name[picture.start]
     if start.words != (START,):
@@ -191,9 +193,9 @@ def _without_twin(picture: Folded) -> Folded:
         if same and _leaving(picture, start.name) == _leaving(picture, node.name):
             nodes = tuple(other for other in picture.nodes if other is not start)
             edges = tuple(edge for edge in picture.edges if edge.source != start.name)
-            return Folded(nodes, edges, node.name)
+            return FoldedChart(nodes, edges, node.name)
     return picture
 
 
-def _leaving(picture: Folded, name: str) -> set[Edge]:
+def _leaving(picture: FoldedChart, name: str) -> set[Edge]:
     return {replace(edge, source="") for edge in picture.edges if edge.source == name}

@@ -1,10 +1,10 @@
 """`--emit hoa`: the infinite traces of a requirement, as an automaton in the HOA format.
 
-The automaton is that of the definition (`compiler.formalization.reference`), never a translated
-formula: a bound of n ticks is some n states. It is deterministic and complete; a run that is lost
-ends in a sink that does not accept. What counts is Büchi acceptance, which is enough for every
-sentence: a demand without a deadline is one thing that has to come again and again. Source: Babiak
-et al., The Hanoi Omega-Automata Format, CAV 2015, and its specification, version 1.
+The automaton is the reference automaton (`compiler.formalization.reference`), never a translated
+formula: a bound of n ticks takes about n states. It is deterministic and complete; a violated run
+ends in a rejecting sink. Büchi acceptance is enough for every sentence: a demand without a deadline
+requires one event again and again. Source: Babiak et al., The Hanoi Omega-Automata Format, CAV
+2015, and its specification, version 1.
 """
 
 from __future__ import annotations
@@ -70,12 +70,12 @@ def _text(requirement: FormalizedRequirement) -> str:
 
 
 def _comment(text: str) -> str:
-    """Without the marks that begin and end comments, which nest."""
+    """The text without the delimiters of HOA comments, which nest."""
     return " ".join(text.split()).replace("*/", "* /").replace("/*", "/ *")
 
 
 def _numbers(automaton: Chart) -> dict[int, int]:
-    """The states that can be reached, numbered without gaps."""
+    """The reachable states, numbered without gaps."""
     deciding = [i for i in (automaton.violated, automaton.satisfied) if automaton.has(i)]
     return {old: new for new, old in enumerate([*range(len(automaton.states)), *deciding])}
 
@@ -83,7 +83,7 @@ def _numbers(automaton: Chart) -> dict[int, int]:
 def _states(
     requirement: FormalizedRequirement, automaton: Chart, numbers: Mapping[int, int]
 ) -> Iterator[tuple[int, str, bool, list[tuple[str, int]]]]:
-    """Number, name, whether it accepts, and edges of each state."""
+    """The number, name, acceptance and edges of each state."""
     demanded = kind(requirement)
     labels: dict[tuple[Letter, ...], str] = {}
     for index, row in enumerate(automaton.moves):
@@ -105,7 +105,7 @@ def _states(
 
 
 def _label(terms: Iterable[Term]) -> str:
-    """Over the aliases: `@condition & !@response | @stop`."""
+    """A label over the aliases: `@condition & !@response | @stop`."""
     return " | ".join(
         " & ".join(f"{'' if value else '!'}@{PLACES[i]}" for i, value in sorted(term.items()))
         or "t"
@@ -116,8 +116,8 @@ def _label(terms: Iterable[Term]) -> str:
 class _Aliases:
     """Definitions of the expressions, over the numbers of propositions.
 
-    HOA has neither implication nor equivalence. What these would need twice gets an alias of its
-    own, so that a text is as long as its formula.
+    HOA has neither implication nor equivalence. A sub-formula that would be needed twice gets an
+    alias, so that a text is as long as its formula.
     """
 
     def __init__(self, atoms: Sequence[str]) -> None:
@@ -125,7 +125,7 @@ class _Aliases:
         self._found: dict[str, str] = {}
 
     def of(self, inputs: Mapping[int, f.Formula]) -> Mapping[str, str]:
-        """The text of each alias by its name; what it uses comes first."""
+        """The text of each alias by its name, after the aliases that it uses."""
         for place, part in inputs.items():
             text = self._text(part)
             self._found[PLACES[place]] = text
@@ -159,7 +159,7 @@ class _Aliases:
         return text if isinstance(formula, f.Const | f.Atom | f.Not) else f"({text})"
 
     def _short(self, formula: f.Formula) -> str:
-        """The text of an atom or a constant, or else an alias for it."""
+        """The text of an atom or a constant, or an alias for another formula."""
         text = self._text(formula)
         if isinstance(formula, f.Const | f.Atom):
             return text

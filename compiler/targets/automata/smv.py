@@ -1,9 +1,9 @@
 """`--emit smv`: the counter automaton of a requirement as a module for NuSMV and nuXmv.
 
-The module follows the definition of the timing, with one bounded integer, whatever the bound; the
-file has the formulas too, and properties that link the two and must be true. So the answers of a
-checker to these links are evidence about formulas and automaton alike.
-Source of the language: Cavada et al., NuSMV 2.6 User Manual, chapters 2 and 3.
+The module follows the definition of the timing, with one bounded integer for any bound. The file
+also has the formulas, and properties that link them with the module and must be true. So a
+checker's answers to these properties are evidence about formulas and automaton. Source of the
+language: Cavada et al., NuSMV 2.6 User Manual, chapters 2 and 3.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import PurePosixPath
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import atoms_of, excluded
+from compiler.formalization.letters import atoms_of, impossible_combinations
 from compiler.formalization.obligation import TRAITS, Obligation, Trait, obligation
 from compiler.formalization.record import wording
 from compiler.logic import printing
@@ -74,7 +74,9 @@ def _text(requirement: FormalizedRequirement) -> str:
         id=requirement.id,
         sentence=wording(requirement.entry),
         variables=[(names[name], meanings.get(name, name)) for name in names],
-        impossible=[_together(each, names) for each in excluded(requirement)],
+        impossible=[
+            _together(exclusion, names) for exclusion in impossible_combinations(requirement)
+        ],
         instance=instance,
         module_name=monitor_name,
         module=module,
@@ -85,13 +87,13 @@ def _text(requirement: FormalizedRequirement) -> str:
 
 
 def _modules(requirement: FormalizedRequirement) -> tuple[str, str]:
-    """The name of the module, and that of its instance."""
+    """The name of the module, and the name of its instance."""
     name = f"monitor_{identifier(requirement)}"
     return name, f"the_{name}"
 
 
 def _names(requirement: FormalizedRequirement) -> Mapping[str, str]:
-    """Of all propositions; formulas may lack some: `only after m` drops m if it demands nothing."""
+    """The names of all propositions; formulas may lack some, as `only after m` may lack m."""
     propositions = (*requirement.propositions, *atoms_of(requirement.sentence))
     return legal_names(
         propositions, SMV | {*_modules(requirement)}, names=comparison_names(requirement)
@@ -111,7 +113,7 @@ def _specs(
     """The formulas, and the properties that link them to the module.
 
     Args:
-        requirement: what is formalized.
+        requirement: the requirement.
         demanded: the obligation that the module implements.
         names: the prefix of the properties' names, and the name of the module's instance.
         dialect: with the names of the propositions.
@@ -130,7 +132,7 @@ def _specs(
         Spec(
             f"{prefix}_pt_is_monitor",
             f"(G ({pt} <-> {ends}))",
-            "expected true: PT tells of every finite trace that ends here what the module tells",
+            "expected true: PT has the verdict of the module on every finite trace that ends here",
         ),
     ]
     if not unmet:

@@ -1,6 +1,6 @@
 """The counter automaton of a sentence as a module of NuSMV, symbol by symbol.
 
-It mirrors `compiler.formalization.reference`: the phase of the scope, the trigger of the
+The module mirrors `compiler.formalization.reference`: the phase of the scope, the trigger of the
 condition, the count of the timing. A state is the one before a tick; `violated` includes the tick
 itself.
 """
@@ -15,7 +15,7 @@ from compiler.formalization.obligation import TRAITS, Kind, Obligation, Trait
 from fretish.syntax import ConditionKind, ScopeKind
 
 Cases = tuple[tuple[str, str], ...]
-"""(condition, value), the first that holds counts; the last condition is TRUE."""
+"""Pairs (condition, value), of which the first true one counts; the last condition is TRUE."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,11 +105,12 @@ _PHASES: Mapping[ScopeKind | None, tuple[str, Cases]] = {
         ),
     ),
 }
-"""Phases beside `outside` and `inside`; and that of a tick, from that of the tick before."""
+"""The phases besides `outside` and `inside`; and the phase of a tick, from that of the tick
+before."""
 
 
 def _is_everywhere(obligation: Obligation) -> bool:
-    """Whether it needs no phase: not even the first tick differs."""
+    """Whether the module needs no phase, because not even the first tick differs."""
     return obligation.scope is None and obligation.condition is not None
 
 
@@ -195,12 +196,12 @@ _DUE = Definition("due", _plain("triggered | (enforced & open)"), "a demand is o
 
 
 def _interval_over(obligation: Obligation) -> str:
-    """The interval has ended, with the tick before, and a demand is open."""
+    """Expression: the interval ended with the tick before, and a demand is open."""
     return "FALSE" if obligation.scope is None else "!enforced & open"
 
 
 def _flag(carry: str | None, comment: str = "", *, broken: str, due: bool = False) -> _Counter:
-    """One bit: whether a demand is open; `carry` is its value for the next tick."""
+    """The counter of one bit, whether a demand is open; `carry` is its value for the next tick."""
     broken_at = Definition("broken", _plain(broken), "at this tick")
     opened = (
         () if carry is None else (Variable("open", "boolean", "FALSE", _plain(carry), comment),)
@@ -237,7 +238,7 @@ def _within(n: int) -> _Counter:
     count = _count(
         n,
         (("!due | response", "0"), (f"count = {n}", str(n)), ("TRUE", "count + 1")),
-        "ticks that the oldest open trigger has seen",
+        "ticks since the oldest open trigger, its tick included",
     )
     broken = Definition("broken", _plain(f"due & !response & count = {n}"), "the deadline")
     return _Counter((count,), (_DUE_BY_COUNT, broken))
@@ -252,7 +253,7 @@ def _for(n: int) -> _Counter:
             ("count > 0", "count - 1"),
             ("TRUE", "0"),
         ),
-        "ticks that the newest trigger is still owed",
+        "ticks for which the newest trigger still demands the response",
     )
     return _Counter((count,), (_DUE_BY_COUNT, Definition("broken", _plain("due & !response"))))
 
@@ -261,7 +262,7 @@ def _after(n: int) -> _Counter:
     count = _count(
         n + 1,
         ((f"!due | count = {n + 1}", "0"), ("TRUE", "count + 1")),
-        "ticks that the oldest open trigger has seen",
+        "ticks since the oldest open trigger, its tick included",
     )
     clash = Variable(
         "clash",
@@ -278,7 +279,7 @@ def _after(n: int) -> _Counter:
 
 
 def _not_after(n: int) -> _Counter:
-    """With one trigger an interval, a count gives its time."""
+    """The counter with one trigger for each interval, whose time is a count."""
     count = _count(
         n + 1,
         ((f"!due | response | count = {n + 1}", "0"), ("TRUE", "count + 1")),
@@ -289,7 +290,7 @@ def _not_after(n: int) -> _Counter:
 
 
 def _register(n: int) -> _Counter:
-    """Each trigger forbids the response at a tick of its own, so each is remembered."""
+    """The register of triggers, each of which forbids the response at a different tick."""
     carry = "enforced & !response"
     ago = [
         Variable(

@@ -1,7 +1,7 @@
-"""C that steps a monitor for ever with any inputs, and says what then holds, in ACSL.
+"""A C program that steps a monitor for ever with arbitrary inputs, with assertions in ACSL.
 
-ACSL is the language of annotations that Frama-C reads. The widest ranges of cells are those of the
-program, so an analyzer has to find no invariant: it has to confirm these.
+ACSL is the annotation language of Frama-C. The asserted ranges of cells are those of the program,
+so an analyzer has to confirm invariants, not to find them.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.program.program import Counter
 from compiler.program.rails import Reading, Ring
-from compiler.targets.c.monitor import printed
+from compiler.targets.c.monitor import c_printer
 from compiler.targets.c.printer import Printer
 
 ENTRY = "fretc_driver"
@@ -22,22 +22,23 @@ ENTRY = "fretc_driver"
 
 @dataclass(frozen=True, slots=True)
 class Driver:
-    """The text, and what an analyzer has to know of the monitor."""
+    """The text of the driver, and what an analyzer has to know about the monitor."""
 
     text: str
     words: int
-    """Of the longest ring: so often its first values are set in a loop."""
+    """The number of words of the longest ring, which is the number of iterations of its
+    initialization."""
 
     @property
     def assertions(self) -> tuple[int, ...]:
-        """The lines that have one."""
+        """The lines with an assertion."""
         lines = enumerate(self.text.splitlines(), 1)
         return tuple(number for number, line in lines if "/*@ assert " in line)
 
 
 @dataclass(frozen=True, slots=True)
 class _Range:
-    """Of a cell that is a number."""
+    """The range of a numeric cell."""
 
     name: str
     least: int
@@ -48,12 +49,12 @@ def driver(name: str, base: str, requirements: Sequence[FormalizedRequirement]) 
     """The driver of a monitor.
 
     Args:
-        name: of its header, without the ending.
-        base: what the names of its functions begin with.
-        requirements: in the order of its outcomes.
+        name: the name of the monitor's header, without its extension.
+        base: the prefix of its functions.
+        requirements: the requirements, in the order of outcomes.
     """
-    printer = printed(name, requirements)
-    made, ranges = printer.rail, [*_ranges(printer)]
+    printer = c_printer(name, requirements)
+    program, ranges = printer.rail, [*_ranges(printer)]
     ends = {-1, 0, 1, *(end for cell in ranges for end in (cell.least, cell.most))}
     text = render(
         "c/driver.c.j2",
@@ -62,9 +63,9 @@ def driver(name: str, base: str, requirements: Sequence[FormalizedRequirement]) 
         inputs=[*printer.names.values()],
         ranges=ranges,
         ends=sorted(ends),
-        readings=[_told(each) for each in made.readings],
+        readings=[_told(reading) for reading in program.readings],
     )
-    words = (-(-cell.length // 32) for cell in made.cells if isinstance(cell, Ring))
+    words = (-(-cell.length // 32) for cell in program.cells if isinstance(cell, Ring))
     return Driver(text, max(words, default=0))
 
 

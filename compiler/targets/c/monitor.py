@@ -1,7 +1,7 @@
 """`--emit c`: a monitor for controllers, in C99 that needs no library, no heap and no loop.
 
-It is the program of `--emit monitor`, on two rails at every tick: what holds for certain, and what
-may hold. Its state is a struct; a step takes the same time whatever was unknown, and for any bound.
+It computes the program of `--emit monitor` twice at every tick: the certain and the possible
+values. Its state is a struct; a step takes the same time for any unknown values and any bound.
 """
 
 from __future__ import annotations
@@ -25,28 +25,28 @@ from compiler.signals.functions import Functions, functions
 from compiler.targets.c import signals
 from compiler.targets.c.printer import Printer
 from compiler.targets.comparison_names import comparison_names, in_words
-from compiler.targets.python.monitor import described, module, prefixes_of, refusal, remark
+from compiler.targets.python.monitor import description_of, module, prefixes_of, refusal, remark
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
 _MOST_BITS = 2**23
-"""Of a ring: a mebibyte on each rail."""
+"""Maximum number of bits of a ring: a mebibyte for certain, and one for possible values."""
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """As a monitor in Python; and F601 for bounds beyond what a controller can keep."""
+    """The refusals of a monitor in Python; and F601 for bounds that need too much memory."""
     return refusal(requirement, "C") or too_large(requirement, "C")
 
 
 @with_recursion_limit
 def too_large(requirement: FormalizedRequirement, language: str) -> Diagnostic | None:
-    """F601 where a counter or a ring is beyond what a controller can keep."""
+    """F601 if a counter or a ring needs too much memory."""
     cells = rail(program({requirement.id: requirement.watch}), {requirement.id: "r"}).cells
     if any(isinstance(cell, Counter) and cell.most >= 2**31 for cell in cells):
         what, fix = "a bound of 2^31 ticks or more", "counters have 32 bits: choose a longer tick"
     elif any(isinstance(cell, Ring) and cell.length > _MOST_BITS for cell in cells):
-        what = f"a demand about one time more than {_MOST_BITS} ticks ago"
+        what = f"a demand about a single tick more than {_MOST_BITS} ticks ago"
         fix = "it would keep more than a mebibyte: choose a longer tick"
     else:
         return None
@@ -69,10 +69,10 @@ def emit(
 def _apart(
     requirements: Sequence[FormalizedRequirement],
 ) -> Iterator[tuple[str, str, FormalizedRequirement]]:
-    """The name of the files of each requirement, and what its names begin with.
+    """The name of the files of each requirement, and the prefix of its names.
 
-    `r1_sample_init` is of the signal `init` of R1: names of R1_sample begin with `r1_sample_`, and
-    go on with another `_`, which no name of a signal begins with.
+    `r1_sample_init` belongs to the signal `init` of R1. Names of R1_sample begin with `r1_sample_`
+    and continue with another `_`, with which no name of a signal begins.
     """
     bases = prefixes_of([requirement.id for requirement in requirements])
     for requirement in requirements:
@@ -83,22 +83,22 @@ def _apart(
 
 @dataclass(frozen=True, slots=True)
 class Interface:
-    """What a caller of the monitor of one requirement names."""
+    """The names in the interface of one requirement's monitor."""
 
     file: str
-    """The name of its files, without the ending."""
+    """The name of the files, without extension."""
     base: str
-    """What the names of its types and functions begin with."""
+    """The prefix of types and functions."""
     inputs: Mapping[str, str]
-    """Proposition → the member of the inputs; in their order."""
+    """Proposition → the member of the inputs, in their order."""
     outcome: str
-    """The member of the outcomes."""
+    """The member of the outcomes for the requirement."""
 
 
 def interface(requirements: Sequence[FormalizedRequirement]) -> tuple[Interface, ...]:
-    """Of each requirement, in files of its own as `emit` writes them."""
+    """The interface of each requirement's monitor, in separate files as `emit` writes them."""
     every = [
-        (name, base, printed(name, [requirement]))
+        (name, base, c_printer(name, [requirement]))
         for name, base, requirement in _apart(requirements)
     ]
     return tuple(
@@ -112,9 +112,9 @@ def _files(
     name: str, base: str, requirements: Sequence[FormalizedRequirement]
 ) -> tuple[Artifact, ...]:
     """The header and the source of one monitor for all of the requirements."""
-    printer = printed(name, requirements)
+    printer = c_printer(name, requirements)
     meanings = {
-        each: text for requirement in requirements for each, text in in_words(requirement).items()
+        atom: text for requirement in requirements for atom, text in in_words(requirement).items()
     }
     values = _values(printer) | {"base": base, "header": f"{name}.h"}
     values["title"] = ", ".join(requirement.id for requirement in requirements)
@@ -124,10 +124,10 @@ def _files(
         "c/monitor.h.j2",
         **values,
         guard=signals.guard(name),
-        formalized=[described(requirement) for requirement in requirements],
+        formalized=[description_of(requirement) for requirement in requirements],
         tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         version=__version__,
-        inputs=[{"name": own, "text": meanings.get(each, each)} for each, own in inputs],
+        inputs=[{"name": own, "text": meanings.get(name, name)} for name, own in inputs],
         bytes=2 * printer.bytes,
         operations=_operations(source, len(requirements)),
     )
@@ -139,67 +139,71 @@ def _files(
 
 
 @dataclass(frozen=True, slots=True)
-class Joined:
-    """What a caller of one monitor for all requirements names; all names begin with `monitors`."""
+class JoinedInterface:
+    """The names in the interface of one monitor for all requirements; all begin with `monitors`."""
 
     inputs: Mapping[str, str]
     """Proposition → the member of the inputs."""
     outcomes: tuple[str, ...]
-    """The member of each requirement."""
+    """The member of the outcomes for each requirement."""
     signals: Functions
-    """From samples to the inputs."""
+    """The functions from samples to the inputs."""
 
 
 @with_recursion_limit
-def joined(requirements: Sequence[FormalizedRequirement]) -> Joined:
-    """Of `emit` with `one_file`, for requirements with bindings."""
-    printer = printed("monitors", requirements)
-    found = functions(requirements, printer.names, signals.LANGUAGE, C)
-    assert found is not None, "there are bindings"
-    return Joined(printer.names, tuple(each.prefix for each in printer.rail.readings), found)
+def joined_interface(requirements: Sequence[FormalizedRequirement]) -> JoinedInterface:
+    """The interface of `emit` with `one_file`, for requirements with bindings."""
+    printer = c_printer("monitors", requirements)
+    sample_functions = functions(requirements, printer.names, signals.LANGUAGE, C)
+    assert sample_functions is not None, "there are bindings"
+    return JoinedInterface(
+        printer.names, tuple(reading.prefix for reading in printer.rail.readings), sample_functions
+    )
 
 
-def printed(name: str, requirements: Sequence[FormalizedRequirement]) -> Printer:
-    """The words of C for a monitor of all of the requirements.
+def c_printer(name: str, requirements: Sequence[FormalizedRequirement]) -> Printer:
+    """The printer of C for a monitor of all requirements.
 
     Args:
-        name: of its header, without the ending.
-        requirements: none of them refused.
+        name: the name of its header, without extension.
+        requirements: requirements that are not refused.
     """
     prefixes = prefixes_of([requirement.id for requirement in requirements])
     members = legal_names(prefixes, C | {signals.guard(name)}, names=prefixes)
-    made = rail(
+    cells = rail(
         program({requirement.id: requirement.watch for requirement in requirements}), members
     )
-    return Printer.of(made, _names(name, requirements))
+    return Printer.of(cells, _names(name, requirements))
 
 
 def _names(name: str, requirements: Sequence[FormalizedRequirement]) -> Mapping[str, str]:
     """Proposition → the member of the inputs."""
-    propositions = (each for requirement in requirements for each in requirement.watched)
+    propositions = (
+        proposition for requirement in requirements for proposition in requirement.watched
+    )
     spoken = {
-        each: word
+        proposition: word
         for requirement in requirements
-        for each, word in comparison_names(requirement).items()
+        for proposition, word in comparison_names(requirement).items()
     }
     return legal_names(propositions, C | {signals.guard(name)}, names=spoken)
 
 
 def _values(printer: Printer) -> dict[str, Any]:
-    """What both templates place."""
-    made = printer.rail
+    """The variables of both templates."""
+    program = printer.rail
     return {
         "members": printer.members(),
         "literals": [*printer.literals()],
         "rings": [
             {"name": cell.name, "words": -(-cell.length // 32)}
-            for cell in made.cells
+            for cell in program.cells
             if isinstance(cell, Ring)
         ],
         "stages": [
-            {"comment": each.comment, "lines": [*printer.lines(each)]} for each in made.stages
+            {"comment": stage.comment, "lines": [*printer.lines(stage)]} for stage in program.stages
         ],
-        "readings": [_reading(each, printer) for each in made.readings],
+        "readings": [_reading(reading, printer) for reading in program.readings],
     }
 
 
@@ -218,11 +222,11 @@ _COMMENT = re.compile(r"/\*.*?\*/|->")
 
 
 def _operations(source: str, requirements: int) -> int:
-    """The operators of all statements of a step: an upper bound, as none is executed twice.
+    """The number of operators in all statements of a step, which bounds the executed ones.
 
     Args:
         source: the text of the C file.
-        requirements: how many there are.
+        requirements: their number.
     """
     text = _COMMENT.sub("", source)
     _, advance, judge, step = _FUNCTION.split(text)

@@ -1,4 +1,4 @@
-"""The rail of a monitor as C99: members, expressions, statements."""
+"""A monitor's program as C99: members, expressions, statements."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from compiler.program.values import Constant, Literal, Value, Variable
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A member of the struct of a rail."""
+    """A member of the struct of the state."""
 
     declaration: str
     comment: str
@@ -23,35 +23,35 @@ class Member:
 
 
 class Printer(Statements):
-    """C's words for a rail: `rail` points to its cells, `now` to its literals."""
+    """The syntax of C: `rail` points to the cells, `now` to the literals."""
 
     __slots__ = ()
     CELLS, LITERALS, LOCAL, IF = "rail->", "now->", "const bool", ("(", ")")
 
     def members(self) -> tuple[Member, ...]:
-        """The widest first, so that no space is lost between them."""
+        """The members, the widest first, so that there is no padding between them."""
         sizes = {Ring: 0, Counter: 1, Flag: 2}
         cells = sorted(self.rail.cells, key=lambda cell: sizes[type(cell)])
         return tuple(member for cell in cells for member in _members(cell))
 
     @property
     def bytes(self) -> int:
-        """The size of the struct, where a `bool` has one byte and nothing is aligned beyond 4."""
+        """The size of the struct, if a `bool` has one byte and alignment is at most 4."""
         flags = sum(isinstance(cell, Flag) for cell in self.rail.cells)
         unused = -flags % 4 if flags < len(self.rail.cells) else 0
         return sum(map(_bytes, self.rail.cells)) + unused or 1
 
     def negated(self, value: Value) -> str:
-        """With parentheses around whatever has an operator."""
+        """The negation, with parentheses around any operator."""
         atomic = isinstance(value, Constant | Literal | Variable)
         return f"!{self.value(value)}" if atomic else f"!({self.value(value)})"
 
     def capped(self, counter: str, most: int) -> str:
-        """A counter one tick later, where it stays at the most."""
+        """The counter one tick later, limited to `most`."""
         return f"({counter} < {most}) ? ({counter} + 1) : {most}"
 
     def delay(self, name: str, ring: Ring, value: str) -> Iterator[str]:
-        """One bit of a ring is read and written; its place goes round."""
+        """Statements that read and overwrite one bit of a ring, and advance its position."""
         at, word, bit = f"rail->{ring.name}_at", f"{name}_word", f"{name}_bit"
         yield f"uint32_t *const {word} = &rail->{ring.name}[{at} / 32u];"
         yield f"const uint32_t {bit} = UINT32_C(1) << ({at} % 32u);"
@@ -60,9 +60,9 @@ class Printer(Statements):
         yield f"{at} = ({at} == {ring.length - 1}u) ? 0u : ({at} + 1u);"
 
     def left(self, deadline: Deadline | None, is_open: Value) -> str:
-        """The ticks to a deadline; -1: there is none ahead.
+        """The ticks left to a deadline; -1: no deadline is ahead.
 
-        A counter that requirements share goes on behind the deadlines of some of them.
+        A counter that requirements share may pass the deadlines of some of them.
         """
         if deadline is None:
             return "-1"

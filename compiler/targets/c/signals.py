@@ -1,6 +1,6 @@
-"""Beside a monitor in C: from typed samples to the truth of its propositions, as an audit has it.
+"""C functions from typed samples to the inputs of a monitor, as an audit computes them.
 
-Functions without memory; the header has the numbers that they compute with, in exact C99.
+The functions have no state. The header has the constants, in exact C99.
 """
 
 from __future__ import annotations
@@ -26,20 +26,20 @@ def files(
     names: Mapping[str, str],
     reserved: Container[str],
 ) -> tuple[Artifact, ...]:
-    """The header and the source beside the monitor `name`; none where no bindings are at hand.
+    """The header and the source beside the monitor `name`; empty without bindings.
 
     Args:
-        name: of the monitor's files, without their ending.
-        base: what the monitor's functions begin with.
-        requirements: those of the monitor.
+        name: the name of the monitor's files, without extension.
+        base: the prefix of the monitor's functions.
+        requirements: the requirements of the monitor.
         names: the monitor's input of each proposition.
-        reserved: what no name may be.
+        reserved: reserved names.
     """
-    found = functions(requirements, names, LANGUAGE, reserved)
-    if found is None:
+    sample_functions = functions(requirements, names, LANGUAGE, reserved)
+    if sample_functions is None:
         return ()
     file = file_name(name)
-    common = {"functions": found, "base": base, "header": f"{file}.h"}
+    common = {"functions": sample_functions, "base": base, "header": f"{file}.h"}
     source = render("c/signals.c.j2", **common, double=_double, letters=letters)
     header = render(
         "c/signals.h.j2",
@@ -55,7 +55,7 @@ def files(
 
 
 def guard(file: str) -> str:
-    """The macro that a header of this name defines; a file may begin with a digit, as an id."""
+    """The include guard of a header; a file name may begin with a digit, like an id."""
     return f"{'FRETC_' if file[:1].isdigit() else ''}{file.upper()}_H"
 
 
@@ -72,15 +72,15 @@ def _fixed(value: Fraction) -> str:
 
 
 def _chosen(function: str, number: str, value: Fraction) -> str:
-    found = encode_constant(value)
-    single = f"{_double(found.single)}, {str(found.is_single).lower()}"
-    return f"fretc_{function}_with({number}, {single}, {_double(found.double)})"
+    encodings = encode_constant(value)
+    single = f"{_double(encodings.single)}, {str(encodings.is_single).lower()}"
+    return f"fretc_{function}_with({number}, {single}, {_double(encodings.double)})"
 
 
 def _compared(number: str, sign: str, value: Fraction) -> str:
-    found = encode_constant(value, sign)
-    beside = ", ".join(map(_double, (found.single, found.double, found.exact)))
-    whole = f"UINT64_C({found.magnitude})"
+    encodings = encode_constant(value, sign)
+    beside = ", ".join(map(_double, (encodings.single, encodings.double, encodings.exact)))
+    whole = f"UINT64_C({encodings.magnitude})"
     return f"fretc_compared_with({number}, FRETC_{_SIGNS[sign]}, {beside}, {whole})"
 
 

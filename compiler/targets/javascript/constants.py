@@ -1,4 +1,4 @@
-"""Numbers of sentences and bindings in JavaScript: the nearest number of each kind."""
+"""Numbers of sentences and bindings as JavaScript constants: the nearest number of each kind."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from compiler.signals.printing import parts
 from monitors.kernel.readings import Constant, Single, exact
 
 _WHOLE = 2**52
-"""From here on 64-bit floats hold whole numbers only."""
+"""From this value on, 64-bit floats are integers."""
 
 
 @dataclass(frozen=True, slots=True)
 class Constants:
-    """Each under a name."""
+    """Named constants."""
 
     names: dict[Fraction, str] = field(default_factory=dict)
 
     def name(self, value: Fraction) -> str:
-        """The name of a number, which it gets here."""
+        """The name of a number; a new number gets a new name."""
         return self.names.setdefault(value, f"number_{len(self.names) + 1}")
 
     def lines(self) -> tuple[str, ...]:
-        """What says which numbers the names are."""
+        """The declarations of the constants."""
         return tuple(f"const {name} = {_constant(value)};" for value, name in self.names.items())
 
 
@@ -46,10 +46,10 @@ def _float(value: float) -> str:
 
 
 def scale(value: Fraction) -> str:
-    """A factor: its numerator and its denominator."""
+    """A factor as numerator and denominator."""
     return f"[{', '.join(map(_float, parts(value)))}]"
 
 
 def truth(value: bool | None) -> str:
-    """What is known of a truth value."""
+    """A truth value, or null if unknown."""
     return "null" if value is None else str(value).lower()

@@ -1,7 +1,7 @@
-"""`--emit js`: a monitor as an ES module that needs nothing else.
+"""`--emit js`: a monitor as an ES module without dependencies.
 
-Both rails are stepped at every tick, and an outcome has the verdict, what it rests on, and what
-each rail says.
+Certain and possible values are computed at every tick. An outcome has the verdict, its reasons, and
+both values of each signal.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from compiler.program.lowering import program
 from compiler.targets.javascript import signals
 from compiler.targets.javascript.constants import Constants, scale, truth
 from compiler.targets.javascript.printer import Printer
-from compiler.targets.python.comparisons import TRUTH, InputAdapter, Spelling, Writer, front
-from compiler.targets.python.monitor import described, module, refusal, remark
+from compiler.targets.python.comparisons import TRUTH, InputAdapter, Spelling, Writer, input_adapter
+from compiler.targets.python.monitor import description_of, module, refusal, remark
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
 _NAMES = ("REQUIREMENTS", "PROPOSITIONS", "VARIABLES", "init", "step", "truths", "judge")
-"""What a module exports."""
+"""The exports of a module."""
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
@@ -53,69 +53,78 @@ def _files(name: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Ar
 
 
 def text(*requirements: FormalizedRequirement) -> str:
-    """The module of one monitor for all of the requirements.
+    """The text of the module with one monitor for all requirements.
 
     Args:
         requirements: at least one, each with an id of its own, and all on one clock.
     """
-    found = body(*requirements)
+    code = body(*requirements)
     return render(
         "js/monitor.mjs.j2",
         title=", ".join(requirement.id for requirement in requirements),
         version=__version__,
-        formalized=[described(requirement) for requirement in requirements],
+        formalized=[description_of(requirement) for requirement in requirements],
         tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
-        body=found.text,
-        exports=found.exports,
+        body=code.text,
+        exports=code.exports,
     )
 
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """The code of a monitor, without what makes a module of it."""
+    """The code of a monitor, without the parts that make it a module."""
 
     text: str
     exports: tuple[str, ...]
     front: InputAdapter | None
-    """None: its variables are its propositions."""
+    """The adapter from variables to propositions; None: the variables are the propositions."""
     propositions: tuple[str, ...]
 
 
 @with_recursion_limit
 def body(*requirements: FormalizedRequirement) -> Body:
-    """The code of one monitor for all of the requirements; they are as those of `text`."""
+    """The code of one monitor for all requirements, with the conditions of `text`."""
     propositions = tuple(
         dict.fromkeys(name for requirement in requirements for name in requirement.watched)
     )
-    compared = front(requirements, propositions)
+    compared = input_adapter(requirements, propositions)
     inputs = compared.inputs if compared else {}
     names = legal_names((*propositions, *inputs), ())
-    made = program({requirement.id: requirement.watch for requirement in requirements})
-    printer = Printer.of(made, names)
-    lines = _Front.of(compared, propositions, names) if compared else None
+    monitor_program = program({requirement.id: requirement.watch for requirement in requirements})
+    printer = Printer.of(monitor_program, names)
+    lines = _AdapterCode.of(compared, propositions, names) if compared else None
     written = render(
         "js/body.js.j2",
-        formalized=[described(requirement) for requirement in requirements],
+        formalized=[description_of(requirement) for requirement in requirements],
         propositions=propositions,
         variables=[
-            {"name": name, "variable": f"v_{names[name]}", "kind": each.kind, "words": each.words}
-            | {"infinite": each.infinite}
-            for name, each in inputs.items()
+            {
+                "name": name,
+                "variable": f"v_{names[name]}",
+                "kind": variable.kind,
+                "words": variable.words,
+            }
+            | {"infinite": variable.infinite}
+            for name, variable in inputs.items()
         ]
         or [{"name": name, "kind": TRUTH, "words": ()} for name in propositions],
         cells=[
             {"name": c.name, "comment": c.comment, "initial": printer.initial(c)}
-            for c in made.cells
+            for c in monitor_program.cells
         ],
         literals=[(n, propositions.index(p), positive) for n, p, positive in printer.literals()],
         blocks=[
             {"comment": block.comment, "lines": [*printer.lines(block)]}
-            for block in made.blocks
+            for block in monitor_program.blocks
             if block.instructions
         ],
         requirements=[
-            {"id": each.id, "signals": printer.signals(each), "renewed": each.renewed}
-            for each in made.requirements
+            {
+                "id": requirement.id,
+                "signals": printer.signals(requirement),
+                "renewed": requirement.renewed,
+            }
+            for requirement in monitor_program.requirements
         ],
         front=lines,
         kernel=render("js/kernel.js.j2"),
@@ -125,24 +134,27 @@ def body(*requirements: FormalizedRequirement) -> Body:
 
 
 @dataclass(frozen=True, slots=True)
-class _Front:
-    """The text that makes truth values of variables."""
+class _AdapterCode:
+    """The code that computes truth values from variables."""
 
     constants: tuple[str, ...]
     row: tuple[tuple[str, str], ...]
-    """Each proposition, and the text of its truth."""
+    """Each proposition with the code of its truth value."""
     earlier: tuple[tuple[str, str, str], ...]
-    """What is looked back at: the name of its value, what it was at first, and its present one."""
+    """Values kept for `preReal` and the like: (variable name, initial value, expression for the
+    current tick)."""
 
     @classmethod
     def of(
         cls, compared: InputAdapter, propositions: Sequence[str], names: Mapping[str, str]
-    ) -> _Front:
-        """By the names of its variables and propositions."""
+    ) -> _AdapterCode:
+        """The code for given names of variables and propositions."""
         constants = Constants()
         variables = {name: f"v_{names[name]}" for name in compared.inputs}
         writer = Writer(variables, Spelling(constants.name, scale, truth))
-        texts = {name: writer.comparison(each) for name, each in compared.comparisons.items()}
+        texts = {
+            name: writer.comparison(comparison) for name, comparison in compared.comparisons.items()
+        }
         row = tuple((name, texts.get(name) or variables[name]) for name in propositions)
         earlier = tuple((name, *both) for both, name in writer.earlier.items())
         return cls(constants.lines(), row, earlier)

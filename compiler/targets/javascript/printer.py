@@ -1,7 +1,7 @@
-"""The program of a monitor as JavaScript: one function that takes a rail a tick further.
+"""A monitor's program as JavaScript: one function that advances the state by a tick.
 
-Cells are properties of `rail`. A proposition `p` is `is_p`, its negation `not_p`; no other name
-begins so, and none of these is a keyword.
+Cells are properties of `rail`. A proposition `p` is `is_p` and its negation `not_p`; no other name
+begins so, and none is a key word.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from compiler.program.program import Block, Cell, Counter, Flag, Program, Requir
 from compiler.program.values import Age, And, Constant, Literal, Not, Or, Value, Variable
 
 _OR, _AND, _COMPARED, _ATOMIC = range(4)
-"""How tight operators bind."""
+"""Precedence ranks of operators: a higher rank binds tighter."""
 
 
 class _Text(NamedTuple):
@@ -31,27 +31,27 @@ class _Text(NamedTuple):
     rank: int = _ATOMIC
 
     def at_least(self, loosest: int) -> str:
-        """In parentheses where the operator around it binds tighter."""
+        """The text, in parentheses if the operator around it binds tighter."""
         return self.text if self.rank >= loosest else f"({self.text})"
 
 
 @dataclass(frozen=True, slots=True)
 class Printer:
-    """JavaScript's words for what a program has."""
+    """The syntax of JavaScript for a program."""
 
     program: Program
     names: Mapping[str, str]
     """An identifier for each proposition."""
     cells: Mapping[str, Cell]
-    """Of the program, by their names."""
+    """The cells of the program, by their names."""
 
     @classmethod
     def of(cls, program: Program, names: Mapping[str, str]) -> Printer:
-        """Of a program, with an identifier for each proposition."""
+        """A printer for a program, with an identifier for each proposition."""
         return cls(program, names, {cell.name: cell for cell in program.cells})
 
     def literals(self) -> Iterator[tuple[str, str, bool]]:
-        """The name of each literal, its proposition, and its sign."""
+        """The name, the proposition and the sign of each literal."""
         for literal in self.program.literals:
             yield self._literal(literal), literal.proposition, literal.positive
 
@@ -70,13 +70,14 @@ class Printer:
     def signals(self, requirement: Requirement) -> dict[str, str]:
         """The signals of a requirement."""
         return {
-            name: self._value(each).text for name, each in requirement.signals._asdict().items()
+            name: self._value(signal_value).text
+            for name, signal_value in requirement.signals._asdict().items()
         }
 
     def lines(self, block: Block) -> Iterator[str]:
         """The statements of a block at one tick."""
-        for each in block.instructions:
-            yield from self._statement(each)
+        for instruction in block.instructions:
+            yield from self._statement(instruction)
 
     def _statement(self, instruction: Instruction) -> Iterator[str]:
         match instruction:
@@ -128,9 +129,9 @@ class Printer:
             case Not(negated):
                 return _Text(f"!{self._value(negated).at_least(_ATOMIC)}")
             case And(values):
-                texts = (self._value(each).at_least(_AND) for each in values)
+                texts = (self._value(operand).at_least(_AND) for operand in values)
                 return _Text(" && ".join(texts), _AND)
             case Or(values):
-                return _Text(" || ".join(self._value(each).text for each in values), _OR)
+                return _Text(" || ".join(self._value(operand).text for operand in values), _OR)
             case _:
                 assert_never(value)

@@ -1,4 +1,4 @@
-"""Beside a monitor in JavaScript: a module from typed samples to the truths that `judge` takes."""
+"""A JavaScript module from typed samples to the truth values that `judge` takes."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from fretish.expressions import COMPARE
 
 
 def files(monitor: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
-    """The module beside the module `monitor`; none where no bindings are at hand."""
+    """The module beside the module `monitor`; empty without bindings."""
     constants = Constants()
     names = legal_names((name for requirement in requirements for name in requirement.watched), ())
-    found = functions(requirements, names, _language(constants))
-    if found is None:
+    sample_functions = functions(requirements, names, _language(constants))
+    if sample_functions is None:
         return ()
     text = render(
         "js/signals.mjs.j2",
-        functions=found,
+        functions=sample_functions,
         constants=constants.lines(),
         readings=render("js/readings.js.j2"),
         samples=render("js/samples.js.j2"),
@@ -33,7 +33,7 @@ def files(monitor: str, requirements: Sequence[FormalizedRequirement]) -> tuple[
 
 
 def _language(constants: Constants) -> Language:
-    """Constants get their names while it writes."""
+    """The syntax of JavaScript; constants get their names while expressions are written."""
     return Language(
         prefix="",
         truths={value: truth(value) for value in (True, False, None)},

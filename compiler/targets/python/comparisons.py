@@ -1,10 +1,10 @@
-"""The comparisons of sentences → text: the truth of propositions from the variables of a tick.
+"""Comparisons of sentences as code: truth values of propositions from the variables of a tick.
 
-The numbers of a sentence are in the units of the signals that they meet. Numbers alone are computed
-here, exactly; all else by the functions of `monitors.kernel.readings`, which compute as an audit
-does (`fretc.logs.signals.measures`). A comparison that holds anything else stays a proposition.
-The text is calls of these functions, so it is Python and JavaScript at once; languages differ in
-how they spell constants.
+The numbers of a sentence have the units of the signals beside them. Constant expressions are
+computed here, exactly; everything else is computed by the functions of `monitors.kernel.readings`,
+as in an audit (`fretc.logs.signals.measures`). A comparison with any other expression stays a
+proposition. The code consists of calls of these functions, so it is both Python and JavaScript; the
+languages differ in how they write constants.
 """
 
 from __future__ import annotations
@@ -28,96 +28,97 @@ from fretish.reading.recursion import with_recursion_limit
 from fretish.units import unit
 
 NUMBER, TRUTH, WORD = "number", "truth", "word"
-"""What a variable is."""
+"""The kinds of variables."""
 ANNOTATIONS: Mapping[str, str] = {NUMBER: "Number", TRUTH: "Truth", WORD: "str | None"}
-"""Of the parameter of a variable."""
+"""The annotation of a parameter for each kind of variable."""
 
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """A variable of a step."""
+    """A variable that is an input of a step."""
 
     kind: str
     words: tuple[str, ...] = ()
-    """What a word may be."""
+    """The values of an enumeration variable."""
     infinite: tuple[str, ...] = ()
-    """Of a number `+inf`, `-inf`, where they mean something; else they are unknown."""
+    """The infinities (`+inf`, `-inf`) that have a meaning for a numeric variable; others are
+    unknown."""
 
 
 @dataclass(frozen=True, slots=True)
-class Compared:
-    """A comparison, as it is compiled."""
+class CompiledComparison:
+    """A comparison that can be compiled, with its inputs and units."""
 
     inputs: Mapping[str, Input]
-    """Its variables."""
+    """The variables of the comparison."""
     tree: e.Comparison
     units: Mapping[str, tuple[str, Fraction]]
     """The unit of each variable that is a signal, and its factor to base units."""
 
     @property
     def is_of_words(self) -> bool:
-        """Whether its variables are words."""
-        return any(each.kind == WORD for each in self.inputs.values())
+        """Whether the variables are enumeration values."""
+        return any(variable.kind == WORD for variable in self.inputs.values())
 
 
 @dataclass(frozen=True, slots=True)
 class InputAdapter:
-    """What turns the variables of a tick into the truth of its propositions."""
+    """The adapter from the variables of a tick to the truth of propositions."""
 
     inputs: Mapping[str, Input]
-    comparisons: Mapping[str, Compared]
-    """By the names of their propositions."""
+    comparisons: Mapping[str, CompiledComparison]
+    """The comparisons by the names of their propositions."""
 
 
 @with_recursion_limit
-def front(
+def input_adapter(
     requirements: Sequence[FormalizedRequirement], propositions: Sequence[str]
 ) -> InputAdapter | None:
-    """The variables of monitors, and their comparisons; None where nothing is compared.
+    """The adapter of a monitor: its variables and comparisons; None if nothing is compared.
 
-    What is a number in one place and a truth value in another stays a proposition in both, and so
-    does a comparison that two requirements read in different units.
+    A variable that is a number in one place and a truth value in another stays a proposition, and
+    so does a comparison that two requirements read in different units.
 
     Args:
-        requirements: those of one monitor.
-        propositions: what the monitor watches.
+        requirements: the requirements of one monitor.
+        propositions: the propositions that the monitor reads.
     """
-    found: dict[str, Compared] = {}
+    comparisons: dict[str, CompiledComparison] = {}
     opaque: set[str] = set()
     for requirement in requirements:
         for name, compared in _comparisons(requirement).items():
-            if found.setdefault(name, compared) != compared:
+            if comparisons.setdefault(name, compared) != compared:
                 opaque.add(name)
-    clashing = set(_clashing(requirements, found.values()))
-    known = {
+    clashing = set(_clashing(requirements, comparisons.values()))
+    usable = {
         name: compared
-        for name, compared in found.items()
+        for name, compared in comparisons.items()
         if name in propositions and name not in opaque and clashing.isdisjoint(compared.inputs)
     }
-    if not known:
+    if not usable:
         return None
     inputs: dict[str, Input] = {}
     for name in propositions:
-        inputs |= known[name].inputs if name in known else {name: Input(TRUTH)}
-    return InputAdapter(inputs, known) if inputs else None
+        inputs |= usable[name].inputs if name in usable else {name: Input(TRUTH)}
+    return InputAdapter(inputs, usable) if inputs else None
 
 
-def _comparisons(requirement: FormalizedRequirement) -> dict[str, Compared]:
-    """The comparisons of a sentence that can be compiled, by the names of their propositions."""
-    found: dict[str, Compared] = {}
+def _comparisons(requirement: FormalizedRequirement) -> dict[str, CompiledComparison]:
+    """The comparisons of a sentence that can be compiled, by their propositions' names."""
+    by_name: dict[str, CompiledComparison] = {}
     for tree in conditions(requirement.sentence):
         for part in e.parts(tree):
             if isinstance(part, e.Comparison):
                 compared = _compared(part, requirement)
                 if compared is not None:
-                    found[atom(part)] = compared
-    return found
+                    by_name[atom(part)] = compared
+    return by_name
 
 
 def _clashing(
-    requirements: Sequence[FormalizedRequirement], found: Iterable[Compared]
+    requirements: Sequence[FormalizedRequirement], comparisons: Iterable[CompiledComparison]
 ) -> Iterator[str]:
-    """The variables that are of two kinds, or of two units."""
+    """The variables with two kinds, or two units."""
     kinds: dict[str, Input] = {
         name: Input(TRUTH)
         for requirement in requirements
@@ -125,18 +126,18 @@ def _clashing(
         if not is_compound(name)
     }
     units: dict[str, object] = {}
-    for compared in found:
+    for compared in comparisons:
         for name, kind in compared.inputs.items():
             unit = compared.units.get(name)
             if kinds.setdefault(name, kind) != kind or units.setdefault(name, unit) != unit:
                 yield name
 
 
-def _compared(tree: e.Comparison, requirement: FormalizedRequirement) -> Compared | None:
-    """The comparison with its variables; None where it cannot be compiled.
+def _compared(tree: e.Comparison, requirement: FormalizedRequirement) -> CompiledComparison | None:
+    """The compiled comparison; None if it cannot be compiled.
 
-    One that is bound by its text to other names is what these say: what they are is not its
-    variables.
+    A comparison bound by its text is evaluated from the names in its binding; the names in the
+    sentence are not inputs.
     """
     signals = requirement.declarations.signals if requirement.declarations else {}
     is_bound = requirement.declarations and atom(tree) in requirement.declarations.propositions
@@ -149,9 +150,9 @@ def _compared(tree: e.Comparison, requirement: FormalizedRequirement) -> Compare
     spoken = _spoken(tree, signals)
     if spoken is not None:
         ids, words = spoken
-        return Compared({variable(id): Input(WORD, words) for id in ids}, tree, units)
+        return CompiledComparison({variable(id): Input(WORD, words) for id in ids}, tree, units)
     numbers = {variable(id): Input(NUMBER, infinite=_infinite(signals.get(id))) for id in names}
-    compared = Compared(numbers, tree, units)
+    compared = CompiledComparison(numbers, tree, units)
     try:
         Writer(dict.fromkeys(compared.inputs, "x")).comparison(compared)
     except NotCompiledError:
@@ -160,7 +161,7 @@ def _compared(tree: e.Comparison, requirement: FormalizedRequirement) -> Compare
 
 
 def _infinite(signal: Signal | None) -> tuple[str, ...]:
-    """The infinities that a sample of a signal can be: what is far, and what is near."""
+    """The infinities that a sample can be: far (`+inf`) and near (`-inf`)."""
     if signal is None:
         return ()
     invalid = signal.invalid
@@ -173,7 +174,7 @@ def _infinite(signal: Signal | None) -> tuple[str, ...]:
 def _spoken(
     tree: e.Comparison, signals: Mapping[str, Signal]
 ) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
-    """The signals of words that are compared by `=` or `!=`, and their words."""
+    """The enumerated signals of a comparison by `=` or `!=`, and its values."""
     match tree:
         case e.Comparison("=" | "!=", e.Name(id), e.Word()) | e.Comparison(
             "=" | "!=", e.Word(), e.Name(id)
@@ -188,16 +189,17 @@ def _spoken(
 
 
 class NotCompiledError(Exception):
-    """An expression that has no meaning as a number here."""
+    """The expression has no meaning as a number here."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Term:
-    """A number as text; a constant has its exact value in place of it."""
+    """A number as code; a constant has its exact value instead."""
 
     text: str
     scale: Fraction | None = None
-    """From its unit to the base unit; None: it has none, and is in that of what it meets."""
+    """The factor from its unit to the base unit; None: it has no unit, and takes that of the number
+    beside it."""
     exact: Fraction | None = None
 
 
@@ -213,24 +215,24 @@ FUNCTIONS = frozenset(
     "measurement truth_value word exact compared is_word plus minus times over modulo power "
     "negative absolute lesser greater in_base first".split()
 )
-"""What the text of a front calls."""
+"""The functions that an adapter's code calls."""
 NAMES = FUNCTIONS | {"kept"}
-"""What no variable in it is called."""
+"""The reserved names in an adapter's code."""
 
 
 @dataclass(frozen=True, slots=True)
 class Spelling:
-    """How a language writes constants."""
+    """A language's syntax of constants."""
 
     number: Callable[[Fraction], str]
     scale: Callable[[Fraction], str]
-    """What a number is multiplied by."""
+    """Writes the factor of a number."""
     truth: Callable[[bool | None], str]
-    """None: unknown."""
+    """Writes a truth value; None: unknown."""
 
 
 def _number(value: Fraction) -> str:
-    return f'exact("{written(value)}")'
+    return f'exact("{fraction_text(value)}")'
 
 
 def _scale(value: Fraction) -> str:
@@ -242,20 +244,20 @@ PYTHON = Spelling(_number, _scale, str)
 
 @dataclass(slots=True)
 class Writer:
-    """The text of comparisons; what they look back at is kept from tick to tick."""
+    """The writer of comparisons; values that they look back at are stored from tick to tick."""
 
     parameters: Mapping[str, str]
-    """Of each variable."""
+    """The parameter of each variable."""
     spelling: Spelling = PYTHON
     units: Mapping[str, tuple[str, Fraction]] = field(default_factory=dict)
     earlier: dict[tuple[str, str], str] = field(default_factory=dict)
-    """What is looked back at, and what it was before the first tick: the name of its value."""
+    """(expression, initial value) → name of the stored value."""
 
-    def comparison(self, compared: Compared) -> str:
-        """The truth of a comparison.
+    def comparison(self, compared: CompiledComparison) -> str:
+        """The code for the truth of a comparison.
 
         Raises:
-            NotCompiledError: it holds what is no number here.
+            NotCompiledError: the comparison contains an expression that is not a number here.
         """
         self.units = compared.units
         op = compared.tree.op
@@ -274,7 +276,7 @@ class Writer:
             raise NotCompiledError
         return text
 
-    def _spoken(self, compared: Compared, op: str) -> str:
+    def _spoken(self, compared: CompiledComparison, op: str) -> str:
         sides = (compared.tree.left, compared.tree.right)
         first, second = (
             python(side.text) if isinstance(side, e.Word) else self.parameters[variable(side.id)]
@@ -288,9 +290,9 @@ class Writer:
             case e.Number(digits) if _WRITTEN.fullmatch(digits):
                 return _constant(Fraction(digits))
             case e.Quantity(digits, name) if _WRITTEN.fullmatch(digits):
-                known = unit(name)
-                assert known is not None, "the parser refuses unknown units"
-                return _constant(Fraction(digits), known.factor)
+                own_unit = unit(name)
+                assert own_unit is not None, "the parser refuses unknown units"
+                return _constant(Fraction(digits), own_unit.factor)
             case e.Name(id) if variable(id) in self.parameters:
                 name = variable(id)
                 scale = self.units[name][1] if name in self.units else None
@@ -313,7 +315,7 @@ class Writer:
         if op == "^":
             return self._power(left, right)
         if op in ("*", "/"):
-            left, right = (_plain(each) for each in (left, right))
+            left, right = (_plain(side) for side in (left, right))
             scale = _combined(op, left.scale, right.scale)
         else:
             left, right, scale = self._in_one_unit(left, right)
@@ -327,20 +329,20 @@ class Writer:
                 raise NotCompiledError
             (term,) = args
             return self._applied("absolute", term, None if term.exact is None else abs(term.exact))
-        found, *rest = args
+        combined, *rest = args
         for term in rest:
-            if _UNKNOWN in (found, term):
+            if _UNKNOWN in (combined, term):
                 return _UNKNOWN
-            first, second, scale = self._in_one_unit(found, term)
+            first, second, scale = self._in_one_unit(combined, term)
             if first.exact is not None and second.exact is not None:
-                found = _constant(called(name, [first.exact, second.exact]), scale)
+                combined = _constant(called(name, [first.exact, second.exact]), scale)
             else:
                 text = f"{_ENDS[name]}({self._text(first)}, {self._text(second)})"
-                found = _Term(text, scale)
-        return found
+                combined = _Term(text, scale)
+        return combined
 
     def _before(self, initial: _Term, term: _Term) -> _Term:
-        """The value of the tick before; at the first tick, the initial one."""
+        """The value of the tick before; at the first tick, the initial value."""
         if _UNKNOWN in (initial, term):  # a mistake in the sentence: nothing is compared with it
             raise NotCompiledError
         before, now, scale = self._in_one_unit(initial, term)
@@ -353,7 +355,7 @@ class Writer:
         return term.text if term.exact is None else self.spelling.number(term.exact)
 
     def _in_one_unit(self, left: _Term, right: _Term) -> tuple[_Term, _Term, Fraction | None]:
-        """Both in one unit, and the factor of it: that of what is measured."""
+        """Both terms in one unit, and its factor, which is that of the measured term."""
         if left.scale is None or right.scale is None or left.scale == right.scale:
             return left, right, right.scale if left.scale is None else left.scale
         if left.exact is not None and right.exact is None:
@@ -387,8 +389,8 @@ class Writer:
         return _Term(f"power({self._text(base)}, {times})", scale)
 
 
-def threshold(compared: Compared) -> tuple[str, Fraction] | None:
-    """A variable that is compared with a number, and the number in its unit."""
+def threshold(compared: CompiledComparison) -> tuple[str, Fraction] | None:
+    """The variable of a comparison with a number, and the number in its unit."""
     names = {name: name for name in compared.inputs}
     writer = Writer(names, units=compared.units)
     tree = compared.tree
@@ -400,20 +402,20 @@ def threshold(compared: Compared) -> tuple[str, Fraction] | None:
     return None
 
 
-def numbers(compared: Compared) -> Iterator[Fraction]:
-    """Those that a comparison is written with."""
+def numbers(compared: CompiledComparison) -> Iterator[Fraction]:
+    """The numbers in a comparison."""
     for part in e.parts(compared.tree.left), e.parts(compared.tree.right):
-        for each in part:
-            if isinstance(each, e.Number | e.Quantity) and _WRITTEN.fullmatch(each.digits):
-                yield Fraction(each.digits)
+        for node in part:
+            if isinstance(node, e.Number | e.Quantity) and _WRITTEN.fullmatch(node.digits):
+                yield Fraction(node.digits)
 
 
 _WRITTEN = re.compile(r"\d{1,60}(?:\.\d{1,60})?(?:[eE][+-]?\d{1,3})?", re.ASCII)
-"""A number of no more digits than one in the bindings has."""
+"""A number with at most as many digits as the bindings allow."""
 
 
 _MOST_BITS = 1 << 13
-"""Of a constant: Python reads no more than 4 300 digits."""
+"""Maximum size of a constant: Python reads at most 4 300 digits."""
 
 
 def _constant(value: Fraction | None, scale: Fraction | None = None) -> _Term:
@@ -424,8 +426,8 @@ def _constant(value: Fraction | None, scale: Fraction | None = None) -> _Term:
     return _Term("", scale, value)
 
 
-def written(value: Fraction) -> str:
-    """A fraction as text: a decimal where it is a short one, else `25/18`."""
+def fraction_text(value: Fraction) -> str:
+    """A fraction as text: a short decimal, else a quotient such as `25/18`."""
     for places in range(_MOST_PLACES + 1):
         digits = value * 10**places
         if digits.denominator == 1:
@@ -438,7 +440,7 @@ _MOST_PLACES = 12
 
 
 def _plain(factor: _Term) -> _Term:
-    """A factor: a constant is in its base unit."""
+    """The factor; a constant is in its base unit."""
     if factor.exact is None or factor.scale is None:
         return factor
     return _constant(factor.exact * factor.scale, Fraction(1))
@@ -448,14 +450,14 @@ def _combined(op: str, left: Fraction | None, right: Fraction | None) -> Fractio
     """The factor of a product or a quotient."""
     if left is None and right is None:
         return None
-    a, b = (Fraction(1) if each is None else each for each in (left, right))
+    a, b = (Fraction(1) if factor is None else factor for factor in (left, right))
     return a * b if op == "*" else a / b
 
 
 _MOST_NESTING = 150
-"""Python reads 200 parentheses within each other."""
+"""Maximum depth of parentheses; Python reads 200."""
 
 
 def _nesting(text: str) -> int:
-    """How many parentheses are within each other."""
+    """The depth of nested parentheses."""
     return max(itertools.accumulate((c == "(") - (c == ")") for c in text))

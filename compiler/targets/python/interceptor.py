@@ -1,6 +1,6 @@
 """`--emit interceptor`: the node between the planner and the wheels, as one Python file.
 
-The core is the text of `monitors/interceptor.py`; the options are those of the bindings; below a
+The core is the text of `monitors/interceptor.py`, and the options come from the bindings. Below a
 marked line is a thin ROS node around them. All requirements share it.
 """
 
@@ -25,11 +25,11 @@ from monitors.source_text import interceptor as core
 
 NAME = "interceptor.py"
 MARKER = "# The ROS node ".ljust(97, "-")
-"""The core and its options stand before this line, the node after it."""
+"""The line between the core with its options and the node."""
 
 
 def refuse(options: Options) -> Diagnostic | None:
-    """F323: nothing says between which topics the interceptor stands."""
+    """F323: the topics of the interceptor are not declared."""
     declared = options.declarations
     if declared is not None and declared.interceptor is not None:
         return None
@@ -48,7 +48,7 @@ def refuse(options: Options) -> Diagnostic | None:
 
 
 def remarks(options: Options) -> tuple[Diagnostic, ...]:
-    """F630 to F633: dangers that remain although the node works as declared."""
+    """F630 to F633: hazards that remain even if the node works as declared."""
     declared = options.declarations
     if declared is None or declared.interceptor is None:
         return ()
@@ -66,8 +66,8 @@ def _warning(code: Code, message: str, node: Interception, fix: str) -> Diagnost
 def _latching(node: Interception) -> Diagnostic:
     return _warning(
         Code.LATCHING,
-        "the interceptor latches: after the first stop nothing but a new start moves the robot, "
-        "whatever the safety function says",
+        "the interceptor latches: after the first stop the robot moves only after a restart, "
+        "whatever the safety function requests",
         node,
         "write `latching = false`, or state in a requirement that a stop is final",
     )
@@ -76,8 +76,8 @@ def _latching(node: Interception) -> Diagnostic:
 def _event_driven(node: Interception) -> Diagnostic:
     return _warning(
         Code.EVENT_DRIVEN,
-        "the interceptor speaks only when a command comes: where the planner falls silent, the "
-        "wheels keep their last velocity, whatever stop is requested",
+        "the interceptor publishes only when a command comes: if the planner stops publishing, "
+        "the wheels keep their last velocity, even if a stop is requested",
         node,
         'write `form = "timer"` and a `period`',
     )
@@ -87,22 +87,22 @@ def _unwatched(node: Interception) -> Iterator[Diagnostic]:
     if not node.stop_timeout:
         yield _warning(
             Code.UNWATCHED,
-            f"no `stop_timeout`: where the safety function dies, or `{node.stop}` is cut, the "
-            "robot moves on",
+            f"no `stop_timeout`: if the safety function dies, or `{node.stop}` is lost, the "
+            "robot keeps moving",
             node,
-            "add `stop_timeout`, some times as long as the safety function is ever silent",
+            "add `stop_timeout`: a few times the longest silence of the safety function",
         )
     if not node.scan_timeout:
         yield _warning(
             Code.UNWATCHED,
-            "no `scan_timeout`: where the sensor dies, only the safety function can notice",
+            "no `scan_timeout`: if the sensor dies, only the safety function can notice",
             node,
-            "add `scan` and `scan_timeout`, some times the period of the sensor",
+            "add `scan` and `scan_timeout`: a few times the period of the sensor",
         )
 
 
 def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnostic]:
-    """Requests may be lost, `lost` in a row, before one arrives."""
+    """The warning that `lost` requests may be lost in a row before one arrives."""
     assumed, period = declared.assumed, declared.clock.period
     if assumed is None or not assumed.lost or period is None:
         return
@@ -112,7 +112,7 @@ def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnost
         return
     yield _warning(
         Code.SHORT_HOLD,
-        f"zero is held for {_duration(sure)} for certain, and messages may be lost for "
+        f"zero is held for {_duration(sure)} for certain, but messages may be lost for "
         f"{_duration(gap)}: a robot that was stopped may move between two "
         "requests",
         node,
@@ -129,7 +129,7 @@ def emit(
     """`interceptor.py`.
 
     Raises:
-        AssertionError: it was to be refused.
+        AssertionError: the target had to be refused.
     """
     assert options.declarations is not None
     assert options.declarations.interceptor is not None
@@ -142,7 +142,7 @@ def text(interception: Interception, source: str) -> str:
 
     Args:
         interception: what the bindings declare.
-        source: the name of their file.
+        source: the name of the bindings' file.
     """
     return render(
         "interceptor/interceptor.py.j2",
@@ -157,7 +157,7 @@ def text(interception: Interception, source: str) -> str:
 
 
 def _options(node: Interception) -> Iterator[tuple[str, Any, str]]:
-    """Name, value, and where it comes from."""
+    """The name, the value and the source of each option."""
     core_options = counted(node)
     for name in ("hold", "stop_timeout", "scan_timeout", "command_timeout"):
         duration = getattr(node, name)

@@ -1,8 +1,8 @@
-"""`--emit monitor`: a standalone Python file, straight-line code over the watches of requirements.
+"""`--emit monitor`: a standalone Python file with straight-line code for the monitor.
 
-Every temporal sub-formula has one variable, stepped at every tick, and one column over whole
-traces; requirements in one file share what they have in common. The text of `monitors/kernel/` is
-copied in, so the file needs the standard library and nothing else.
+Every temporal sub-formula has one variable, updated at every tick, and one column over whole
+traces; requirements in one file share sub-formulas. The text of `monitors/kernel/` is copied into
+the file, so it needs only the standard library.
 """
 
 from __future__ import annotations
@@ -16,13 +16,19 @@ from pathlib import PurePosixPath
 from compiler.files.artifact import Artifact
 from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import FormalizedRequirement, plain
+from compiler.formalization.formalized import FormalizedRequirement, without_probability
 from compiler.formalization.obligation import TRAITS, Trait, obligation
 from compiler.logic import printing
 from compiler.logic.identifiers import legal_names, underlined
 from compiler.logic.spelling.reserved_words import PYTHON
 from compiler.program.program import MARKS, SIGNALS
-from compiler.targets.python.comparisons import ANNOTATIONS, NAMES, InputAdapter, Writer, front
+from compiler.targets.python.comparisons import (
+    ANNOTATIONS,
+    NAMES,
+    InputAdapter,
+    Writer,
+    input_adapter,
+)
 from compiler.targets.python.program import (
     Program,
     locals_of,
@@ -40,22 +46,22 @@ from monitors.source_text import kernel, kernel_of_variables
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """F312 and F601: what a monitor in Python cannot be made of."""
+    """F312 and F601 for requirements without a monitor in Python."""
     return refusal(requirement, "Python")
 
 
 def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | None:
-    """F312: a monitor steps by ticks, so it must be known how long a tick is.
+    """F312 if a duration has no number of ticks; F601 if no monitor can evaluate the sentence.
 
-    F601: Python reads no more than 200 parentheses within each other, and what it refuses is in no
-    other language either; and one run cannot show a probability.
+    Python reads at most 200 nested parentheses, and all languages refuse the same sentences; and
+    one run cannot show a probability.
     """
     if not is_readable(requirement):
         return not_expressible(
             language,
             requirement,
             f"more than {_MOST_LEVELS} nested operators",
-            "give parts of the expression names of their own",
+            "bind parts of the expression as propositions",
         )
     ahead = next(
         (n for e in conditions(requirement.sentence) for n in calls(e) if n in LOOK_AHEAD), None
@@ -73,14 +79,14 @@ def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | N
             "a monitor",
             requirement,
             f"`FTP` within `{first}`",
-            "nothing is known of what is made of it there: state it outside",
+            "a monitor cannot evaluate it there: state it outside",
         )
     if requirement.pctl is not None:
         return not_expressible(
             "a monitor",
             requirement,
             "the probability",
-            "one run does not tell a probability: `fretc audit` estimates it over many",
+            "one run does not show a probability: `fretc audit` estimates it over many runs",
         )
     if assumed_ticks(requirement.sentence, requirement.clock) is None:
         return None
@@ -93,12 +99,12 @@ def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | N
 
 
 def is_readable(requirement: FormalizedRequirement) -> bool:
-    """Whether Python reads the monitor: it takes no more than 200 parentheses within each other."""
+    """Whether Python can read the monitor, which allows at most 200 nested parentheses."""
     return max(map(depth, conditions(requirement.sentence))) <= _MOST_LEVELS
 
 
 _ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
-"""An atom whose text has the first tick in it; a quoted name only looks like one."""
+"""An atom whose text contains `FTP`, the first tick; a quoted name does not count."""
 
 
 @with_recursion_limit
@@ -119,7 +125,7 @@ def remark(requirement: FormalizedRequirement) -> Diagnostic | None:
         Code.NEVER_DECIDED,
         f"no run, however long, can violate {requirement.id} or confirm it: it sets no bound",
         sentence.timing_span or requirement.entry.wording,
-        help="state a bound: `within ...` in place of `eventually`",
+        help="state a bound: `within ...` instead of `eventually`",
         severity=Severity.WARNING,
     )
 
@@ -127,7 +133,7 @@ def remark(requirement: FormalizedRequirement) -> Diagnostic | None:
 def emit(
     requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>_monitor.py` for each requirement, or one file; they need Python 3.11 alone."""
+    """`<id>_monitor.py` for each requirement, or one file; they need only Python 3.11."""
     if options.one_file:
         return (Artifact(PurePosixPath("monitors.py"), text(*requirements)),)
     return tuple(
@@ -139,7 +145,7 @@ def emit(
 def text(*requirements: FormalizedRequirement) -> str:
     """The Python source of one monitor for all of the requirements.
 
-    Of a sentence with a probability it is the monitor of the same sentence without it, and says so.
+    For a sentence with a probability it is the monitor of the sentence without it, with a remark.
 
     Args:
         requirements: at least one, each with an id of its own, and all on one clock.
@@ -147,26 +153,26 @@ def text(*requirements: FormalizedRequirement) -> str:
     probabilistic = [
         requirement for requirement in requirements if requirement.sentence.probability
     ]
-    requirements = tuple(map(plain, requirements))
+    requirements = tuple(map(without_probability, requirements))
     names = tuple(
         dict.fromkeys(name for requirement in requirements for name in requirement.watched)
     )
     prefixes = prefixes_of([requirement.id for requirement in requirements])
-    compared = front(requirements, names)
+    compared = input_adapter(requirements, names)
     variables = compared.inputs if compared else {}
     parameters = parameters_of(names, prefixes.values(), variables)
     code = program(
         {requirement.id: requirement.watch for requirement in requirements}, parameters, prefixes
     )
     runtime = kernel_of_variables() if compared else kernel()
-    lines = _Lines.of(compared, parameters) if compared else None
+    lines = _AdapterCode.of(compared, parameters) if compared else None
     inputs = [_Input(name, parameters[name], _is_negated(name, code)) for name in names]
     return render(
         "monitor/monitor.py.j2",
         title=", ".join(requirement.id for requirement in requirements),
         class_name=_class_name(requirements[0].id) if len(requirements) == 1 else "All",
         version=__version__,
-        formalized=[described(requirement) for requirement in requirements],
+        formalized=[description_of(requirement) for requirement in requirements],
         probabilistic=[_probability_note(requirement) for requirement in probabilistic],
         tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         inputs=inputs,
@@ -187,14 +193,14 @@ def text(*requirements: FormalizedRequirement) -> str:
 
 
 def is_inlined(requirements: int, inputs: int) -> bool:
-    """Whether a step has the code of a tick in it: a call would cost as much as the tick."""
+    """Whether `step` contains the code of a tick, because a call costs as much as the tick."""
     return requirements == 1 and inputs <= MOST_PARAMETERS
 
 
 def _digest(
-    code: Program, requirements: Sequence[FormalizedRequirement], front: _Lines | None
+    code: Program, requirements: Sequence[FormalizedRequirement], front: _AdapterCode | None
 ) -> str:
-    """SHA-256 of everything that the meaning of what is kept depends on."""
+    """SHA-256 of everything that defines the meaning of the saved state."""
     identities = [
         (requirement.id, requirement.fingerprint, requirement.ticks) for requirement in requirements
     ]
@@ -207,14 +213,14 @@ def _tuple(names: Sequence[str]) -> str:
 
 
 def _slots(code: Program) -> list[str]:
-    """The slots of a rail, numbers in names in their order."""
+    """The `__slots__` of the state, in natural order."""
     marks = {name for signals in code.requirements for name in marks_of(signals.prefix)}
     names = {"doubt", "tick", *(cell.name for cell in code.cells), *marks}
     return sorted(names, key=_natural)
 
 
 def _natural(name: str) -> list[str]:
-    """Numbers within names are in their own order."""
+    """A sort key that compares numbers within names by value."""
     return [part.zfill(9) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
 
 
@@ -231,43 +237,44 @@ class _Variable:
 
 
 @dataclass(frozen=True, slots=True)
-class _Lines:
-    """The text that makes truth values of variables."""
+class _AdapterCode:
+    """The code that computes truth values from variables."""
 
     variables: tuple[_Variable, ...]
     comparisons: tuple[tuple[str, str, str], ...]
-    """Each proposition that is a comparison, its name, and its text."""
+    """Each proposition that is a comparison, with its name and code."""
     earlier: tuple[tuple[str, str, str], ...]
-    """What is looked back at: the name of its value, what it was at first, and its present one."""
+    """Values kept for `preReal` and the like: (variable name, initial value, expression for the
+    current tick)."""
 
     @property
     def row(self) -> str:
-        """The variables of a tick."""
-        return _tuple([each.name for each in self.variables])
+        """The code for the variables of a tick."""
+        return _tuple([variable.name for variable in self.variables])
 
     @property
     def now(self) -> str:
-        """What the next tick looks back at."""
+        """The code for the values that the next tick looks back at."""
         return _tuple([text for _, _, text in self.earlier])
 
     @classmethod
-    def of(cls, compared: InputAdapter, parameters: Mapping[str, str]) -> _Lines:
-        """By the names of its variables and propositions."""
+    def of(cls, compared: InputAdapter, parameters: Mapping[str, str]) -> _AdapterCode:
+        """The code for given names of variables and propositions."""
         writer = Writer({name: parameters[name] for name in compared.inputs})
         comparisons = tuple(
-            (name, parameters[name], writer.comparison(each))
-            for name, each in compared.comparisons.items()
+            (name, parameters[name], writer.comparison(comparison))
+            for name, comparison in compared.comparisons.items()
         )
         variables = tuple(
             _Variable(
                 name,
                 parameters[name],
-                each.kind,
-                each.words,
-                each.infinite,
-                ANNOTATIONS[each.kind],
+                variable.kind,
+                variable.words,
+                variable.infinite,
+                ANNOTATIONS[variable.kind],
             )
-            for name, each in compared.inputs.items()
+            for name, variable in compared.inputs.items()
         )
         earlier = tuple((name, *texts) for texts, name in writer.earlier.items())
         return cls(variables, comparisons, earlier)
@@ -280,7 +287,7 @@ class _Input:
     proposition: str
     name: str
     negated: bool
-    """Whether its negation is needed too."""
+    """Whether the negation is needed, too."""
 
 
 def _is_negated(proposition: str, code: Program) -> bool:
@@ -299,8 +306,8 @@ def _probability_note(requirement: FormalizedRequirement) -> dict[str, str]:
     }
 
 
-def described(requirement: FormalizedRequirement) -> dict[str, object]:
-    """What the head of a monitor says of a requirement."""
+def description_of(requirement: FormalizedRequirement) -> dict[str, object]:
+    """The description of a requirement at the top of a monitor."""
     return {
         "id": requirement.id,
         "sentence": " ".join(requirement.entry.wording.text.split()),
@@ -313,11 +320,11 @@ def described(requirement: FormalizedRequirement) -> dict[str, object]:
 
 
 _RUN_TIME = frozenset(re.findall(r"^class (\w+)", kernel_of_variables().text, re.MULTILINE))
-"""Its classes."""
+"""The classes of the copied kernel."""
 
 
 def _class_name(id: str) -> str:
-    """What the names of its two classes begin with; `Variable_` for `Variable`."""
+    """The prefix of the two classes of a requirement; `Variable_` for `Variable`."""
     name = _identifier(id)
     wanted = underlined(f"{name[0].upper()}{name[1:]}")
     return next(n for n in wanted if _RUN_TIME.isdisjoint({f"{n}Rail", f"{n}Monitor"}))
@@ -329,7 +336,7 @@ def _identifier(id: str) -> str:
 
 
 def module(name: str) -> str:
-    """The name of a file that can be imported."""
+    """The file name as a module name that can be imported."""
     return re.sub(r"[^a-z0-9_]", "_", name)
 
 
@@ -346,17 +353,17 @@ def prefixes_of(ids: Iterable[str]) -> dict[str, str]:
 
 _MOST_LEVELS = 60
 MOST_PARAMETERS = 60
-"""Python compares each argument of a call with one parameter after the other: a step with more
-parameters takes them as a mapping."""
+"""Maximum number of parameters of a step, which takes a mapping if there are more: Python compares
+each argument of a call with one parameter after the other."""
 _SPOKEN = {"<=": "_le_", ">=": "_ge_", "!=": "_ne_", "<": "_lt_", ">": "_gt_", "=": "_eq_"}
 
 
 def parameters_of(
     names: Iterable[str], prefixes: Iterable[str], variables: Iterable[str] = ()
 ) -> dict[str, str]:
-    """A parameter for each proposition: its name as an identifier, all different.
+    """A unique parameter for each proposition: its name as an identifier.
 
-    Where a monitor is stepped by variables, one for each of these, too.
+    If a monitor is stepped by variables, these get parameters, too.
     """
     variables = tuple(variables)
     marks = {name for prefix in prefixes for name in marks_of(prefix)}
@@ -375,13 +382,13 @@ def parameters_of(
 def _names(requirement: FormalizedRequirement) -> Mapping[str, str]:
     """Variable or proposition → the parameter of a step."""
     names = requirement.watched
-    compared = front([plain(requirement)], names)
+    compared = input_adapter([without_probability(requirement)], names)
     variables = compared.inputs if compared else ()
     return parameters_of(names, prefixes_of([requirement.id]).values(), variables)
 
 
 def _parameter(name: str) -> str:
-    """As an identifier; a comparison is spoken."""
+    """The name as an identifier; a comparison is spelt in words."""
     text = _spoken(name) if printing.is_compound(name) else printing.identifier(name)
     return text if text[0].isalpha() else f"p_{text}"
 

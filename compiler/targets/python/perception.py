@@ -1,8 +1,8 @@
-"""Bindings → the Python text of what a live node makes of messages, beside its monitor.
+"""The Python code that turns messages into propositions in a live node, from the bindings.
 
-The text of `monitors/voice.py` and of what it needs is copied in; below it stands one table,
+The text of `monitors/voice.py` and of its dependencies is copied in. Below stands one table,
 `SETTING`: a policy for each signal and a meaning for each proposition, whose expressions call the
-functions of `monitors.kernel.readings`, as `compiler.signals` has them.
+functions of `monitors.kernel.readings`, as `compiler.signals` defines them.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import assert_never
 
 from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.binding_agreement import way_out
+from compiler.formalization.binding_agreement import binding_fix
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals import numbers as n
 from compiler.signals.policies import Meaning, Policy, instant
@@ -24,7 +24,7 @@ from monitors.source_text import perception as runtime
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """F601: what a live node cannot compute, or not as an audit does."""
+    """F601 for what a live node cannot compute, or not with an audit's result."""
     reason = next(_reasons(requirement), None)
     if reason is None:
         return None
@@ -40,23 +40,23 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
 def _reasons(requirement: FormalizedRequirement) -> Iterator[tuple[str, str]]:
     declared = requirement.declarations
     if declared is None:
-        yield "there are no bindings", "say in bindings.toml what its propositions are"
+        yield "there are no bindings", "define its propositions in bindings.toml"
         return
     unbound = [name for name in requirement.watched if name not in declared.propositions]
     if unbound:
         name = unbound[0]
-        yield f"the bindings do not say what `{name}` is", way_out(requirement, name, declared)
+        yield f"the bindings do not define `{name}`", binding_fix(requirement, name, declared)
     yield from _of_clock(declared)
     if unbound:
         return
-    found = instant([requirement])
-    if found is None or found.left_out:
+    at_instant = instant([requirement])
+    if at_instant is None or at_instant.left_out:
         yield (
             "it looks back by ticks within a proposition",
-            "state it in the sentence, or by `for 200 ms`",
+            "state it in the sentence, or with `for 200 ms`",
         )
         return
-    for policy in found.policies:
+    for policy in at_instant.policies:
         if policy.signal.reduce is Reduce.MEAN:
             yield (
                 f"`{policy.signal.name}` is a mean, whose last digits differ from those of an "
@@ -74,21 +74,21 @@ def _of_clock(declared: Declarations) -> Iterator[tuple[str, str]]:
         )
     if clock.time is TimeSource.PUBLISH_TIME:
         yield (
-            "its clock is the time of publication, which a subscriber is not given",
+            "its clock is the time of publication, which subscribers do not receive",
             'write `time = "log_time"` or `time = "header.stamp"`',
         )
     if clock.effective_lateness is None:
         yield (
-            "nothing says how long a tick waits for its messages",
+            "`[clock]` does not state how long a tick waits for its messages",
             'add `lateness = "50 ms"` to `[clock]`',
         )
 
 
 def text(requirements: Sequence[FormalizedRequirement]) -> str:
-    """The file: `SETTING`, and above it all that it needs of the standard library.
+    """The text of the file: `SETTING`, below the code that it needs.
 
     Args:
-        requirements: none of which was refused, of one project.
+        requirements: requirements of one project that were not refused.
     """
     joined = runtime()
     return render(
@@ -100,16 +100,16 @@ def text(requirements: Sequence[FormalizedRequirement]) -> str:
     )
 
 
-def setting(requirements: Sequence[FormalizedRequirement]) -> Setting:
-    """The table of some requirements that were not refused."""
-    found = instant(requirements)
+def setting(requirements: Sequence[FormalizedRequirement]) -> SettingTable:
+    """The table of requirements that were not refused."""
+    at_instant = instant(requirements)
     declared = requirements[0].declarations
-    assert found is not None, "it is refused"
+    assert at_instant is not None, "it is refused"
     assert declared is not None, "it is refused"
     assert declared.clock.period is not None, "it is refused"
-    return Setting(
-        tuple(map(_policy, found.policies)),
-        tuple(map(_meaning, found.meanings)),
+    return SettingTable(
+        tuple(map(_policy, at_instant.policies)),
+        tuple(map(_meaning, at_instant.meanings)),
         declared.clock.period,
         declared.clock.phase,
         declared.clock.effective_lateness or 0,
@@ -119,8 +119,8 @@ def setting(requirements: Sequence[FormalizedRequirement]) -> Setting:
 
 
 @dataclass(frozen=True, slots=True)
-class Setting:
-    """The texts of the table."""
+class SettingTable:
+    """The entries of the table, as code."""
 
     policies: tuple[str, ...]
     meanings: tuple[str, ...]
@@ -132,10 +132,10 @@ class Setting:
 
 
 def topics_of(requirement: FormalizedRequirement) -> tuple[str, ...]:
-    """The topics that its propositions read."""
-    found = instant([requirement])
-    assert found is not None, "it is refused"
-    return tuple(dict.fromkeys(policy.signal.path.topic for policy in found.policies))
+    """The topics that the requirement's propositions read."""
+    at_instant = instant([requirement])
+    assert at_instant is not None, "it is refused"
+    return tuple(dict.fromkeys(policy.signal.path.topic for policy in at_instant.policies))
 
 
 def _policy(policy: Policy) -> str:
@@ -162,19 +162,19 @@ def _policy(policy: Policy) -> str:
     if measured is not None:
         names = "".join(f", {name}" for name in _besides(policy).values())
         # The literals are infinities, and cost less than names: this runs for each beam.
-        each = f"x if -1e999 < x < 1e999 and {measured} else meant(x)"
-        texts["quick"] = f"lambda xs, meant{names}: [{each} for x in xs]"
+        element = f"x if -1e999 < x < 1e999 and {measured} else meant(x)"
+        texts["quick"] = f"lambda xs, meant{names}: [{element} for x in xs]"
     head = [repr(signal.name), repr(signal.path.topic), repr(signal.path.fields)]
     return f"Policy({', '.join([*head, *_named(texts)])})"
 
 
 def _besides(policy: Policy) -> dict[str, str]:
-    """The fields that `valid` reads, each with the name of a parameter."""
+    """The fields that `valid` reads, with their parameters."""
     return {name: f"beside{i}" for i, name in enumerate(policy.fields)}
 
 
 def _measured(policy: Policy) -> str | None:
-    """`valid` in Python's own logic, where nothing in it can be unknown, or needs rounding."""
+    """`valid` in plain Python if nothing in it can be unknown or needs rounding; else None."""
     if not policy.signal.path.each:
         return None
     if policy.valid is None:
@@ -192,8 +192,8 @@ def _measured(policy: Policy) -> str | None:
             case n.All(args) | n.Some(args) if args:
                 parts = [text(arg) for arg in args]
                 word = " and " if isinstance(tree, n.All) else " or "
-                known = [part for part in parts if part is not None]
-                return f"({word.join(known)})" if len(known) == len(parts) else None
+                conjuncts = [part for part in parts if part is not None]
+                return f"({word.join(conjuncts)})" if len(conjuncts) == len(parts) else None
             case _:
                 return None
 
@@ -227,7 +227,7 @@ def _named(texts: dict[str, str]) -> Iterator[str]:
 
 
 def lookback(tree: n.Truth, meaning: Meaning) -> int:
-    """The durations within each other, added up."""
+    """The sum of nested durations."""
     return max(
         (
             meaning.held[place][1] + lookback(meaning.held[place][0], meaning)
@@ -238,7 +238,7 @@ def lookback(tree: n.Truth, meaning: Meaning) -> int:
 
 
 def signals_of(meaning: Meaning) -> Iterator[str]:
-    """The signals that it reads, some more than once."""
+    """The signals that the meaning reads, possibly repeated."""
     for tree in (meaning.truth, *(part for part, _ in meaning.held)):
         for part in _parts(tree):
             if isinstance(part, n.Flag | n.SignalValue):
@@ -246,7 +246,7 @@ def signals_of(meaning: Meaning) -> Iterator[str]:
 
 
 def places(tree: n.Truth) -> list[int]:
-    """Of what has to hold for a duration, that it asks for."""
+    """The indices of the conditions that have to hold for a duration."""
     return [part.place for part in _parts(tree) if isinstance(part, n.HeldFor)]
 
 

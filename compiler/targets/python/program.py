@@ -15,12 +15,12 @@ from compiler.program.lowering import program as lowered
 from fretish.reading.recursion import with_recursion_limit
 
 _OR, _AND, _ATOMIC = range(3)
-"""How tight Python's operators bind; a column's do in the same order."""
+"""Precedence ranks of Python's operators, which columns share: a higher rank binds tighter."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A variable that lives from tick to tick."""
+    """A variable that is kept from tick to tick."""
 
     name: str
     initial: str
@@ -41,16 +41,16 @@ class RequirementSignals:
 
     id: str
     prefix: str
-    """An identifier, no other's in this program."""
+    """An identifier that is unique in the program."""
     step: Mapping[str, str]
     tight: Mapping[str, str]
-    """As `step`, in parentheses where an operator before it would ask for them."""
+    """As `step`, in parentheses if an operator before it needs them."""
     columns: Mapping[str, str]
     renewed: bool
 
     @property
     def possible(self) -> Mapping[str, bool]:
-        """Of each signal, whether it can be true at some tick."""
+        """For each signal, whether it can be true at some tick."""
         return {name: text != "False" for name, text in self.step.items()}
 
     @property
@@ -60,7 +60,7 @@ class RequirementSignals:
 
     @property
     def marks(self) -> tuple[str, ...]:
-        """The marks that can change: those whose signal can ever be true."""
+        """The marks that can change, because their signal can be true."""
         return tuple(mark for mark in p.MARKS if self.possible[p.SOURCES[mark]])
 
 
@@ -75,7 +75,7 @@ class Literal:
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """The text of a rail's cells, of its steps and of its signals; and of the same over columns."""
+    """The code of the cells, the steps and the signals; and of the same over columns."""
 
     literals: tuple[Literal, ...]
     cells: tuple[Cell, ...]
@@ -88,28 +88,35 @@ class Program:
 def program(
     watches: Mapping[str, MonitorSpec], parameters: Mapping[str, str], prefixes: Mapping[str, str]
 ) -> Program:
-    """The Python of the program of watches.
+    """The Python code of monitor specifications.
 
     Args:
-        watches: of each requirement's id; past-time formulas only.
+        watches: requirement id → monitor specification, with past-time formulas only.
         parameters: a Python identifier for each proposition.
         prefixes: a Python identifier for each requirement's id.
     """
     marks = {name for prefix in prefixes.values() for name in marks_of(prefix)}
-    made = lowered(watches, marks | locals_of(parameters.values()))
+    monitor_program = lowered(watches, marks | locals_of(parameters.values()))
     printer = _Printer(parameters)
     return Program(
-        tuple(Literal(printer.name(x), x.proposition, x.positive) for x in made.literals),
-        tuple(Cell(cell.name, _initial(cell), cell.comment) for cell in made.cells),
-        tuple(Block(b.comment, printer.step(b)) for b in made.blocks if b.instructions),
-        tuple(Block(b.comment, lines) for b in made.blocks if (lines := printer.column(b))),
-        tuple(printer.signals(each, prefixes[each.id]) for each in made.requirements),
+        tuple(
+            Literal(printer.name(x), x.proposition, x.positive) for x in monitor_program.literals
+        ),
+        tuple(Cell(cell.name, _initial(cell), cell.comment) for cell in monitor_program.cells),
+        tuple(Block(b.comment, printer.step(b)) for b in monitor_program.blocks if b.instructions),
+        tuple(
+            Block(b.comment, lines) for b in monitor_program.blocks if (lines := printer.column(b))
+        ),
+        tuple(
+            printer.signals(requirement, prefixes[requirement.id])
+            for requirement in monitor_program.requirements
+        ),
     )
 
 
 def locals_of(parameters: Iterable[str]) -> frozenset[str]:
     """The parameters of a step and the names of their negations."""
-    return frozenset(name for each in parameters for name in (each, negation(each)))
+    return frozenset(name for parameter in parameters for name in (parameter, negation(parameter)))
 
 
 def negation(parameter: str) -> str:
@@ -118,7 +125,7 @@ def negation(parameter: str) -> str:
 
 
 def marks_of(prefix: str) -> frozenset[str]:
-    """The names that a rail keeps for a requirement."""
+    """The names of the marks of a requirement."""
     return frozenset(f"{prefix}_{name}" for name in (*p.MARKS, "signals"))
 
 
@@ -133,14 +140,14 @@ def _initial(cell: p.Cell) -> str:
 
 
 class _Text(NamedTuple):
-    """One value: as an expression of a step and over columns, and how tight both bind."""
+    """The code of one value: in a step and over columns, with its precedence."""
 
     step: str
     column: str
     rank: int = _ATOMIC
 
     def grouped(self, loosest: int) -> _Text:
-        """In parentheses where Python's operators ask for them."""
+        """The code, in parentheses if Python's operators need them."""
         if self.rank >= loosest:
             return self
         return _Text(f"({self.step})", f"({self.column})")
@@ -148,7 +155,7 @@ class _Text(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Printer:
-    """Python's words for what a program has."""
+    """The syntax of Python for a program."""
 
     parameters: Mapping[str, str]
 
@@ -158,7 +165,7 @@ class _Printer:
         return parameter if literal.positive else negation(parameter)
 
     def signals(self, requirement: p.Requirement, prefix: str) -> RequirementSignals:
-        """The signals of a requirement, which has this prefix."""
+        """The signals of a requirement with this prefix."""
         texts = {n: self.text(value) for n, value in requirement.signals._asdict().items()}
         return RequirementSignals(
             requirement.id,
@@ -170,7 +177,7 @@ class _Printer:
         )
 
     def text(self, value: v.Value) -> _Text:
-        """A value; only in a step there are negations and the ages of counters."""
+        """The code of a value; negations and ages of counters occur only in steps."""
         match value:
             case v.Constant(truth):
                 return _Text("True", "every") if truth else _Text("False", "0")
@@ -185,7 +192,7 @@ class _Printer:
             case v.Not(negated):
                 return _Text(f"not {self.text(negated).grouped(_ATOMIC).step}", "", _AND)
             case v.And(values):
-                texts = [self.text(each).grouped(_AND) for each in values]
+                texts = [self.text(operand).grouped(_AND) for operand in values]
                 return _Text(*_joined(texts, " and ", " & "), _AND)
             case v.Or(values):
                 return _Text(*_joined([*map(self.text, values)], " or ", " | "), _OR)
@@ -197,7 +204,9 @@ class _Printer:
 
     def step(self, block: p.Block) -> tuple[str, ...]:
         """The statements of a block at one tick."""
-        return tuple(line for each in block.instructions for line in self._statement(each))
+        return tuple(
+            line for instruction in block.instructions for line in self._statement(instruction)
+        )
 
     def _statement(self, instruction: i.Instruction) -> tuple[str, ...]:
         match instruction:
@@ -233,9 +242,9 @@ class _Printer:
             return ()
         return (f"{block.name} = {self._column(block.column)}",)
 
-    def _column(self, column: v.Value | c.Before | c.Since) -> str:
+    def _column(self, column: v.Value | c.PreviousColumn | c.Since) -> str:
         match column:
-            case c.Before(value, weak):
+            case c.PreviousColumn(value, weak):
                 return (
                     f"{'weak_previous' if weak else 'previous'}({self.text(value).column}, every)"
                 )

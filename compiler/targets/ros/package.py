@@ -1,4 +1,4 @@
-"""What a package of ROS 1 and one of ROS 2 have in common: its description, and the same texts.
+"""The common parts of ROS 1 and ROS 2 packages: their description, and shared files.
 
 The printers `ros1.py` and `ros2.py` write only what the middleware asks for: manifests, launch
 files, and the node that gives messages to `Guard` of `perception.py` and publishes what it says.
@@ -19,7 +19,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.policies import instant
 from compiler.targets.python import interceptor, monitor, perception
 from compiler.targets.target import Options, stem
-from compiler.targets.witness_traces import words
+from compiler.targets.witness_traces import witness_traces
 from fretish.bindings.declarations import Interception, Signal, short_type
 from fretish.bindings.tables.interceptor import TABLE
 from fretish.clock import TimeSource
@@ -36,16 +36,16 @@ class Topic:
 
     name: str
     package: str
-    """`sensor_msgs`."""
+    """The ROS package of the message type, such as `sensor_msgs`."""
     message: str
-    """`LaserScan`."""
+    """The name of the message type, such as `LaserScan`."""
     fields: tuple[str, ...]
-    """What is read of its messages, as the bindings say it: `ranges[:]`."""
+    """The fields that are read, as the bindings name them: `ranges[:]`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A setting of the node that can be changed without compiling anew; the node checks it."""
+    """A setting of the node that can be changed at start; the node checks it."""
 
     name: str
     value: float | tuple[str, ...]
@@ -62,31 +62,31 @@ class Package:
     requirements: tuple[FormalizedRequirement, ...]
     topics: tuple[Topic, ...]
     period: int
-    """Nanoseconds of a tick."""
+    """The length of a tick in nanoseconds."""
     phase: int
     lateness: int
     time: TimeSource
-    """How messages are placed: by their stamps where they have one, or by their arrival."""
+    """The time of messages: their stamps where they have one, or their arrival."""
     parameters: tuple[Parameter, ...]
     bindings: str
-    """The name of their file."""
+    """The name of the bindings' file."""
     attribution: Attribution
     interception: Interception | None = None
     version: str = "0.1.0"
 
     @property
     def ids(self) -> tuple[str, ...]:
-        """Of the requirements."""
+        """The ids of the requirements."""
         return tuple(requirement.id for requirement in self.requirements)
 
     @property
     def summary(self) -> str:
-        """One line, without characters that any format would have to escape."""
+        """A summary on one line, without characters that need escaping in any format."""
         return f"Runtime monitor of {', '.join(self.ids)}, which stops the robot"
 
     @property
     def stop(self) -> str:
-        """The topic of requests to stop, std_msgs/Bool, where nothing is remapped."""
+        """The default topic of stop requests, std_msgs/Bool."""
         return self.interception.stop if self.interception else f"/{self.name}/stop"
 
     @property
@@ -96,7 +96,7 @@ class Package:
 
     @property
     def dependencies(self) -> tuple[str, ...]:
-        """The packages of all messages."""
+        """The ROS packages of all message types."""
         own = {"std_msgs", "diagnostic_msgs", *(topic.package for topic in self.topics)}
         own |= {"geometry_msgs"} if self.interception else set()
         own |= {"sensor_msgs"} if self.interception and self.interception.scan else set()
@@ -110,7 +110,7 @@ _TOPIC = re.compile(r"/?[A-Za-z]\w*(?:/[A-Za-z]\w*)*", re.ASCII)
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """F312 and F601: what no monitor, no live node, or no subscription can be made of."""
+    """F312 and F601 for requirements without a monitor, a live node, or a subscription."""
     return (
         monitor.refuse(requirement)
         or perception.refuse(requirement)
@@ -123,18 +123,27 @@ def _unsubscribable(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
     for signal in _signals([requirement]):
         topic, kind = signal.path.topic, _kind(signal)
         place = signal.span or requirement.entry.wording
-        others = [_kind(each) for each in declared if each.path.topic == topic]
+        others = [
+            _kind(declared_signal)
+            for declared_signal in declared
+            if declared_signal.path.topic == topic
+        ]
         if _TYPE.fullmatch(kind) is None:
-            what = f"is of `{kind}`, which is no type of ROS" if kind else "has no type"
+            what = f"has the type `{kind}`, which is not a ROS type" if kind else "has no type"
             fix = f'add `type = "sensor_msgs/LaserScan"`, say, to `[signal.{signal.name}]`'
             yield _refusal(requirement, f"`{signal.name}` {what}", place, fix)
         elif any(other not in ("", kind) for other in others):
-            what = f"{topic} is of `{kind}`, and of another type for another signal"
+            what = (
+                f"{topic} has the type `{kind}` for one signal and another type for another signal"
+            )
             yield _refusal(requirement, what, place, "give all signals the type of their topic")
         elif _TOPIC.fullmatch(topic) is None:
-            what = f"`{topic}` is no name of a topic in ROS"
+            what = f"`{topic}` is not a valid ROS topic name"
             yield _refusal(
-                requirement, what, place, "letters, digits, `_` and `/` make one: remap it"
+                requirement,
+                what,
+                place,
+                "a topic name has letters, digits, `_` and `/`: remap the topic",
             )
 
 
@@ -143,36 +152,36 @@ def _kind(signal: Signal) -> str:
 
 
 def _refusal(requirement: FormalizedRequirement, what: str, place: Span, fix: str) -> Diagnostic:
-    message = f"no node of ROS can judge {requirement.id}: {what}"
+    message = f"a ROS node cannot judge {requirement.id}: {what}"
     return Diagnostic(Code.NOT_EXPRESSIBLE, message, place, help=fix)
 
 
 def refuse_project(options: Options) -> Diagnostic | None:
-    """F634 where nobody says whose the package is: its manifest may not leave that out."""
+    """F634 if maintainer or license are missing, which a manifest must have."""
     missing = options.attribution.missing
     if not missing:
         return None
     return Diagnostic(
         Code.NO_ATTRIBUTION,
-        f"the manifest of a package needs what `[project]` of {SETTINGS} does not say: "
+        f"the manifest of a package needs fields that `[project]` of {SETTINGS} lacks: "
         f"{', '.join(missing)}",
-        help=f"say it in {SETTINGS}, in the folder of the requirements or above it:",
+        help=f"add them to {SETTINGS}, in the folder of the requirements or above it:",
         paste=EXAMPLE,
     )
 
 
 def remarks(options: Options) -> tuple[Diagnostic, ...]:
-    """F323 where nobody carries out a stop; F630 to F633 of the interceptor."""
+    """F323 if nothing executes a stop; F630 to F633 of the interceptor."""
     declared = options.declarations
     if declared is None or declared.interceptor is not None:
         return interceptor.remarks(options)
     return (
         Diagnostic(
             Code.NO_INTERCEPTOR,
-            "the package has no interceptor: nothing in it carries out a stop",
+            "the package has no interceptor: nothing in it executes a stop",
             declared.source.span().part(0, 0),
-            help=f"add this table to {declared.source.name}, or let your base subscribe to the "
-            "topic of the stop:",
+            help=f"add this table to {declared.source.name}, or let your robot base subscribe to "
+            "the stop topic:",
             paste=TABLE,
             severity=Severity.WARNING,
         ),
@@ -183,10 +192,10 @@ def remarks(options: Options) -> tuple[Diagnostic, ...]:
 
 
 def package(requirements: Sequence[FormalizedRequirement], options: Options) -> Package:
-    """Of requirements that were not refused.
+    """The package of requirements that were not refused.
 
     Raises:
-        AssertionError: some were to be refused.
+        AssertionError: some requirement had to be refused.
     """
     declared = options.declarations or requirements[0].declarations
     assert declared is not None
@@ -209,7 +218,7 @@ def package(requirements: Sequence[FormalizedRequirement], options: Options) -> 
 
 
 def name(requirements: Sequence[FormalizedRequirement], bindings: Source) -> str:
-    """Legal in ROS 1 and 2, and no word of Python: `r1_monitor`, or by the project's folder."""
+    """The package name, legal in ROS and Python: `r1_monitor`, or from the project's folder."""
     if len(requirements) == 1:
         own = stem(requirements[0])
     else:
@@ -220,12 +229,12 @@ def name(requirements: Sequence[FormalizedRequirement], bindings: Source) -> str
 
 
 _PLAIN = {"requirements", "..", ".", "/"}
-"""Folders whose names say nothing of a project."""
+"""Folder names that do not describe a project."""
 
 
 def _signals(requirements: Sequence[FormalizedRequirement]) -> list[Signal]:
-    found = instant(requirements)
-    return [policy.signal for policy in found.policies] if found else []
+    at_instant = instant(requirements)
+    return [policy.signal for policy in at_instant.policies] if at_instant else []
 
 
 def _topics(signals: Sequence[Signal]) -> Iterator[Topic]:
@@ -270,12 +279,12 @@ def _parameters(
 
 
 def _deciding(requirements: Sequence[FormalizedRequirement], options: Options) -> tuple[str, ...]:
-    """Those that ask the robot to stand, by `[assume]`; all of them, where nothing says which."""
+    """The requirements that stop the robot, by `[assume]`; all of them if it names none."""
     assumed = options.declarations.assumed if options.declarations else None
     asking = [
         requirement.id
         for requirement in requirements
-        if assumed and assumed.stands in {each.id for each in names(requirement.sentence.response)}
+        if assumed and assumed.stands in {name.id for name in names(requirement.sentence.response)}
     ]
     return tuple(asking or [requirement.id for requirement in requirements])
 
@@ -284,7 +293,7 @@ def _deciding(requirements: Sequence[FormalizedRequirement], options: Options) -
 
 
 def modules(package: Package) -> Mapping[str, str]:
-    """Files that need the standard library only: `monitor.py` as audited, and `perception.py`."""
+    """The files without dependencies on ROS: `monitor.py` as audited, and `perception.py`."""
     return {
         "monitor.py": monitor.text(*package.requirements),
         "perception.py": perception.text(package.requirements),
@@ -292,14 +301,16 @@ def modules(package: Package) -> Mapping[str, str]:
 
 
 def tests(package: Package) -> str:
-    """Unit tests of both: shortest runs to each verdict, and a node to which nothing has come."""
-    found = {requirement.id: words(requirement) for requirement in package.requirements}
-    return render("ros/test_monitor.py.j2", package=package, words=found, version=__version__)
+    """Unit tests of both files: shortest runs to each verdict, and a node without messages."""
+    witnesses = {
+        requirement.id: witness_traces(requirement) for requirement in package.requirements
+    }
+    return render("ros/test_monitor.py.j2", package=package, words=witnesses, version=__version__)
 
 
 def documents(package: Package, ros: int) -> Mapping[str, str]:
     """LICENSE, README.md and CHANGELOG.rst."""
-    described = [monitor.described(requirement) for requirement in package.requirements]
+    described = [monitor.description_of(requirement) for requirement in package.requirements]
     given = {"package": package, "ros": ros, "version": __version__, "formalized": described}
     return {
         "LICENSE": render("ros/LICENSE.j2", **given),

@@ -19,7 +19,7 @@ from compiler.targets.target import DEFAULT, Options, Target
 def emit(
     requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """One folder, which belongs into the `src` of a workspace."""
+    """One folder, to be put into the `src` of a workspace."""
     package = shared.package(requirements, options)
     return tuple(
         Artifact(PurePosixPath(package.name, path), text) for path, text in _files(package)
@@ -53,7 +53,7 @@ _TEMPLATES = {
     "config.yaml": "config/{0}.yaml",
     "monitor_node.py": "scripts/monitor_node.py",
 }
-"""Each template with its place in the package."""
+"""Each template with its path in the package."""
 
 
 def _programs(package: shared.Package) -> list[str]:
@@ -80,5 +80,5 @@ TARGET = Target(
     per_rule=False,
     together=True,
     of_loop=True,
-    next_step="its folder belongs into the `src` of a catkin workspace; its README.md says more",
+    next_step="put its folder into the `src` of a catkin workspace; see its README.md",
 )

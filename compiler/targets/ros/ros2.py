@@ -19,7 +19,7 @@ from compiler.targets.ros.package import Package, Topic
 from compiler.targets.target import DEFAULT, Options, Target
 
 _SENSORS = {"sensor_msgs", "nav_msgs"}
-"""The packages of messages that drivers publish so that they may be lost."""
+"""Packages of messages that drivers publish with best effort."""
 _NODE = {
     "diagnostic_msgs.msg": "DiagnosticArray, DiagnosticStatus, KeyValue",
     "rcl_interfaces.msg": "FloatingPointRange, ParameterDescriptor",
@@ -31,7 +31,7 @@ _NODE = {
     "rclpy.signals": "SignalHandlerOptions",
     "std_msgs.msg": "Bool, String",
 }
-"""What the node imports of ROS; nothing by name: the module itself."""
+"""The node's imports from ROS packages; an empty value imports the module itself."""
 _NEEDED = ("launch", "launch_ros", "lifecycle_msgs", "rcl_interfaces", "rclpy")
 _TEMPLATES = {
     "package.xml": "package.xml.j2",
@@ -44,7 +44,7 @@ _TEMPLATES = {
     "test/test_linters.py": "test_linters.py.j2",
     "test/flake8.ini": "flake8.ini.j2",
 }
-"""The files that are of ROS 2 alone."""
+"""The files that only ROS 2 packages have."""
 
 
 def emit(
@@ -53,7 +53,7 @@ def emit(
     """A folder with the name of the package.
 
     Raises:
-        AssertionError: some requirements were to be refused.
+        AssertionError: some requirement had to be refused.
     """
     package = shared.package(requirements, options)
     folder = PurePosixPath(package.name)
@@ -92,19 +92,19 @@ def _values(package: Package) -> dict[str, Any]:
             for topic in package.topics
         ],
         "parameters": [
-            (each, _literal(each.value), wrap(each.text, 80, drop_whitespace=False))
-            for each in package.parameters
+            (parameter, _literal(parameter.value), wrap(parameter.text, 80, drop_whitespace=False))
+            for parameter in package.parameters
         ],
     }
 
 
 def _literal(value: float | Sequence[str]) -> str:
-    """Of Python, and of YAML."""
+    """The value as a literal of Python and YAML."""
     return repr(value) if isinstance(value, float) else json.dumps(list(value))
 
 
 def qos(topic: Topic) -> str:
-    """How the node subscribes to it, in Python."""
+    """The QoS of the node's subscription, as Python code."""
     return "qos_profile_sensor_data" if topic.package in _SENSORS else "10"
 
 

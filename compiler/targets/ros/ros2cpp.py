@@ -1,7 +1,7 @@
 """`--emit ros2-cpp-package`: a package of ROS 2 around the monitor in C (`ament_cmake`, rclcpp).
 
-It watches beside the package in Python, by other texts: its requests to stop are on a topic of its
-own, until somebody remaps it.
+The package can run beside the one in Python, with different code: its stop requests are on a
+separate topic until they are remapped.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from compiler.signals.functions import SignalFunction
 from compiler.signals.policies import Meaning, Policy, instant
 from compiler.signals.printing import parts
 from compiler.targets.c import monitor
-from compiler.targets.c.monitor import Joined, joined
+from compiler.targets.c.monitor import JoinedInterface, joined_interface
 from compiler.targets.python import perception
-from compiler.targets.python.monitor import described
+from compiler.targets.python.monitor import description_of
 from compiler.targets.ros import package as shared
 from compiler.targets.ros.package import Package
 from compiler.targets.ros.ros2 import qos
 from compiler.targets.target import DEFAULT, Options, Target
-from compiler.targets.witness_traces import RepeatedTick, words
+from compiler.targets.witness_traces import RepeatedTick, witness_traces
 from fretish.bindings.declarations import Reading, Reduce
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -47,7 +47,7 @@ _TEMPLATES = {
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """F312 and F601: what no monitor in C, and no node of ROS, can be made of."""
+    """F312 and F601 for requirements without a monitor in C, or a ROS node."""
     return shared.refuse(requirement) or monitor.refuse(requirement)
 
 
@@ -57,7 +57,7 @@ def emit(
     """A folder with the name of the package.
 
     Raises:
-        AssertionError: some requirements were to be refused.
+        AssertionError: some requirement had to be refused.
     """
     whole = shared.package(requirements, options)
     package = replace(whole, name=f"{whole.name}_cpp", interception=None)
@@ -77,16 +77,16 @@ def emit(
 
 
 def _values(package: Package) -> dict[str, Any]:
-    found = instant(package.requirements)
-    assert found is not None, "it is refused"
-    names = joined(package.requirements)
-    places = {policy.signal.name: place for place, policy in enumerate(found.policies)}
+    at_instant = instant(package.requirements)
+    assert at_instant is not None, "it is refused"
+    names = joined_interface(package.requirements)
+    places = {policy.signal.name: place for place, policy in enumerate(at_instant.policies)}
     topics = [topic.name for topic in package.topics]
     signals = [
-        _signal(policy, each)
-        for policy, each in zip(found.policies, names.signals.signals, strict=True)
+        _signal(policy, function)
+        for policy, function in zip(at_instant.policies, names.signals.signals, strict=True)
     ]
-    order = {meaning.name: place for place, meaning in enumerate(found.meanings)}
+    order = {meaning.name: place for place, meaning in enumerate(at_instant.meanings)}
     return {
         "package": package,
         "apart": True,
@@ -94,7 +94,7 @@ def _values(package: Package) -> dict[str, Any]:
         "stamped": package.time is TimeSource.HEADER_STAMP,
         "messages": sorted({"rcl_interfaces", *package.dependencies}),
         "headers": sorted(
-            {f"{each.package}/msg/{snake(each.message)}.hpp" for each in package.topics}
+            {f"{function.package}/msg/{snake(function.message)}.hpp" for function in package.topics}
             - {"std_msgs/msg/bool.hpp", "std_msgs/msg/string.hpp"}
         ),
         "topics": [
@@ -103,39 +103,39 @@ def _values(package: Package) -> dict[str, Any]:
                 "package": topic.package,
                 "message": topic.message,
                 "is_sensor": qos(topic) != "10",
-                "signals": [each for each in signals if each["topic"] == topic.name],
+                "signals": [function for function in signals if function["topic"] == topic.name],
             }
             for topic in package.topics
         ],
-        "outlines": [each for each in signals if each["outline"]],
-        "samples": [each["name"] for each in signals],
+        "outlines": [function for function in signals if function["outline"]],
+        "samples": [function["name"] for function in signals],
         "policies": [
             {
                 "topic": topics.index(policy.signal.path.topic),
                 "max_age": _optional(policy.signal.max_age),
             }
-            for policy in found.policies
+            for policy in at_instant.policies
         ],
-        "any_held": any(meaning.held for meaning in found.meanings),
-        "meanings": _meanings(found.meanings, names, places),
+        "any_held": any(meaning.held for meaning in at_instant.meanings),
+        "meanings": _meanings(at_instant.meanings, names, places),
         "inputs": [(member, order[name]) for name, member in names.inputs.items()],
         "requirements": [
             {
                 "id": requirement.id,
                 "member": member,
                 "topics": [topics.index(name) for name in perception.topics_of(requirement)],
-                "described": described(requirement),
+                "described": description_of(requirement),
             }
             for requirement, member in zip(package.requirements, names.outcomes, strict=True)
         ],
         "words": [
-            (place, word.name, [_ticks(each, order) for each in word.ticks])
+            (place, word.name, [_ticks(function, order) for function in word.ticks])
             for place, requirement in enumerate(package.requirements)
-            for word in words(requirement)
+            for word in witness_traces(requirement)
         ],
         "parameters": [
-            (each, _literal(each.value), wrap(each.text, 80, drop_whitespace=False))
-            for each in package.parameters
+            (function, _literal(function.value), wrap(function.text, 80, drop_whitespace=False))
+            for function in package.parameters
         ],
     }
 
@@ -155,7 +155,7 @@ def _signal(policy: Policy, function: SignalFunction) -> dict[str, Any]:
         "name": function.name,
         "form": function.form,
         "fields": function.fields,
-        "parameters": "".join(f", double f_{each}" for each in function.fields),
+        "parameters": "".join(f", double f_{field}" for field in function.fields),
         "valid": function.valid,
         "invalid": ", ".join(map(_MEANINGS.__getitem__, function.invalid)),
         "numbers": function.numbers,
@@ -179,7 +179,7 @@ _MEANINGS = {
 
 
 def _meanings(
-    meanings: Sequence[Meaning], names: Joined, places: Mapping[str, int]
+    meanings: Sequence[Meaning], names: JoinedInterface, places: Mapping[str, int]
 ) -> list[dict[str, Any]]:
     held = iter(names.signals.held)
     return [

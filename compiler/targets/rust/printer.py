@@ -1,4 +1,4 @@
-"""The rail of a monitor as Rust: fields, expressions, statements."""
+"""A monitor's program as Rust: fields, expressions, statements."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from compiler.program.values import Age, Comparison, Not, Value
 
 
 class Field(NamedTuple):
-    """A field of the struct of a rail."""
+    """A field of the struct of the state."""
 
     name: str
     kind: str
@@ -22,13 +22,13 @@ class Field(NamedTuple):
 
 
 class Printer(Statements):
-    """Rust's words for a rail: its cells are fields of `self`, its literals those of `now`."""
+    """The syntax of Rust: cells are fields of `self`, literals are fields of `now`."""
 
     __slots__ = ()
     CELLS, LITERALS, LOCAL, IF = "self.", "now.", "let", ("", "")
 
     def fields(self) -> Iterator[Field]:
-        """Those of all cells."""
+        """The fields of all cells."""
         for cell in self.rail.cells:
             match cell:
                 case Flag(name, initial, comment):
@@ -43,22 +43,22 @@ class Printer(Statements):
                     assert_never(cell)
 
     def negated(self, value: Value) -> str:
-        """A comparison is turned round: clippy asks for that."""
+        """The negation; a comparison gets the opposite operator, as clippy demands."""
         if isinstance(value, Age):
             return self.value(replace(value, comparison=_OPPOSITES[value.comparison]))
         return f"!{self.grouped(value)}"
 
     def joins(self, value: Value) -> bool:
-        """Whether its expression joins or compares others; a negated comparison is one, too."""
+        """Whether the expression has an operator; a negated comparison has one, too."""
         is_turned = isinstance(value, Not) and isinstance(value.value, Age)
         return is_turned or Statements.joins(self, value)
 
     def capped(self, counter: str, most: int) -> str:
-        """A counter one tick later, where it stays at the most."""
+        """The counter one tick later, limited to `most`."""
         return f"if {counter} < {most} {{ {counter} + 1 }} else {{ {most} }}"
 
     def delay(self, name: str, ring: Ring, value: str) -> Iterator[str]:
-        """One bit of a ring is read and written; its place goes round."""
+        """Statements that read and overwrite one bit of a ring, and advance its position."""
         at = f"self.{ring.name}_at"
         word, bit = f"self.{ring.name}[{at} / 32]", f"1 << ({at} % 32)"
         yield f"let {name} = {word} & ({bit}) != 0;"
@@ -70,7 +70,7 @@ class Printer(Statements):
         yield f"{at} = if {at} == {ring.length - 1} {{ 0 }} else {{ {at} + 1 }};"
 
     def left(self, deadline: Deadline | None, is_open: Value) -> str:
-        """The ticks to a deadline, if there is one ahead."""
+        """The ticks left to a deadline, if one is ahead."""
         if deadline is None:
             return "None"
         condition = f"{self.grouped(is_open)} & (self.{deadline.counter} >= 0)"

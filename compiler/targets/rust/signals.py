@@ -1,6 +1,6 @@
-"""Beside a monitor in Rust: a crate from typed samples to the inputs of the monitor.
+"""A Rust crate beside a monitor's crate: from typed samples to the inputs of the monitor.
 
-It stands beside the crate of the monitor, whose text it leaves as it is.
+The crate of the monitor stays unchanged.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ def files(
     names: Mapping[str, str],
     reserved: Container[str],
 ) -> dict[str, str]:
-    """The texts of the crate beside the crate `monitor`; none where no bindings are at hand.
+    """The files of the crate beside the crate `monitor`; empty without bindings.
 
     Args:
         monitor: the name of the crate.
-        requirements: those of the monitor.
+        requirements: the requirements of the monitor.
         names: the monitor's input of each proposition.
-        reserved: what no name may be.
+        reserved: reserved names.
     """
-    found = functions(requirements, names, _LANGUAGE, reserved)
-    if found is None:
+    sample_functions = functions(requirements, names, _LANGUAGE, reserved)
+    if sample_functions is None:
         return {}
-    bound = {each.name for each in found.propositions}
+    bound = {function.name for function in sample_functions.propositions}
     library = render(
         "rust/signals.rs.j2",
-        functions=found,
+        functions=sample_functions,
         monitor=monitor,
         others=[name for name in names.values() if name not in bound],
         letters=letters,
@@ -63,17 +63,17 @@ def _fixed(value: Fraction) -> str:
 
 
 def _chosen(function: str, number: str, value: Fraction) -> str:
-    found = encode_constant(value)
-    kind = "Single" if found.is_single else "Double"
-    single = f"Number::{kind}({_double(found.single)})"
-    return f"{function}_with({number}, {single}, {_double(found.double)})"
+    encodings = encode_constant(value)
+    kind = "Single" if encodings.is_single else "Double"
+    single = f"Number::{kind}({_double(encodings.single)})"
+    return f"{function}_with({number}, {single}, {_double(encodings.double)})"
 
 
 def _compared(number: str, sign: str, value: Fraction) -> str:
-    found = encode_constant(value, sign)
-    whole = found.magnitude if found.exact > 0 else -found.magnitude
-    wide = f"Number::Whole({whole})" if whole else f"Number::Wide({_double(found.exact)})"
-    beside = f"{_double(found.single)}, {_double(found.double)}, {wide}"
+    encodings = encode_constant(value, sign)
+    whole = encodings.magnitude if encodings.exact > 0 else -encodings.magnitude
+    wide = f"Number::Whole({whole})" if whole else f"Number::Wide({_double(encodings.exact)})"
+    beside = f"{_double(encodings.single)}, {_double(encodings.double)}, {wide}"
     return f"compared_with({number}, Ordering::is_{_SIGNS[sign]}, {beside})"
 
 

@@ -204,7 +204,7 @@ def _finally(tick: _Tick) -> _Timing:
 
 
 def _within(tick: _Tick, n: int) -> _Timing:
-    """The count is the ticks that the oldest open trigger has seen."""
+    """The count is the ticks since the oldest open trigger, its tick included."""
     bits, count = tick.memory.word(n)
     open_ = (tick.triggered | (tick.enforced & some(count))) - tick.q
     tick.memory.set(bits, only(open_, successor(count)))
@@ -212,7 +212,7 @@ def _within(tick: _Tick, n: int) -> _Timing:
 
 
 def _for(tick: _Tick, n: int) -> _Timing:
-    """The count is the ticks that the newest trigger is still owed."""
+    """The count is the ticks for which the newest trigger still demands the response."""
     bits, count = tick.memory.word(n)
     due = tick.triggered | (tick.enforced & some(count))
     rest = only(tick.enforced, predecessor(count))
@@ -234,7 +234,7 @@ def _after(tick: _Tick, n: int) -> _Timing:
     last = equals(count, n + 1)
     tick.memory.set(bits, only(due - last, successor(count)))
     tick.memory.steps[clash] = clashes - last
-    return _Timing(due & bdd.choice(last, clashes | -tick.q, tick.q))
+    return _Timing(due & bdd.ite(last, clashes | -tick.q, tick.q))
 
 
 def _not_after(tick: _Tick, n: int) -> _Timing:

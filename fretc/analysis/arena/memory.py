@@ -143,7 +143,7 @@ def some(word: Word) -> Function:
 def either(condition: Function, then: Word, otherwise: Word) -> Word:
     """One word or the other."""
     pairs = zip(then, otherwise, strict=True)
-    return [bdd.choice(condition, left, right) for left, right in pairs]
+    return [bdd.ite(condition, left, right) for left, right in pairs]
 
 
 def only(condition: Function, word: Word) -> Word:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from compiler.formalization.binding_agreement import place
+from compiler.formalization.binding_agreement import first_use
 from compiler.formalization.formalized import FormalizedRequirement
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Role
@@ -48,7 +48,7 @@ def _two_roles(
     return Diagnostic(
         Code.BAD_USAGE,
         f"`{name}` is an {first}, and an {second} of `{component}`: these are two systems",
-        place(requirement, name),
+        first_use(requirement, name),
         help=f"ask about one of them: `--component {component}`",
     )
 
@@ -95,7 +95,7 @@ def _no_role(
     return Diagnostic(
         Code.NO_ROLE,
         message,
-        place(requirement, name),
+        first_use(requirement, name),
         help=f'say `role = "input"` (the environment) or `role = "output"` (the system) in '
         f"`[{table}.{as_key(name)}]` of bindings.toml; `{name}` {why}",
         paste=f"[{table}.{as_key(name)}]\n{line}",

@@ -55,9 +55,9 @@ class Transition:
         """
         read = [number for number in bdd.support(states) if number in self._steps]
         for number in read:
-            states = bdd.composed(states, number, bdd.variable(self._after[number]))
+            states = bdd.compose(states, number, bdd.variable(self._after[number]))
         for number in read:
-            states = bdd.composed(states, self._after[number], self._steps[number])
+            states = bdd.compose(states, self._after[number], self._steps[number])
         return states
 
     def relation(self, ticks: Function, letters: Function, known: Function) -> Function:
@@ -72,12 +72,12 @@ class Transition:
         for bit in sorted(self.bits, key=lambda bit: -bit.now):
             step = bdd.at(self._steps[bit.now], known)
             found = found & -(bdd.variable(bit.after) ^ step)
-        return bdd.some(found, letters)
+        return bdd.exists(found, letters)
 
     def moved_from(self, states: Function, known: Function) -> Function:
         """The same where a cube holds the whole state: over what it leaves open of the letter."""
         for number in [n for n in bdd.support(states) if n in self._steps]:
-            states = bdd.composed(states, number, bdd.at(self._steps[number], known))
+            states = bdd.compose(states, number, bdd.at(self._steps[number], known))
         return states
 
     def next(self, known: Function) -> State:

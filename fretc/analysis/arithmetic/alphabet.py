@@ -242,12 +242,12 @@ class Cells:
         then = [self.atom(pair.then) for pair in pairs]
         mine = {bit for function in then for bit in bdd.support(function)}
         others = [bit for bit in bdd.support(self.possible) if bit not in mine]
-        agrees = bdd.some(self.possible, bdd.cube(others))
+        agrees = bdd.exists(self.possible, bdd.cube(others))
         begun = self._kept.keep(bdd.true())
         for pair, now in zip(pairs, then, strict=True):
             was = self._kept.keep(self.atom(pair.now))
             first = {True: now, False: -now, None: bdd.true()}[pair.first]
-            agrees = agrees & bdd.choice(begun, -(was ^ now), first)
+            agrees = agrees & bdd.ite(begun, -(was ^ now), first)
         return agrees
 
     def course(self, budget: Budget) -> NumberCourse | None:

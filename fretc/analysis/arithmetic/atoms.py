@@ -9,7 +9,7 @@ from fractions import Fraction
 import z3
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.numbers.terms import Before, NoTermError, Term, Terms, read_by
+from compiler.formalization.numbers.terms import NoTermError, PreviousValue, Term, Terms, read_by
 from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.arithmetic.durations import Lasting, parted
@@ -69,7 +69,7 @@ class Atoms:
         return self._terms.variables
 
     @property
-    def before(self) -> Mapping[str, Before]:
+    def before(self) -> Mapping[str, PreviousValue]:
         """What variables for numbers of the tick before are."""
         return self._terms.before
 

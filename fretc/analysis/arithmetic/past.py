@@ -13,7 +13,7 @@ from math import ceil, floor
 
 import z3
 
-from compiler.formalization.numbers.terms import Before, Term, read_by
+from compiler.formalization.numbers.terms import PreviousValue, Term, read_by
 from fretc.analysis.arithmetic.atoms import Atom, Atoms
 from fretc.analysis.arithmetic.steps import AtomOfTick
 from fretc.analysis.arithmetic.thresholds import Bound, reached
@@ -43,7 +43,7 @@ def remembered(atoms: Atoms, steps: int) -> tuple[Remembered, ...]:
     return tuple(found)
 
 
-def _conditions(atoms: Atoms, name: str, before: Before, steps: int) -> list[Term]:
+def _conditions(atoms: Atoms, name: str, before: PreviousValue, steps: int) -> list[Term]:
     """Comparisons of the number alone, as formulas of the tick; one says that it is as at first."""
     now, then = atoms.variables[before.of], atoms.variables[name]
     found: dict[str, Term] = {}
@@ -73,7 +73,7 @@ def _compared(variable: Term, bound: Bound) -> Term:
     return z3.simplify(variable <= least)
 
 
-def _remembered(atoms: Atoms, name: str, before: Before, condition: Term) -> Remembered:
+def _remembered(atoms: Atoms, name: str, before: PreviousValue, condition: Term) -> Remembered:
     now, then = atoms.variables[before.of], atoms.variables[name]
     of_then = z3.simplify(z3.substitute(condition, (now, then)))
     at_first = z3.simplify(z3.substitute(condition, (now, before.first)))

@@ -104,7 +104,7 @@ def _choices(
     number: int,
 ) -> Iterator[Choice]:
     """What the roots need and is not known yet; it is known then."""
-    for part in bdd.parts(roots):
+    for part in bdd.nodes(roots):
         if part not in known:
             variable, high, low = bdd.branches(part)
             if (high, low) == (bdd.true(), bdd.false()):

@@ -108,7 +108,7 @@ class _Moves:
 
     def or_else(self, first: Function, second: Function) -> Function:
         """The first where the system has any such reply, else the second."""
-        return first | (second - bdd.some(first, self._outputs))
+        return first | (second - bdd.exists(first, self._outputs))
 
     def of(self, winning: Function, goal: Goal | None) -> Function:
         """All of them.
@@ -145,7 +145,7 @@ def _with_broken_word(game: Game, moves: Function) -> Function:
         return moves
     outputs = bdd.cube(game.alphabet.outputs)
     for other in _last_resorts(game):
-        moves = moves | (other - bdd.some(moves, outputs))
+        moves = moves | (other - bdd.exists(moves, outputs))
     return moves
 
 
@@ -163,7 +163,7 @@ def _chosen(relation: Function, outputs: Sequence[int], budget: Budget) -> dict[
         budget.check()
         others = bdd.cube(outputs[place + 1 :])
         when = {value: bdd.at(relation, bdd.literal(output, value)) for value in (False, True)}
-        possible = {value: bdd.some(when[value], others) for value in when}
+        possible = {value: bdd.exists(when[value], others) for value in when}
         found[output] = possible[True] - possible[False]
-        relation = bdd.choice(found[output], when[True], when[False])
+        relation = bdd.ite(found[output], when[True], when[False])
     return found

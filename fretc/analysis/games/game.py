@@ -131,15 +131,15 @@ class Game:
             states: those.
             safe: ticks that break nothing; None: those of the game.
         """
-        return bdd.every_implied(self.legal, self.answered(states, safe), self._inputs)
+        return bdd.forall_implies(self.legal, self.answered(states, safe), self._inputs)
 
     def answered(self, states: Function, safe: Function | None = None) -> Function:
         """States and inputs to which the system has an answer that leads to one of these states."""
         moved = self.transition.moved(states)
-        answer = bdd.some_of_both(self.safe if safe is None else safe, moved, self._outputs)
+        answer = bdd.and_exists(self.safe if safe is None else safe, moved, self._outputs)
         if self.kept == bdd.true():
             return answer
-        return answer | bdd.some_of_both(self.reachable, -self.kept, self._outputs)
+        return answer | bdd.and_exists(self.reachable, -self.kept, self._outputs)
 
     def surviving(self, states: Function, inputs: Letter) -> Function:
         """From where the system can stay in these states, while the environment repeats inputs.
@@ -149,7 +149,7 @@ class Game:
             OutOfTimeError: it takes too long.
         """
         known, bits = bdd.point(inputs), self.transition.bits
-        free = bdd.some_of_both(self.reachable, -self.kept, self._outputs) | -self.legal
+        free = bdd.and_exists(self.reachable, -self.kept, self._outputs) | -self.legal
         moves = self.transition.relation(states & self.safe, self._outputs, known)
         moves = moves | (states & bdd.at(free, known) & identity(bits))
         return Relation(bits, moves, self._budget).lasting()

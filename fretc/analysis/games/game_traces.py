@@ -148,7 +148,7 @@ class Counterstrategy:
         escape = next(e for left, e in chain if bdd.at(left, known) == bdd.false())
         moved = game.transition.moved_from(escape, known)
         free = (bdd.at(game.safe, known) & moved) | bdd.at(game.reachable - game.kept, known)
-        answer = bdd.some(free, bdd.cube(game.alphabet.outputs))
+        answer = bdd.exists(free, bdd.cube(game.alphabet.outputs))
         return whole(bdd.at(game.legal, known) - answer, game.alphabet.inputs)
 
     def _number(self, known: Function, near: int) -> int:

@@ -181,7 +181,7 @@ def _at(atoms: Atoms, formula: Term, tick: int) -> Term:
 def _term(function: Function, tick: int, known: dict[Function, Term]) -> Term:
     """A function of bits as a formula of z3; `known` has those of the tick."""
     known |= {bdd.true(): z3.BoolVal(True), bdd.false(): z3.BoolVal(False)}
-    for part in bdd.parts([function]):
+    for part in bdd.nodes([function]):
         if part not in known:
             number, high, low = bdd.branches(part)
             known[part] = z3.If(_bit(number, tick), known[high], known[low])

@@ -58,7 +58,7 @@ class Runs:
 
     def preceding(self, states: Function) -> Function:
         """The states from which a tick that breaks nothing leads to one of these."""
-        return bdd.some_of_both(self.safe, self.transition.moved(states), self._letters)
+        return bdd.and_exists(self.safe, self.transition.moved(states), self._letters)
 
     def lasting(self, within: Function | None = None) -> Function:
         """The states from which all that is kept can be kept for ever.
@@ -109,7 +109,7 @@ class Runs:
             lasting: of these runs.
         """
         initial, moved = self.transition.initial, self.transition.moved
-        found = bdd.some_of_both(self.safe & ticks, moved(lasting), self._letters)
+        found = bdd.and_exists(self.safe & ticks, moved(lasting), self._letters)
         leaps = IterativeSquaring(self._counters)
         while True:
             self._budget.check()

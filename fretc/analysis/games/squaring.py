@@ -91,10 +91,10 @@ class Relation:
             OutOfTimeError: it takes too long.
         """
         relation, after = self.function, bdd.cube(bit.after for bit in self.bits)
-        states = bdd.some(relation, after)
+        states = bdd.exists(relation, after)
         while True:
             relation = self._squared(relation)
-            left = bdd.some(relation, after)
+            left = bdd.exists(relation, after)
             if left == states:  # what has a path of n ticks has one of 2n
                 return states
             states = left
@@ -109,7 +109,7 @@ class Relation:
         after = bdd.cube(bit.after for bit in self.bits)
         relation, found = self.function | identity(self.bits), goal
         while True:
-            more = bdd.some_of_both(relation, _renamed(found, self.bits), after)
+            more = bdd.and_exists(relation, _renamed(found, self.bits), after)
             if more == found:
                 return found
             relation, found = self._squared(relation), more
@@ -142,9 +142,9 @@ class Relation:
             raise TooLargeError
         first, then = relation, relation
         for bit in self.bits:
-            first = bdd.composed(first, bit.after, bdd.variable(bit.later))
-            then = bdd.composed(then, bit.now, bdd.variable(bit.later))
-        return bdd.some_of_both(first, then, bdd.cube(bit.later for bit in self.bits))
+            first = bdd.compose(first, bit.after, bdd.variable(bit.later))
+            then = bdd.compose(then, bit.now, bdd.variable(bit.later))
+        return bdd.and_exists(first, then, bdd.cube(bit.later for bit in self.bits))
 
 
 def identity(bits: tuple[Bit, ...]) -> Function:
@@ -157,5 +157,5 @@ def identity(bits: tuple[Bit, ...]) -> Function:
 
 def _renamed(states: Function, bits: tuple[Bit, ...]) -> Function:
     for bit in bits:
-        states = bdd.composed(states, bit.now, bdd.variable(bit.after))
+        states = bdd.compose(states, bit.now, bdd.variable(bit.after))
     return states

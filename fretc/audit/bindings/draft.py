@@ -15,7 +15,7 @@ from compiler.files.build_id import __version__
 from compiler.files.templating import render
 from compiler.formalization import binding_agreement
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.audit.bindings.quantities import QUANTITIES, Quantity
 from fretc.logs.messages.leaves import Kind, Leaves
 from fretc.logs.reader import Overview

@@ -13,10 +13,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from compiler.logic import formula as f
-from compiler.logic.completions import shown
+from compiler.logic.completions import first_ticks
 from compiler.logic.evaluation import evaluate, evaluate_unknown_all
 from compiler.situations.situations import Situation
-from compiler.situations.thresholds import Place
+from compiler.situations.thresholds import ThresholdPosition
 from monitors.kernel import Column
 
 
@@ -31,7 +31,7 @@ class Encounter:
     """None, too, where it has been seen: nothing is left open then."""
 
 
-Near = Callable[[Place], Column]
+Near = Callable[[ThresholdPosition], Column]
 """A place of a number → at which ticks the number is there."""
 
 
@@ -100,7 +100,7 @@ def _exact(
         return bounds
     if seen is not None and seen == max(certain):
         return bounds
-    found = shown(formula, columns, ticks, counted)
+    found = first_ticks(formula, columns, ticks, counted)
     return bounds if found is None else (found.by_all, found.by_some)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from compiler.files.text_files import regular, unreadable
+from compiler.files.text_files import open_regular, unreadable
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.schema import Result
 from fretc.audit.store.anywhere import required_source
@@ -102,7 +102,7 @@ def read(paths: Sequence[str]) -> Known | Diagnostic:
 def _read(path: str) -> Known | Diagnostic:
     if not os.path.isdir(path):
         try:
-            with regular(path) as file:
+            with open_regular(path) as file:
                 start = file.read(64)
         except OSError as error:
             return unreadable(path, error)

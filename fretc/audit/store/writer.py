@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from compiler.files.checked_json import SchemaError
-from compiler.files.text_files import regular, sha256, write
+from compiler.files.text_files import open_regular, sha256, write
 from fretc.audit.evidence.schema import Document
 from fretc.audit.store import register
 from fretc.audit.store.files import content, encoded
@@ -117,7 +117,7 @@ def is_store(folder: Path) -> bool:
 
 def _is_manifest(path: Path) -> bool:
     try:
-        with regular(path) as file:
+        with open_regular(path) as file:
             return SCHEMA.encode() in file.read(200)
     except OSError:
         return False

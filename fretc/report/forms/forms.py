@@ -15,7 +15,7 @@ from fretish.diagnostics.extras import unless_installed
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.report.model.views import Report
     from fretc.report.page.html import Inset
     from fretc.report.sections.details import Details

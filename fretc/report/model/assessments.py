@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 
-from compiler.formalization.formalized import FormalizedRequirement, plain
+from compiler.formalization.formalized import FormalizedRequirement, without_probability
 from compiler.logic.claims import Proof
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.bases import bases
@@ -144,7 +144,10 @@ class Assessment:
             return SUSPECT
         if not self.is_bound:
             return UNBOUND
-        if self.requirement is None or monitor.refuse(plain(self.requirement)) is not None:
+        if (
+            self.requirement is None
+            or monitor.refuse(without_probability(self.requirement)) is not None
+        ):
             return NOT_GENERATED
         if verdict in SHOWN:
             return EXERCISED_PASS

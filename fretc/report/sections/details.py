@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.declared_units import in_declared_units, thresholds_in_declared_units
 from fretc.audit.evidence.schema import Result, Threshold

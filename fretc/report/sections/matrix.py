@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from compiler.logic.claims import Layer
-from compiler.project.folder import Project
-from compiler.project.parent_graph import without_hazard
+from compiler.project.hazards import without_hazard
+from compiler.project.project import Project
 from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.report.model import phrases

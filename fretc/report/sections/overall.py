@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment

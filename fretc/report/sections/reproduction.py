@@ -12,11 +12,11 @@ from compiler.files.shell_quoting import (
     UnencodableNameError,
     check_of,
     is_sha256,
-    unsayable,
+    unquotable_comment,
     word,
     words,
 )
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.evidence.basis import of_all, of_bindings
 from fretc.audit.evidence.briefs import EvidenceSource
@@ -69,7 +69,7 @@ def _command(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
     try:
         command = text()
     except UnencodableNameError as error:
-        command = unsayable(str(error))
+        command = unquotable_comment(str(error))
     if command:
         yield Command(purpose, command)
 

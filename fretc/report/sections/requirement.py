@@ -13,7 +13,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
 from compiler.logic import printing
 from compiler.logic.claims import Proof
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
 from fretc.audit.evidence.probabilities import shown
 from fretc.report.model import phrases

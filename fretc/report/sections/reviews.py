@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.attestation.signatures import SignatureBook
 from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.verdicts import SUSPECT

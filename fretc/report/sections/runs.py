@@ -11,7 +11,7 @@ from functools import cached_property
 from itertools import takewhile
 
 from compiler.files.records import replace
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.audit.evidence.briefs import Brief, Briefs, RunFacts, audited_s
 from fretc.audit.evidence.schema import Checked, Finding, Topic
 from fretc.report.model import phrases

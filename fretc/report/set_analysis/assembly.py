@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.analysis.assumptions import assumptions
 from fretc.analysis.evidence import AnalyzedSet, Document, suspicions
 from fretc.analysis.findings import Analysis, Verdict

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from compiler.files.records import UNSET
-from compiler.project.acceptances import idle
-from compiler.project.folder import Project
+from compiler.project.acceptances import unused_acceptances
+from compiler.project.project import Project
 from compiler.project.refusals import unreviewable
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.schema import Finding
@@ -49,7 +49,7 @@ def warnings(
     return (
         *found,
         *(each for each in logged if each.accepted),
-        *idle(project.acceptances, every, project.declarations, recorded),
+        *unused_acceptances(project.acceptances, every, project.declarations, recorded),
     )
 
 

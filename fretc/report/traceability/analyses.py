@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import chain
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.analysis.arena.roles import roles
 from fretc.analysis.assumptions import assumptions
 from fretc.analysis.components import by_outputs

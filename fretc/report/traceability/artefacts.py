@@ -10,7 +10,7 @@ from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Proof
-from compiler.targets.interceptor_options import ASSUMED, assumed
+from compiler.targets.interceptor_options import ASSUMED, assumptions_digest
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.target import Options, Target
 from fretish.bindings.declarations import Declarations
@@ -131,4 +131,4 @@ def shared_products(declarations: Declarations | None) -> tuple[Product, ...]:
         return ()
     text = interceptor.text(declared, PurePath(declarations.source.name).name)
     node = Product(interceptor.TARGET.name, interceptor.NAME, sha256(text), "")
-    return (node, Product("bindings", ASSUMED, assumed(declarations), ""))
+    return (node, Product("bindings", ASSUMED, assumptions_digest(declarations), ""))

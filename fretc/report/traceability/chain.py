@@ -18,8 +18,8 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.acceptances import TOPIC, Acceptance
-from compiler.project.folder import Project
 from compiler.project.hazards import Hazard
+from compiler.project.project import Project
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.bases import audited_topics, bases
 from fretc.audit.evidence import basis

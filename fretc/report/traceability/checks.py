@@ -13,8 +13,8 @@ from compiler.emit import TARGETS
 from compiler.explanation.constant_parts import constant_parts
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import METHODS
-from compiler.project.folder import Project
-from compiler.project.parent_graph import without_hazard
+from compiler.project.hazards import without_hazard
+from compiler.project.project import Project
 from compiler.targets.target import Options
 from fretc.report.traceability.changes import in_words
 from fretc.report.traceability.lock import ReviewedRequirement

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.project.stated_numbers import drifted
 from fretc.audit.evidence.verdicts import VERDICTS, severity
 from fretc.report.traceability.chain import ANALYSIS, VERDICT, Suspect

@@ -14,7 +14,7 @@ from typing import Any
 
 import tomli_w
 
-from compiler.files.dates import is_date, is_to_come
+from compiler.files.dates import is_date, is_in_future
 from compiler.files.text_files import read as read_text
 from fretc.analysis.findings import Verdict
 from fretc.audit.evidence.basis import SENTENCE
@@ -348,7 +348,7 @@ def _broken(tables: Tables, lock: Lock) -> Iterator[Diagnostic]:
         if fields["seal"] != review.seal:
             what = f"the review of {id} is not as `fretc lock` wrote it: somebody has edited it"
             yield _wrong(tables, what, _TABLE, id, "seal")
-        elif is_to_come(review.date):
+        elif is_in_future(review.date):
             what = f"the review of {id} is of {review.date}, a day that is still to come"
             yield _wrong(tables, what, _TABLE, id, "date")
 

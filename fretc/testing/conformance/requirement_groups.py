@@ -116,7 +116,7 @@ class RequirementGroup:
 
     def _allowed(self) -> Function:
         """The inputs that keep the assumptions, whatever a program does that keeps its own."""
-        return self.alphabet.legal & bdd.every_implied(self._safe, self._kept, self._outputs)
+        return self.alphabet.legal & bdd.forall_implies(self._safe, self._kept, self._outputs)
 
     def _aims(self, requirement: FormalizedRequirement) -> Iterator[TargetState]:
         if requirement.id not in self._counters:
@@ -189,12 +189,12 @@ class RequirementGroup:
     def _forced(self, goal: Function, states: Function) -> Function:
         """The inputs after which the goal is there or the states come, whatever it answers."""
         ends = goal | self.transition.moved(states)
-        return self.allowed & bdd.every_implied(self._safe, ends, self._outputs)
+        return self.allowed & bdd.forall_implies(self._safe, ends, self._outputs)
 
     def _helped(self, goal: Function, states: Function) -> Function:
         """The inputs after which that is so for some answer."""
         ends = (goal | (self._safe & self.transition.moved(states))) & self._kept
-        return self.allowed & bdd.some(ends & self.alphabet.reachable, self._outputs)
+        return self.allowed & bdd.exists(ends & self.alphabet.reachable, self._outputs)
 
     def inputs(self, options: Function, wanted: Letter) -> Letter:
         """Values of the inputs among the options, as they are wanted where that can be.
@@ -273,7 +273,7 @@ class Layers:
     def _extend(self) -> None:
         self._budget.check()
         way = self._step(self._states[-1])
-        states = bdd.some(way, self._inputs)
+        states = bdd.exists(way, self._inputs)
         self._is_complete = bool(states == self._states[-1])
         self._ways.append(way)
         self._states.append(states)

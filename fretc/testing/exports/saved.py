@@ -15,7 +15,7 @@ from typing import Any
 from compiler.files.records import replace
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import monitor as emitted
-from compiler.targets.python.comparisons import NUMBER, TRUTH, Input, front
+from compiler.targets.python.comparisons import NUMBER, TRUTH, Input, input_adapter
 from fretc.testing.exports.tables import Table, table, truths
 from fretc.testing.suite import LONGEST_NAME, Suite, Test
 from fretc.testing.words import outcome
@@ -96,7 +96,7 @@ def _check(requirement: FormalizedRequirement, monitor: Monitor, test: Test) -> 
 def _check_table(
     requirement: FormalizedRequirement, monitor: Monitor, test: Test, read: Table
 ) -> None:
-    variables = front((requirement,), requirement.watched)
+    variables = input_adapter((requirement,), requirement.watched)
     inputs = {} if variables is None or read.of_truths else variables.inputs
     for _, values in read.rows:
         for name, value in zip(read.names, values, strict=True):

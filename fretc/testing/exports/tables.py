@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.targets.python.comparisons import front
+from compiler.targets.python.comparisons import input_adapter
 from fretc.analysis.arena.alphabet import Value
 from fretc.testing.suite import Test
 
@@ -31,7 +31,7 @@ class Table:
 
 def table(requirement: FormalizedRequirement, test: Test) -> Table:
     """The columns of a test that the monitor of its requirement reads."""
-    variables = front((requirement,), requirement.watched)
+    variables = input_adapter((requirement,), requirement.watched)
     names = requirement.watched if variables is None else tuple(variables.inputs)
     known = all(row.values.keys() >= {*names} for row in test.rows)
     if not known:

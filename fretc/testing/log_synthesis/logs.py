@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Literal
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.many_logs import audited
 from fretc.audit.plan import Plan, planned

@@ -22,7 +22,7 @@ from typing import Any
 import tomli_w
 
 from compiler.files.records import UnsetType
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.audit.evidence.schema import Result
 from fretc.audit.many_logs import audited
 from fretc.audit.plan import Plan, monitored_requirements, planned

@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import excluded
-from compiler.formalization.numbers.reals import MOST_SEARCHED, by_numbers
+from compiler.formalization.letters import impossible_combinations
+from compiler.formalization.numbers.reals import MOST_SEARCHED, with_numeric_counterexample
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
 from compiler.logic.orders import Exclusion, only_possible
 from compiler.targets.python import monitor as python
@@ -217,7 +217,7 @@ def _agree(
 def _letters(requirement: FormalizedRequirement, names: Sequence[str]) -> Sequence[rails.Letter]:
     """The values that may come at a tick, unknown ones among them."""
     every = tuple(product((False, True, None), repeat=len(names)))
-    return only_possible(every, names, excluded(requirement))
+    return only_possible(every, names, impossible_combinations(requirement))
 
 
 def _read(requirement: FormalizedRequirement, machines: Machines, limit: int) -> int | Outcome:
@@ -241,7 +241,7 @@ def _read(requirement: FormalizedRequirement, machines: Machines, limit: int) ->
         return rails.in_lock_step(left, right, letters, most, NAMES)
 
     for doubt in (False, True):
-        result, note = by_numbers(
+        result, note = with_numeric_counterexample(
             requirement, names, rails.Distinguished, partial(compare, doubt=doubt)
         )
         match result:

@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from compiler.files.processes import shield
+from compiler.files.processes import isolate_imports
 
 _MOST_OUTPUT = 32 * 2**20
 """Bytes that a program may write to one file."""
@@ -46,7 +46,7 @@ def run(command: Sequence[str], folder: Path, *, seconds: float, memory: int) ->
     Raises:
         OSError: the program cannot be started.
     """
-    shield()
+    isolate_imports()
     file = folder / "output.txt"
     with file.open("wb") as output:
         process = subprocess.Popen(

@@ -21,7 +21,7 @@ from multiprocessing.resource_tracker import ensure_running
 from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
 
-from compiler.files.processes import ignore_interrupts, reply, shield, stops_blocked
+from compiler.files.processes import ignore_interrupts, isolate_imports, reply, stops_blocked
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -118,7 +118,7 @@ class Session:
 
     def _begun(self) -> tuple[Connection, SpawnProcess]:
         if self._process is None or self._connection is None:
-            shield()
+            isolate_imports()
             context = multiprocessing.get_context("spawn")
             self._connection, theirs = context.Pipe()
             self._process = context.Process(target=_serve, args=(theirs, self._limits), daemon=True)

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from compiler.agents.checking import checked
+from compiler.agents.checking import check_agent
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof, Result, not_applicable
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
 from fretc.verification.engines import sandbox as processes
@@ -38,7 +38,7 @@ def prove(
             if any(request.demands(layer, requirement.entry) for layer in _OF_AGENT)
             for proof in _bundle(requirement, request.limits)
         )
-    proofs = processes.confined(request.limits, checked, agent, properties, request.percepts)
+    proofs = processes.confined(request.limits, check_agent, agent, properties, request.percepts)
     if isinstance(proofs, Stopped):
         return (unknown("agent", Layer.AGENT, CLAIM, proofs.reason, named_text(agent)),)
     return proofs

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.verification.layers.request import Request, unknown
 
 

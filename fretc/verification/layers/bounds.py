@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Proof
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.verification.layers.request import Request, setup_of
 from fretc.verification.loop.bounds import bounds_proofs
 

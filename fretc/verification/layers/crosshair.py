@@ -9,7 +9,7 @@ from compiler.files import records
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.verification.engines.crosshair import contract_texts, with_crosshair
 from fretc.verification.interceptor.file import Head, head
 from fretc.verification.layers.request import Request, interceptor_of, unknown

@@ -7,7 +7,7 @@ from pathlib import PurePath
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof, not_checked, proof
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.c.monitor import TARGET
 from fretc.verification.c.analysis import analysed
 from fretc.verification.compiled.plan import SourceText

@@ -8,7 +8,7 @@ from compiler.files import records
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof, not_applicable
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.interceptor_options import options
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped

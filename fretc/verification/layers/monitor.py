@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof, not_checked, proof
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.verification.compiled.plan import SourceText
 from fretc.verification.engines.sandbox import Session, Stopped
 from fretc.verification.layers.languages import Row, language_of

@@ -9,7 +9,7 @@ from pathlib import PurePath
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.target import stem
 from fretc.verification.engines.sandbox import Limits

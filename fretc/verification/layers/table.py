@@ -16,7 +16,7 @@ from compiler.logic.claims import Layer
 if TYPE_CHECKING:
     from compiler.formalization.formalized import FormalizedRequirement
     from compiler.logic.claims import Proof
-    from compiler.project.folder import Project
+    from compiler.project.project import Project
     from fretc.verification.layers.request import Request
     from fretish.diagnostics.diagnostic import Diagnostic
 

@@ -17,7 +17,7 @@ from typing import Any
 
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import atoms_of, meanings
+from compiler.formalization.letters import atoms_of, letters_by_valuation
 from compiler.logic.claims import (
     Layer,
     Outcome,
@@ -188,7 +188,7 @@ def question(requirement: FormalizedRequirement, setup: Setup) -> Question | str
 def _answers(sentence: s.Sentence, stands: str) -> bool:
     """Whether the response holds wherever the robot stands."""
     atoms = atoms_of(sentence)
-    letters = meanings(sentence, atoms)
+    letters = letters_by_valuation(sentence, atoms)
     place = atoms.index(stands)
     return all(letter[2] for values, letter in letters.items() if values[place])
 

@@ -14,11 +14,11 @@ from math import gcd
 
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import excluded, exclusion_in_words
+from compiler.formalization.letters import exclusion_in_words, impossible_combinations
 from compiler.logic import spot as automata
 from compiler.logic.claims import Layer, Outcome, Proof, not_applicable, not_checked, proof
 from compiler.targets.interceptor_options import ASSUMED, options, ticks
-from compiler.targets.interceptor_options import assumed as hash_of_assumed
+from compiler.targets.interceptor_options import assumptions_digest as hash_of_assumed
 from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
@@ -143,7 +143,7 @@ def case(requirement: FormalizedRequirement, setup: Setup) -> Case | str:
         options(interception),
         declared,
         assumed.stands,
-        excluded=excluded(requirement),
+        excluded=impossible_combinations(requirement),
     )
 
 

@@ -16,7 +16,7 @@ from functools import lru_cache
 from typing import Any
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import excluded
+from compiler.formalization.letters import impossible_combinations
 from compiler.logic.orders import Exclusion
 from compiler.program.program import SIGNALS
 from fretc.verification.monitor.text_check import own
@@ -132,7 +132,7 @@ def agreed(
         atoms: what the requirement depends on.
         never: what is left out beside what can never be.
     """
-    bound, never = requirement.ticks or 0, (*excluded(requirement), *never)
+    bound, never = requirement.ticks or 0, (*impossible_combinations(requirement), *never)
     is_alone = len(monitor.REQUIREMENTS) == 1
     traces = _traces(monitor, bound, *((tuple(atoms), never) if is_alone or never else ((), ())))
     for columns, ticks in traces:

@@ -15,7 +15,7 @@ from typing import Protocol
 from compiler.formalization.letters import (
     MOST_ATOMS,
     Valuation,
-    meanings,
+    letters_by_valuation,
     temporal_predicate,
 )
 from compiler.formalization.reference import (
@@ -100,7 +100,7 @@ def compare(
         return f"`{predicate}` speaks of other ticks, and the automaton knows one"
     if len(atoms) > MOST_ATOMS:
         return f"{len(atoms)} propositions, more than {MOST_ATOMS}"
-    letters = meanings(sentence, atoms)
+    letters = letters_by_valuation(sentence, atoms)
     try:
         automaton = explore(template(sentence, ticks), letters.values(), limit)
     except TooManyStatesError:

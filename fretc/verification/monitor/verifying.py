@@ -20,8 +20,8 @@ from dataclasses import replace
 from functools import lru_cache
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import atoms_of, excluded
-from compiler.formalization.numbers.reals import MOST_SEARCHED, by_numbers
+from compiler.formalization.letters import atoms_of, impossible_combinations
+from compiler.formalization.numbers.reals import MOST_SEARCHED, with_numeric_counterexample
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
 from compiler.logic.orders import Exclusion
 from compiler.targets.python import monitor as target
@@ -145,7 +145,7 @@ def _compared(
         fault = _front_compared(requirement, (generated, whole), text, monitor, atoms)
         if fault is not None:
             return fault
-    ticks, note = by_numbers(
+    ticks, note = with_numeric_counterexample(
         requirement,
         needed,
         Disagreement,
@@ -183,7 +183,7 @@ def lock_step(
     sentence, ticks = requirement.sentence, requirement.ticks or 0
     start = machine.save()
     result = compare(machine, sentence, ticks, atoms, limit)
-    impossible = excluded(requirement) if isinstance(result, Difference) else ()
+    impossible = impossible_combinations(requirement) if isinstance(result, Difference) else ()
 
     def compare_without(more: Sequence[Exclusion]) -> Equivalence | Difference | str:
         if not impossible and not more:
@@ -193,7 +193,7 @@ def lock_step(
         return compare(machine, sentence, ticks, atoms, most, (*impossible, *more))
 
     found: Equivalence | Difference | str
-    found, note = by_numbers(requirement, atoms, Difference, compare_without)
+    found, note = with_numeric_counterexample(requirement, atoms, Difference, compare_without)
     return replace(found, note=note) if isinstance(found, Difference) else found
 
 
@@ -345,14 +345,16 @@ def _compared_with_generated(
             f"{most}, are too many to compare both with unknown values"
         )
     reference = load("generated", generated)
-    never = excluded(requirement)
+    never = impossible_combinations(requirement)
 
     def compare_without(more: Sequence[Exclusion]) -> rails.Equivalent | rails.Distinguished | None:
         most = min(limit, MOST_SEARCHED) if more else limit
         every = (*never, *more)
         return rails.compared(monitor, place, reference, names[:count], most, every)
 
-    comparison, note = by_numbers(requirement, names[:count], rails.Distinguished, compare_without)
+    comparison, note = with_numeric_counterexample(
+        requirement, names[:count], rails.Distinguished, compare_without
+    )
     match comparison:
         case None:
             return not_checked(f"with unknown values there are more than {limit} states")

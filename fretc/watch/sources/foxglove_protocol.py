@@ -16,7 +16,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from urllib.parse import SplitResult, urlsplit
 
-from compiler.files.checked_json import SchemaError, Shape
+from compiler.files.checked_json import JsonValue, SchemaError
 from compiler.files.checked_json import plain as json_value
 from fretc.watch.sources.source import Channel
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -118,7 +118,7 @@ def _binary(message: bytes) -> Message | None:
 
 
 def _text(message: str, topics: Collection[str]) -> Message | None:
-    shape = Shape(json_value(message))
+    shape = JsonValue(json_value(message))
     match shape.field("op").text():
         case "serverInfo":
             return Greeting()
@@ -133,11 +133,11 @@ def _text(message: str, topics: Collection[str]) -> Message | None:
             return None
 
 
-def _is_in(channel: Shape, topics: Collection[str]) -> bool:
+def _is_in(channel: JsonValue, topics: Collection[str]) -> bool:
     return channel.field("topic").text() in topics
 
 
-def _advertised(shape: Shape) -> Advertised:
+def _advertised(shape: JsonValue) -> Advertised:
     encoding, schema = shape.field("encoding").text(), shape.field("schema").text()
     of_schema = _SCHEMA_ENCODINGS.get(encoding, "")
     if shape.has("schemaEncoding") and shape.field("schemaEncoding").value is not None:

@@ -15,7 +15,7 @@ from mcap.opcode import Opcode
 from mcap.records import Channel as McapChannel
 from mcap.records import Chunk, Message, Schema
 
-from compiler.files.text_files import regular
+from compiler.files.text_files import open_regular
 from fretc.logs import log_diagnostics
 from fretc.logs.mcap.container import HEAD, LARGEST, MAGIC, BrokenError, frames, parse, unpacked
 from fretc.logs.storage import storage_diagnostics
@@ -58,7 +58,7 @@ class Log:
         self._wanted = frozenset(topics)
         place = Text(self.name, "").span()
         try:
-            with regular(self._path) as stream:
+            with open_regular(self._path) as stream:
                 yield Opened(self.name)
                 yield from self._read(stream, place)
         except FileNotFoundError:

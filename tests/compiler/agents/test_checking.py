@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from compiler.agents.checking import checked
+from compiler.agents.checking import check_agent
 from compiler.logic.claims import Layer, Proof, Result, not_checked, proved, vacuous
 from compiler.targets.ajpf import properties as ajpf
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -32,13 +32,13 @@ CONTROLS = "1a_reach: [] (~(B(agilex_agent,too_close)))\n1a_resp: [] (~(B(agilex
 def lines(
     properties: str, percepts: Sequence[str], agent: str = PAPER, limit: int = 10_000
 ) -> tuple[Proof, ...]:
-    found = checked(Source("sif.gwen", agent), Source("sif.psl", properties), percepts, limit)
+    found = check_agent(Source("sif.gwen", agent), Source("sif.psl", properties), percepts, limit)
     assert not isinstance(found, Diagnostic), found.message
     return found
 
 
 def refused(properties: str, percepts: Sequence[str], agent: str = PAPER) -> Diagnostic:
-    found = checked(Source("sif.gwen", agent), Source("sif.psl", properties), percepts)
+    found = check_agent(Source("sif.gwen", agent), Source("sif.psl", properties), percepts)
     assert isinstance(found, Diagnostic)
     return found
 
@@ -63,7 +63,7 @@ def test_the_papers_agent_is_proved_where_its_trigger_comes_and_the_check_can_fa
         "the agent is always scheduled again",
     )
     assert set(main.artefacts) == {"sif.gwen", "sif.psl"}
-    assert mutant.claim == "the check can fail: an agent without the response breaks 1a"
+    assert mutant.claim == "the check can fail: an agent without the response violates 1a"
     assert mutant.result is Result.PROVED
 
 
@@ -80,7 +80,7 @@ def test_the_published_property_is_vacuous_in_any_environment(percept: str) -> N
     (main,) = lines(f"1: {PUBLISHED}", [percept])
     assert outcome(main) == vacuous(
         "never true where it counts: `B(agilex_agent,stop_moving)`: "
-        "`stop_moving` is an action, and actions are not believed"
+        "`stop_moving` is an action, and an action is never a belief"
     )
 
 
@@ -145,9 +145,7 @@ def test_what_the_environment_does_cannot_be_taken_away_from_the_agent() -> None
     doubled = two.replace(":Initial Beliefs:", ":Initial Beliefs: stopped")
     main, mutant = lines(f"1a: {R1}", ["too_close"], doubled)
     assert main.result is Result.PROVED
-    assert outcome(mutant) == vacuous(
-        "that agent keeps 1a too, so that it says nothing of the response"
-    )
+    assert outcome(mutant) == vacuous("that agent satisfies 1a, too, so 1a shows no response")
 
 
 def test_beyond_the_model_or_its_limit_nothing_is_known() -> None:
@@ -200,10 +198,10 @@ def test_in_an_only_scope_an_agent_that_never_responds_keeps_the_prohibition() -
     """As AJPF says; that the mode is left at all is the control that counts."""
     made = requirement("only in m mode the ag shall eventually satisfy r")
     idle = PAPER.replace("agilex_agent", "ag").replace("too_close", "m")
-    found = checked(Source("a.gwen", idle), Source("p.psl", ajpf.text(made)), ["m"])
+    found = check_agent(Source("a.gwen", idle), Source("p.psl", ajpf.text(made)), ["m"])
     assert not isinstance(found, Diagnostic)
     assert statuses(found) == [("R1", "proved"), ("R1_reach", "proved")]
     responding = idle.replace("stop_moving,", "+r,")
-    found = checked(Source("a.gwen", responding), Source("p.psl", ajpf.text(made)), ["m"])
+    found = check_agent(Source("a.gwen", responding), Source("p.psl", ajpf.text(made)), ["m"])
     assert not isinstance(found, Diagnostic)
     assert statuses(found)[0] == ("R1", "counterexample")

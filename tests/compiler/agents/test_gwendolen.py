@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.agents.gwendolen import Action, Agent, Change, Guard, read
+from compiler.agents.gwendolen import Action, Agent, BeliefChange, Guard, read
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
@@ -44,13 +44,13 @@ def test_an_agent_is_its_beliefs_and_its_plans_in_their_order() -> None:
     assert found.name == "watch_agent"
     assert found.beliefs == ("ready", "speed(1,-2.5)")
     assert [(p.event, p.guards, p.deeds) for p in found.plans] == [
-        (Change("+", "zone_near"), (), (Action("halt_base"), Change("+", "halted"))),
+        (BeliefChange("+", "zone_near"), (), (Action("halt_base"), BeliefChange("+", "halted"))),
         (
-            Change("-", "zone_near"),
+            BeliefChange("-", "zone_near"),
             (Guard(True, "halted"), Guard(False, "speed(3)")),
-            (Action("release_base(1,fast)"), Change("-", "halted")),
+            (Action("release_base(1,fast)"), BeliefChange("-", "halted")),
         ),
-        (Change("-", "ready"), (), ()),
+        (BeliefChange("-", "ready"), (), ()),
     ]
     assert found.plans[1].span.line == 11
 
@@ -95,8 +95,8 @@ TRAPS = [
     ("halt_base", "Halt", "`Halt` begins with a capital letter", "Halt"),
     ("{True} <-", "{} <-", "the guard is empty", "{}"),
     ("{True};", "{True} <- ;", "no deed follows the `<-`", "<-"),
-    ("{True};", "{True}; # why", "`#` begins no comment", "#"),
-    ("{True};", "{True}; % why", "`%` begins no comment", "%"),
+    ("{True};", "{True}; # why", "`#` does not begin a comment", "#"),
+    ("{True};", "{True}; % why", "`%` does not begin a comment", "%"),
     ("{True};", "{True}; /* why", "the comment has no end", "/"),
     (
         "\n:Initial Goals:\n",
@@ -104,7 +104,7 @@ TRAPS = [
         "`:Plans:` stands in the wrong place",
         ":Plans:",
     ),
-    (":Initial Goals:", ":Initial goals:", "`:Initial goals:` is no heading", ":Initial goals:"),
+    (":Initial Goals:", ":Initial goals:", "`:Initial goals:` is not a heading", ":Initial goals:"),
     ("GWENDOLEN\n", "", "the file does not begin with `GWENDOLEN`", ""),
     ("watch_agent", "watch-agent", "a `-` stands in the agent's name", "-"),
     ("-ready", "-achieve", "`achieve` is a reserved word", "achieve"),

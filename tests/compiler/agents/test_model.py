@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from compiler.agents.gwendolen import Agent, Change, read
+from compiler.agents.gwendolen import Agent, BeliefChange, read
 from compiler.agents.model import Intention, Model, ReasoningStep, State, narration
 from compiler.logic import formula as f
 from compiler.logic.kripke import Explored, TooManyStatesError, check
@@ -252,7 +252,7 @@ def test_a_belief_of_two_sources_may_outlive_one_of_them_or_not() -> None:
         (near, ("-near",)),
         (frozenset(), ("-near",)),
     }
-    removing = Intention(Change("+", "go"), (Change("-", "near"),))
+    removing = Intention(BeliefChange("+", "go"), (BeliefChange("-", "near"),))
     executing = replace(both, stage=ReasoningStep.EXECUTE, current=removing)
     assert outcomes(model, executing) == {
         (near, ("-near",)),

@@ -2,7 +2,7 @@
 
 import pytest
 
-from compiler.agents.vacuity import bare, demanded
+from compiler.agents.vacuity import positive_atoms, without_consequences
 from compiler.logic import formula as f
 
 a, b, c, r = map(f.Atom, "abcr")
@@ -27,24 +27,24 @@ G, F = f.globally, f.eventually
 def test_what_follows_from_the_conditions_is_left_out(
     formula: f.Formula, conditions: tuple[f.Formula, ...], rest: f.Formula
 ) -> None:
-    assert bare(formula) == ((conditions, rest),)
+    assert without_consequences(formula) == ((conditions, rest),)
 
 
 @pytest.mark.parametrize(
     "formula", [G(f.not_(a)), F(r), f.not_(f.implies(a, r)), a, G(f.or_(a, b))]
 )
 def test_what_has_no_condition_is_not_asked(formula: f.Formula) -> None:
-    assert bare(formula) == ()
+    assert without_consequences(formula) == ()
 
 
 def test_each_part_that_speaks_of_all_times_is_asked_by_itself() -> None:
     """The first part is about the first state only, where nothing is believed yet."""
     always = G(f.implies(b, F(r)))
-    assert bare(f.and_(f.implies(a, F(r)), always)) == (((b,), G(f.not_(b))),)
-    assert len(bare(f.and_(G(f.implies(a, F(r))), always))) == 2
+    assert without_consequences(f.and_(f.implies(a, F(r)), always)) == (((b,), G(f.not_(b))),)
+    assert len(without_consequences(f.and_(G(f.implies(a, F(r))), always))) == 2
 
 
 def test_what_is_demanded_stands_under_no_negation() -> None:
-    assert demanded(G(f.implies(a, F(f.and_(r, f.not_(b)))))) == {"r"}
-    assert demanded(f.not_(f.implies(a, r))) == {"a"}
-    assert demanded(f.iff(a, r)) == {"a", "r"}
+    assert positive_atoms(G(f.implies(a, F(f.and_(r, f.not_(b)))))) == {"r"}
+    assert positive_atoms(f.not_(f.implies(a, r))) == {"a"}
+    assert positive_atoms(f.iff(a, r)) == {"a", "r"}

@@ -62,7 +62,8 @@ def test_equal_ticks_are_one_row_but_for_the_tick_that_decides() -> None:
         ("sw shall finally satisfy q", "on a run without end nothing is required"),
         (
             "whenever persisted(3, p) sw shall immediately satisfy q",
-            "no traces are shown: `persisted` speaks of other ticks, the automaton of one",
+            "no traces are shown: `persisted` refers to other ticks, but the automaton reads one "
+            "tick at a time",
         ),
         ("sw shall immediately satisfy q", "no other way to satisfy the sentence was found"),
     ],

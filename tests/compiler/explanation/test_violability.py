@@ -73,7 +73,7 @@ def test_what_whatever_happens_keeps_is_not_violated_by_the_end_either() -> None
     ("sentence", "words"),
     [
         ("the sw shall within 3 ticks satisfy q", ""),
-        ("the sw shall always satisfy q | !q", "No run can violate R1: whatever happens keeps it."),
+        ("the sw shall always satisfy q | !q", "No run can violate R1: every run satisfies it."),
         (
             "whenever p the sw shall eventually satisfy q",
             "No run can violate R1: it sets no bound, so an answer that has not come may always "

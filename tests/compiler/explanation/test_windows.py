@@ -11,7 +11,7 @@ from compiler.explanation.windows import (
     ObligationWindow,
     TickRange,
     intervals,
-    kept,
+    is_satisfied,
     window,
 )
 from compiler.formalization.reference import Template as Counted
@@ -45,7 +45,7 @@ def test_every_short_trace_is_judged_as_fretish_means_it() -> None:
             for values in product((False, True), repeat=len(names) * length):
                 columns = {n: list(values[i :: len(names)]) for i, n in enumerate(names)}
                 m, p, q, stop = (columns.get(name, columns["q"]) for name in "mpqs")
-                assert kept(requirement, m, p, q, stop) is drawn.satisfied(columns), (
+                assert is_satisfied(requirement, m, p, q, stop) is drawn.satisfied(columns), (
                     drawn,
                     columns,
                 )
@@ -57,7 +57,7 @@ def test_long_traces_are_judged_as_fretish_means_them(
 ) -> None:
     columns = {name: [row[name] for row in rows] for name in "mpqs"}
     expected = drawn.satisfied(columns)
-    assert kept(counted(drawn), *(columns[name] for name in "mpqs")) is expected
+    assert is_satisfied(counted(drawn), *(columns[name] for name in "mpqs")) is expected
 
 
 def test_after_asks_twice() -> None:

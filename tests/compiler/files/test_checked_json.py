@@ -1,10 +1,10 @@
 import pytest
 
-from compiler.files.checked_json import SchemaError, Shape
+from compiler.files.checked_json import JsonValue, SchemaError
 
 
 def test_a_path_grows_with_every_look() -> None:
-    whole = Shape({"results": [{"hashes": {"log": "ab"}}]})
+    whole = JsonValue({"results": [{"hashes": {"log": "ab"}}]})
     (result,) = whole.field("results").items()
     assert result.path == "results[0]"
     assert result.field("hashes").fields()["log"].path == 'results[0].hashes["log"]'
@@ -12,20 +12,20 @@ def test_a_path_grows_with_every_look() -> None:
 
 def test_what_stands_there_instead_is_shown_shortened() -> None:
     with pytest.raises(SchemaError) as caught:
-        Shape("x" * 100, "reason").count()
+        JsonValue("x" * 100, "reason").count()
     assert str(caught.value) == f"`reason` must be a whole number, and is `{'x' * 40}…`"
 
 
 def test_true_is_no_number() -> None:
     with pytest.raises(SchemaError, match="must be a number, and is true"):
-        Shape(True, "a").number()
+        JsonValue(True, "a").number()
 
 
 def test_a_number_must_be_finite() -> None:
     with pytest.raises(SchemaError, match="must be a finite number"):
-        Shape(float("inf"), "a").number()
+        JsonValue(float("inf"), "a").number()
 
 
 def test_the_root_is_called_the_whole_file() -> None:
     with pytest.raises(SchemaError, match="the whole file must be an object, and is an array"):
-        Shape([]).field("schema")
+        JsonValue([]).field("schema")

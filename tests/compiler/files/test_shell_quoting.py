@@ -13,7 +13,7 @@ from compiler.files.shell_quoting import (
     UnencodableNameError,
     check_of,
     is_sha256,
-    unsayable,
+    unquotable_comment,
     word,
     words,
 )
@@ -87,7 +87,7 @@ def test_a_name_that_cannot_be_pasted_is_told_in_a_comment(tmp_path: Path, name:
         word(name)
     with pytest.raises(UnencodableNameError):
         check_of([("0" * 64, name)])
-    comment = unsayable(name)
+    comment = unquotable_comment(name)
     assert comment.isprintable()
     assert (shell(comment, tmp_path).stdout, os.listdir(tmp_path)) == ("", [])
 

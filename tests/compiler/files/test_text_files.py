@@ -108,8 +108,8 @@ def test_the_command_says_it(fretc: Fretc, tmp_path_factory: pytest.TempPathFact
     run = fretc("r.fret", "--emit", "ltl")
     assert run.status == 2
     assert run.err.startswith(
-        f"F905 `build/r.ltl` cannot be written: it is a link to `{target}`: name that, if it is "
-        "meant\n"
+        f"F905 `build/r.ltl` cannot be written: it is a link to `{target}`: name `{target}` if you "
+        "mean it\n"
     )
     assert target.read_text() == "precious"
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.formalization.binding_agreement import unbound
+from compiler.formalization.binding_agreement import unbound_propositions
 from compiler.formalization.formalize import formalize
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -198,7 +198,7 @@ def test_a_word_in_the_place_of_a_mode_is_told_where_it_belongs() -> None:
     requirement, _ = formalize(entry, declared)
     assert requirement is not None
     assert requirement.declarations is not None
-    (missing,) = unbound(requirement, requirement.declarations)
+    (missing,) = unbound_propositions(requirement, requirement.declarations)
     assert missing.message == "`docking` of r has no binding in bindings.toml"
     assert missing.help == (
         "`docking` is a word of `state`: write `state = docking` (as a scope `while state = "
@@ -214,4 +214,4 @@ def test_a_comparison_of_a_signal_with_a_mistake_has_that_mistake_alone() -> Non
     requirement, _ = formalize(entry, declared)
     assert requirement is not None
     assert requirement.declarations is not None
-    assert tuple(unbound(requirement, requirement.declarations)) == wrong
+    assert tuple(unbound_propositions(requirement, requirement.declarations)) == wrong

@@ -13,7 +13,7 @@ import pytest
 
 from compiler.formalization.future import future
 from compiler.formalization.obligation import Obligation, obligation
-from compiler.formalization.past import past, watch
+from compiler.formalization.past import monitor_spec, past
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.definition import holds
@@ -184,7 +184,7 @@ def test_there_are_288_templates() -> None:
 def test_future_past_and_watch_mean_what_fretish_means(scope: str) -> None:
     for template in every(scope):
         meant = read(template.sentence)
-        signals = watch(meant)
+        signals = monitor_spec(meant)
         forward = at_start(printing.future(future(meant)))
         back = at_end(printing.past(past(meant)))
         breach = fret.parse(printing.past(signals.breach))
@@ -207,7 +207,7 @@ def test_future_past_and_watch_mean_what_fretish_means(scope: str) -> None:
 def test_the_formulas_hold_as_their_definition_says(scope: str) -> None:
     for template in every(scope):
         meant = read(template.sentence)
-        forward, back, signals = future(meant), past(meant), watch(meant)
+        forward, back, signals = future(meant), past(meant), monitor_spec(meant)
         for length in (1, 2, 4):
             for columns in drawn(template.columns, length, 2, repr(template)):
                 trace = [{n: column[i] for n, column in columns.items()} for i in range(length)]
@@ -257,7 +257,7 @@ def test_a_variable_may_be_any_expression(scope: str, turn: int) -> None:
             "future": at_start(printing.future(future(meant))),
             "past": at_end(printing.past(past(meant))),
         }
-        signals = watch(meant)
+        signals = monitor_spec(meant)
         for length in (1, 2, 3, 6):
             traces = drawn(names, length, 12, f"{template} {shift}")
             values = [
@@ -283,7 +283,7 @@ def test_a_variable_may_be_any_expression(scope: str, turn: int) -> None:
 def test_a_breach_cannot_be_repaired(scope: str) -> None:
     """The verdict `violated` is certain: every longer trace is violated too."""
     for template in every(scope):
-        breach = fret.parse(printing.past(watch(read(template.sentence)).breach))
+        breach = fret.parse(printing.past(monitor_spec(read(template.sentence)).breach))
         for (traces, packed), kept in judgements(template, drawn_each=10):
             word, length, full = packed
             lost = 0

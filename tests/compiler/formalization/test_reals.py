@@ -16,7 +16,13 @@ from compiler.explanation.examples import examples
 from compiler.explanation.explain import explanation
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons
-from compiler.formalization.numbers.reals import Impossible, Possible, Reals, Undecided, by_numbers
+from compiler.formalization.numbers.reals import (
+    Impossible,
+    Possible,
+    Reals,
+    Undecided,
+    with_numeric_counterexample,
+)
 from compiler.logic.claims import Result
 from compiler.logic.orders import Exclusion
 from fretc.testing.generation import batch
@@ -27,7 +33,7 @@ from tests.monitoring import emitted, requirement
 _COMPARE = {"<": lt, "<=": le, ">": gt, ">=": ge, "=": eq, "!=": ne}
 _DENIED = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "=": "!=", "!=": "="}
 _NAMES = ("x", "y", "z")
-ROUNDED = "computed exactly, no numbers make `((2 * x) > 6)` and `(x < 2)`; floats that round may"
+ROUNDED = "in exact arithmetic no numbers make `((2 * x) > 6)` and `(x < 2)`; rounded floats may"
 
 
 @dataclass(frozen=True)
@@ -176,7 +182,10 @@ def test_a_question_that_takes_too_long_is_not_decided(monkeypatch: pytest.Monke
     made = requirement("the sw shall satisfy 2 * x > 6 & x < 2")
     assert Reals(made).answer({}) == Undecided()
     found = explanation(made)
-    assert "whether numbers make these comparisons true and false so was not decided" in found.notes
+    assert (
+        "it was not decided whether numbers can make these comparisons true and false in this way"
+        in found.notes
+    )
 
 
 # What people see --------------------------------------------------------------------------------
@@ -262,12 +271,12 @@ def test_another_counterexample_is_shown_where_numbers_make_one_and_none_is_lost
         left = (fault for fault in faults if not any(has(fault, each) for each in excluded))
         return next((Shown((fault,)) for fault in left), None)
 
-    found, note = by_numbers(made, atoms, Shown, compare)
+    found, note = with_numeric_counterexample(made, atoms, Shown, compare)
     assert isinstance(found, Shown)
     possible = [f for f in faults if is_satisfiable(tuple(zip(some, f, strict=True)))]
     assert found.word[0] == (possible or faults)[0]
     assert bool(note) is not bool(possible)
-    assert by_numbers(made, atoms, Shown, lambda _: None) == (None, "")
+    assert with_numeric_counterexample(made, atoms, Shown, lambda _: None) == (None, "")
 
 
 @pytest.mark.slow

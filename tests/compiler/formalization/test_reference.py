@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import meanings
+from compiler.formalization.letters import letters_by_valuation
 from compiler.formalization.reference import (
     BROKEN,
     Automaton,
@@ -301,7 +301,7 @@ def test_verdicts_come_at_the_earliest_instant_where_expressions_share_variables
     for n in (SMALL if FULL else (0, 2)) if "{n}" in sentence else (0,):
         made = requirement(sentence.format(n=n))
         names = made.propositions
-        letters = meanings(made.sentence, names)
+        letters = letters_by_valuation(made.sentence, names)
         automaton = explore(template(made.sentence, n), letters.values())
         assert_decides_as_early_as_spot(automaton, letters, names, in_spot(made))
         assert spot.are_equivalent(as_spot(automaton, letters, names), in_spot(made))
@@ -310,7 +310,7 @@ def test_verdicts_come_at_the_earliest_instant_where_expressions_share_variables
 def verdict(sentence: str, word: str) -> Verdict:
     """After the letters of the word, each a valuation of p such as `-` (false) or `p`."""
     made = requirement(sentence)
-    letters = meanings(made.sentence, ("p",))
+    letters = letters_by_valuation(made.sentence, ("p",))
     automaton = explore(template(made.sentence, made.ticks or 0), letters.values())
     state = 0
     for letter in word:

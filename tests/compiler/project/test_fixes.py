@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from compiler.project.fixes import fixed
+from compiler.project.fixes import fixed_files
 from fretish.parser import MOST_ERRORS
 from tests.command import write
 
@@ -19,14 +19,14 @@ def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def texts(*files: str) -> list[str]:
     """The texts of the files that are fixed."""
     paths = [write(f"r{i}.fret", text) for i, text in enumerate(files)]
-    return [file.text for file in fixed(paths)]
+    return [file.text for file in fixed_files(paths)]
 
 
 def test_more_mistakes_than_a_pass_finds_are_all_fixed() -> None:
     count = MOST_ERRORS + 3
     written = " && ".join(["p"] * (count + 1))
     wrong = f"the rover shall always satisfy {written.replace('&&', 'and')}"
-    (file,) = fixed([write("r.fret", wrong)])
+    (file,) = fixed_files([write("r.fret", wrong)])
     assert file.text == f"the rover shall always satisfy {written.replace('&&', '&')}"
     assert len(file.fixes) == count
 
@@ -42,4 +42,4 @@ def test_free_text_a_file_with_an_open_header_and_what_is_right_stay(text: str) 
 
 
 def test_a_file_that_cannot_be_read_is_left_out_and_the_others_are_fixed() -> None:
-    assert [file.path for file in fixed(["none.fret", write("r.fret", WRONG)])] == ["r.fret"]
+    assert [file.path for file in fixed_files(["none.fret", write("r.fret", WRONG)])] == ["r.fret"]

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.project.formatting import formatted
+from compiler.project.formatting import formatted_files
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from fretish.parser import parse
@@ -249,10 +249,10 @@ def test_what_is_broken_anywhere_is_read_back_and_stays(text: str, length: int, 
     with TemporaryDirectory() as folder:
         path = Path(folder, "r.fret")
         path.write_text(f'+++{end}id = "R1"{end}+++{end}{long}{end}', "utf-8", newline="")
-        ((file,), wrong) = formatted([str(path)])
+        ((file,), wrong) = formatted_files([str(path)])
         assert not wrong
         path.write_text(file.after, "utf-8", newline="")
-        ((again,), _) = formatted([str(path)])
+        ((again,), _) = formatted_files([str(path)])
     ((only,), _) = requirements(Source("r.fret", file.after))
     assert parse(only.wording) == tree(long)
     assert again.before == again.after

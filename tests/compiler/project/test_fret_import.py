@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from compiler.project.folder import Project, load
+from compiler.project.folder import load
+from compiler.project.project import Project
 from fretish import documents
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source
@@ -357,7 +358,7 @@ def test_a_new_id_is_told(fretc: Fretc) -> None:
     records = [record("R2", project="A"), record("R2", project="A"), record("r2", project="B")]
     run = fretc("import", export(records))
     lines = [line for line in run.err.splitlines() if line.startswith("F531")]
-    why = "is taken, and capitals do not tell ids apart"
+    why = "is taken, and ids are compared without case"
     assert lines == [
         f"F531 warning: requirement 2 (R2 of project A) is imported as `A-R2`: `R2` {why}",
         f"F531 warning: requirement 3 (r2 of project B) is imported as `B-r2`: `r2` {why}",
@@ -391,7 +392,7 @@ def test_a_variable_that_says_something_else_is_told(
     )
     assert run.status == 0
     warning = (
-        f"F530 warning: a second variable `stopped` is kept for FRET, and not read: it has {lost}\n"
+        f"F530 warning: a second variable `stopped` is kept for FRET, but not read: it has {lost}\n"
     )
     assert warning in run.err
     assert 'component = "rover"' in written()["bindings.toml"]
@@ -438,7 +439,7 @@ def test_broken_json_is_told_with_its_place(fretc: Fretc) -> None:
         "  --> export.json:3:15\n"
         '   |    "fulltext" "the sw shall satisfy p"}\n'
         "   |               ^\n"
-        "help: give it an export of FRET (JSON), or a CSV\n",
+        "help: use an export of FRET (JSON), or a CSV file\n",
     )
     assert not Path("requirements").exists()
 
@@ -453,8 +454,8 @@ def test_broken_json_is_told_with_its_place(fretc: Fretc) -> None:
         ("null", "it is neither an array nor an object"),
         ("{}", "it has neither `requirements` nor `variables`"),
         ('{"reqid": "R1"}', "it has neither `requirements` nor `variables`"),
-        ("[1, 2]", "it is an array of something else than objects"),
-        ('[{"reqid": "R1", "fulltext": "p"}, 2]', "it is an array of something else than objects"),
+        ("[1, 2]", "it is an array with items that are not objects"),
+        ('[{"reqid": "R1", "fulltext": "p"}, 2]', "it is an array with items that are not objects"),
         ("[" * 100_000, "it is nested too deep"),
     ],
 )
@@ -580,7 +581,7 @@ def test_a_csv_without_a_text_column_is_refused(fretc: Fretc) -> None:
     ("text", "why"),
     [
         ("", "it is empty"),
-        ("id,text\n", "it has a header and no rows"),
+        ("id,text\n", "it has a header, but no rows"),
         ('id,text\nR1,"open\n', "it is not CSV: unexpected end of data"),
     ],
 )

@@ -180,22 +180,26 @@ def test_reqif_gives_every_object_by_its_foreign_id() -> None:
 @pytest.mark.parametrize(
     ("path", "text", "why"),
     [
-        ("a.sdoc", "[DOCUMENT]\nTITLE: x\n", "only StrictDoc itself reads its documents"),
+        ("a.sdoc", "[DOCUMENT]\nTITLE: x\n", "only StrictDoc itself can read its documents"),
         ("a.json", "{", "it is not JSON"),
-        ("a.json", "[]", "it has neither `DOCUMENTS`, as StrictDoc writes, nor `versions`"),
+        ("a.json", "[]", "it has neither `DOCUMENTS` (StrictDoc) nor `versions` (sphinx-needs)"),
         ("a.json", '{"DOCUMENTS": [3]}', "its nodes are not as StrictDoc writes them"),
         ("a.json", '{"versions": {}}', "its `current_version` is not among its `versions`"),
         ("a.json", '{"versions": {"1": {"needs": {"A": 3}}}, "current_version": "1"}', "`A` is no"),
-        ("a.yml", "a: [", "a.yml is not YAML"),
-        ("a.yml", "active: true\nlevel: 1.0\ntext: an item\n", "a.yml is no export of Doorstop"),
-        ("a.yml", "A: {level: 1, text: !!python/name:os.system }", "a.yml is not YAML"),
-        ("a.yml", "A: {level: 1, text: [x]}", "a.yml is no export of Doorstop"),
-        ("a.reqif", "<REQ-IF>", "the library `reqif` does not take it: Premature end of data"),
-        ("a.reqif", "<html/>", "the library `reqif` does not take it: Expected root tag"),
+        ("a.yml", "a: [", "a.yml cannot be read as YAML"),
+        (
+            "a.yml",
+            "active: true\nlevel: 1.0\ntext: an item\n",
+            "a.yml is not an export of Doorstop",
+        ),
+        ("a.yml", "A: {level: 1, text: !!python/name:os.system }", "a.yml cannot be read as YAML"),
+        ("a.yml", "A: {level: 1, text: [x]}", "a.yml is not an export of Doorstop"),
+        ("a.reqif", "<REQ-IF>", "the library `reqif` cannot read it: Premature end of data"),
+        ("a.reqif", "<html/>", "the library `reqif` cannot read it: Expected root tag"),
         ("a.reqif", '<!DOCTYPE x [<!ENTITY a "b">]><x>&a;</x>', "it declares a document type"),
-        ("a.reqifz", "x", "it is no archive of ReqIF files"),
-        ("a.txt", "x", "no format is known by that ending"),
-        ("reqs/x", "x", "no format is known by that ending"),
+        ("a.reqifz", "x", "it is not an archive of ReqIF files"),
+        ("a.txt", "x", "its extension belongs to no supported format"),
+        ("reqs/x", "x", "its extension belongs to no supported format"),
         ("gone.json", None, "No such file or directory"),
     ],
 )
@@ -211,7 +215,7 @@ def test_a_document_that_cannot_be_read_is_told(path: str, text: str | None, why
 def test_a_folder_without_items_is_told() -> None:
     write("reqs/a.md", "x")
     _, (diagnostic,) = parents(Settings(Path.cwd(), ("reqs",)))
-    assert "no export of Doorstop (`*.yml`) is in it" in diagnostic.message
+    assert "it has no export of Doorstop (`*.yml`)" in diagnostic.message
 
 
 def test_a_folder_of_items_is_to_be_exported() -> None:

@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 from compiler.formalization import reference
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import meanings
+from compiler.formalization.letters import letters_by_valuation
 from compiler.formalization.reference import State, step
 from compiler.logic.evaluation import evaluate, evaluate_unknown
 from compiler.logic.formula import atoms
 from compiler.situations.situations import MEANINGS, Situation, situations
-from compiler.situations.thresholds import Place, places, written
+from compiler.situations.thresholds import ThresholdPosition, literal_number, threshold_positions
 from fretish import expressions as e
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
@@ -54,7 +54,7 @@ class Judged:
     def __init__(self, sentence: str) -> None:
         self.requirement = requirement(sentence)
         self.atoms = tuple(sorted(self.requirement.propositions))
-        self.letters = meanings(self.requirement.sentence, self.atoms)
+        self.letters = letters_by_valuation(self.requirement.sentence, self.atoms)
         self.counted = reference.template(self.requirement.sentence, self.requirement.ticks or 0)
 
     def letter(self, row: Mapping[str, bool]) -> tuple[bool, bool, bool, bool]:
@@ -228,10 +228,14 @@ def test_each_number_is_near_one_of_the_places_around_a_threshold(
 ) -> None:
     """The three places lie side by side, and a number between two of them is near just one."""
     side: e.Expression = e.Negation(e.Number(text)) if negative else e.Number(text)
-    found: list[Place] = [place for _, place in places(e.Comparison("<", e.Name("x"), side))]
-    numbers = [written(part) for each in found for part in (each.least, each.number, each.limit)]
+    found: list[ThresholdPosition] = [
+        place for _, place in threshold_positions(e.Comparison("<", e.Name("x"), side))
+    ]
+    numbers = [
+        literal_number(part) for each in found for part in (each.least, each.number, each.limit)
+    ]
     values = [each.value for each in numbers if each is not None]
-    step_ = written(side)
+    step_ = literal_number(side)
     assert step_ is not None
     assert values[1::3] == [step_.value - step_.step, step_.value, step_.value + step_.step]
     assert values[2:7:3] == values[3::3]
@@ -239,8 +243,8 @@ def test_each_number_is_near_one_of_the_places_around_a_threshold(
     assert places_of_mirrored(side) == found
 
 
-def places_of_mirrored(side: e.Expression) -> list[Place]:
-    return [place for _, place in places(e.Comparison(">", side, e.Name("x")))]
+def places_of_mirrored(side: e.Expression) -> list[ThresholdPosition]:
+    return [place for _, place in threshold_positions(e.Comparison(">", side, e.Name("x")))]
 
 
 @pytest.mark.parametrize(
@@ -254,13 +258,13 @@ def places_of_mirrored(side: e.Expression) -> list[Place]:
     ],
 )
 def test_what_is_no_number_of_a_common_size_is_no_threshold(comparison: e.Comparison) -> None:
-    assert [*places(comparison)] == []
+    assert [*threshold_positions(comparison)] == []
 
 
 @given(st.decimals(allow_nan=False, allow_infinity=False, places=3, min_value=-99, max_value=99))
 def test_a_number_is_written_as_it_was_moved(by: Decimal) -> None:
-    five = written(e.Quantity("5.00", "cm"))
+    five = literal_number(e.Quantity("5.00", "cm"))
     assert five is not None
-    moved = written(five.moved(by))
+    moved = literal_number(five.moved(by))
     assert moved is not None
     assert moved.value == Decimal("5.00") + by

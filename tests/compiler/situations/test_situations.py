@@ -13,7 +13,7 @@ from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
 from compiler.situations.demands import of_demand
 from compiler.situations.situations import Situation, situations
-from compiler.situations.tick_predicates import facts
+from compiler.situations.tick_predicates import tick_predicates
 from fretc.analysis.arena.memory import Counter, Memory, Past
 from fretc.analysis.arena.transition import Transition
 from tests import meaning
@@ -100,12 +100,12 @@ class Search:
         steps = tuple(self.memory.steps[bit] for bit in bits)
         true = bdd.true()
         transition = Transition([Counter("", bits, steps, true, None, (), true, true)])
-        found, states = bdd.false(), bdd.some(self.goal, self.letters)
+        found, states = bdd.false(), bdd.exists(self.goal, self.letters)
         while states != found:
             if (transition.initial & states) != bdd.false():
                 return True
             found = states
-            states = states | bdd.some(transition.moved(states), self.letters)
+            states = states | bdd.exists(transition.moved(states), self.letters)
         return False
 
 
@@ -132,7 +132,7 @@ def test_each_situation_is_come_by_or_cannot_be(scope: str) -> None:
 
 def test_no_key_is_given_twice() -> None:
     for drawn in few_templates((0, 2)):
-        keys = [key for key, _ in of_demand(facts(requirement(drawn.sentence)))]
+        keys = [key for key, _ in of_demand(tick_predicates(requirement(drawn.sentence)))]
         assert len({*keys}) == len(keys), drawn
 
 

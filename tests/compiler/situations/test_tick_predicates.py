@@ -8,10 +8,10 @@ import pytest
 
 from compiler.formalization import reference
 from compiler.formalization.obligation import Kind
-from compiler.formalization.reference import State, happening, step
+from compiler.formalization.reference import State, step, tick_role
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
-from compiler.situations.tick_predicates import TickPredicates, facts
+from compiler.situations.tick_predicates import TickPredicates, tick_predicates
 from fretish.syntax import ConditionKind
 from tests import meaning
 from tests.emitting import requirement
@@ -88,7 +88,7 @@ def test_facts_are_those_of_the_definition(scope: str) -> None:
     for drawn in (each for each in few_templates() if each.scope == scope):
         made = requirement(drawn.sentence)
         counted = reference.template(made.sentence, made.ticks or 0)
-        for known in (facts(made), facts(made, exact=True)):
+        for known in (tick_predicates(made), tick_predicates(made, exact=True)):
             distances = [distance(known, counted, back) for back in range(counted.ticks + 2)]
             for rows in words(drawn):
                 run = Run(known, rows)
@@ -99,7 +99,7 @@ def test_facts_are_those_of_the_definition(scope: str) -> None:
 
 def assert_same(counted: reference.Template, run: Run, tick: Tick) -> None:
     known, at = run.known, tick.number
-    found = happening(counted, tick.before, tick.row["m"], tick.row["p"])
+    found = tick_role(counted, tick.before, tick.row["m"], tick.row["p"])
     assert run.has(known.inside, at) is found.enforced
     assert run.has(known.triggered, at) is found.triggered
     assert run.has(known.ended, at) is (ended(tick, counted) and at > 0)
@@ -113,14 +113,14 @@ def assert_same(counted: reference.Template, run: Run, tick: Tick) -> None:
 
 def ended(tick: Tick, counted: reference.Template) -> bool:
     enforced = (reference.Phase.INSIDE, reference.Phase.LAST_RUN)
-    here = happening(counted, tick.before, tick.row["m"], tick.row["p"]).enforced
+    here = tick_role(counted, tick.before, tick.row["m"], tick.row["p"]).enforced
     return tick.before.phase in enforced and not here
 
 
 def assert_asked(counted: reference.Template, run: Run, tick: Tick) -> None:
     """What decides is what changes something; nothing is said of runs that are lost already."""
     known, at = run.known, tick.number
-    enforced = happening(counted, tick.before, tick.row["m"], tick.row["p"]).enforced
+    enforced = tick_role(counted, tick.before, tick.row["m"], tick.row["p"]).enforced
     if known.demand.kind is Kind.AFTER and tick.before.counted < 0:
         return  # two demands clash
     if enforced:
@@ -146,7 +146,7 @@ def assert_distances(
     counted: reference.Template, run: Run, tick: Tick, distances: Sequence[f.Formula | None]
 ) -> None:
     count = tick.before.counted
-    found = happening(counted, tick.before, tick.row["m"], tick.row["p"])
+    found = tick_role(counted, tick.before, tick.row["m"], tick.row["p"])
     newest = run.known.demand.kind is Kind.FOR
     for back, formula in enumerate(distances):
         if formula is None:
@@ -162,7 +162,7 @@ def assert_distances(
 
 
 def test_a_condition_that_cannot_trigger_again_is_not_asked_for() -> None:
-    known = facts(requirement("upon p the sw shall within 2 ticks satisfy q"))
+    known = tick_predicates(requirement("upon p the sw shall within 2 ticks satisfy q"))
     assert known.whole.condition is ConditionKind.TRIGGER
     rows = [{"m": False, "p": True, "q": True, "s": False}] * 3
     run = Run(known, rows)

@@ -9,7 +9,7 @@ from compiler.emit import TARGETS
 from compiler.explanation.constant_parts import constant_parts
 from compiler.explanation.examples import examples
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import excluded
+from compiler.formalization.letters import impossible_combinations
 from compiler.targets.comparison_names import comparison_names, definitions
 from compiler.targets.ltl import text
 from compiler.targets.target import Options
@@ -96,7 +96,7 @@ def test_a_name_does_not_depend_on_the_target_nor_on_where_it_stands() -> None:
 
 
 def exclusions(sentence: str, bindings: str = BINDINGS) -> set[frozenset[tuple[str, bool]]]:
-    return {frozenset(each) for each in excluded(requirement(sentence, bindings))}
+    return {frozenset(each) for each in impossible_combinations(requirement(sentence, bindings))}
 
 
 BOTH = "the agv shall always satisfy battery < 20 | battery > 30"
@@ -127,7 +127,7 @@ def test_no_trace_of_an_explanation_is_impossible() -> None:
             " | mode = docking"
         )
         asked = requirement(sentence)
-        found, never = examples(asked), excluded(asked)
+        found, never = examples(asked), impossible_combinations(asked)
         assert never
         assert found.violated
         for each in (*found.satisfied, *found.violated):

@@ -370,7 +370,7 @@ def test_a_declared_delay_above_the_bound_is_not_claimed() -> None:
         ("robot shall with probability >= 0.9 eventually satisfy q", "the probability of R1"),
         (
             "when persisted(2, p) robot shall satisfy q",
-            "the predicate `persisted`, which speaks of other ticks, of R1",
+            "the predicate `persisted`, which refers to other ticks, of R1",
         ),
     ],
 )

@@ -12,11 +12,12 @@ from compiler.logic import printing
 from compiler.logic.spot import same_language
 from compiler.targets.prism import complement, unrolled
 from tests import meaning
-from tests.compiler.formalization.test_pctl import CONDITIONS, SCOPES, TIMINGS, templates
+from tests.compiler.formalization.test_pctl import templates
 from tests.each import each
 from tests.effort import some
 from tests.emitting import MANY, PROBABLE, emitted, refused, requirement
 from tests.programs import package
+from tests.strategies import CONDITIONS, SCOPES, TIMINGS
 
 
 def property_of(sentence: str) -> str:
@@ -236,7 +237,7 @@ def test_storm_reads_every_scope(storm: Check, scope: str) -> None:
 
 def test_a_sentence_without_a_probability_is_refused() -> None:
     assert refused("prism", "whenever p the sw shall within 3 ticks satisfy q") == (
-        "F601 PRISM cannot express a certainty such as that of R1\n"
+        "F601 PRISM cannot express a requirement without a probability, such as that of R1\n"
         "  --> r.fret:1:1\n"
         "   | whenever p the sw shall within 3 ticks satisfy q\n"
         "   | ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\n"

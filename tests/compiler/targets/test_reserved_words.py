@@ -18,7 +18,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compiler.agents import psl
-from compiler.emit import TARGETS, renamed
+from compiler.emit import TARGETS, renamed_propositions
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from compiler.logic import printing
@@ -343,7 +343,7 @@ def test_a_monitor_with_such_names_is_proved(fretc: Fretc, names: tuple[str, ...
 
 def test_comments_and_json_give_the_map_back() -> None:
     sentence = "whenever T & class & int the sw shall eventually satisfy init"
-    assert renamed(requirement(sentence)) == {
+    assert renamed_propositions(requirement(sentence)) == {
         "monitor": {"class": "class_"},
         "c": {"class": "class_2", "int": "int_2"},
         "ajpf": {"T": "v_T"},

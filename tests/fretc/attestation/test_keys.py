@@ -108,7 +108,7 @@ def test_each_content_has_one_text() -> None:
 
 
 def test_a_name_that_stands_twice_is_refused() -> None:
-    with pytest.raises(SchemaError, match="is there twice"):
+    with pytest.raises(SchemaError, match="appears twice"):
         read_envelope(ENVELOPE.replace('{"payload"', '{"payload": "e30=", "payload"', 1))
 
 

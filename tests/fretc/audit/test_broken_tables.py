@@ -16,7 +16,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compiler.emit import TARGETS
-from compiler.project.folder import Project, load
+from compiler.project.folder import load
+from compiler.project.project import Project
 from fretc.audit.bases import bases
 from fretc.audit.bindings.draft import missing_propositions
 from fretc.audit.plan import Plan, planned

@@ -427,7 +427,9 @@ def test_a_key_that_others_can_read_is_not_used_and_the_audit_goes_on(fretc: Fre
     path.chmod(0o644)
     run = fretc("audit", *LOGS)
     assert run.status == 0
-    assert run.err.startswith(f"F920 warning: `{path}` cannot be used: others may read or write it")
+    assert run.err.startswith(
+        f"F920 warning: `{path}` cannot be used: other users may read or write it"
+    )
     path.chmod(0o600)
     path.unlink()
     path.symlink_to("/dev/zero")

@@ -186,7 +186,7 @@ def test_verify_finds_that_no_agent_believes_an_action(robot: Fretc) -> None:
     lines = run.out.splitlines()
     assert any(line.startswith("✔ PAPER") for line in lines)
     (line,) = [line for line in lines if line.startswith("∅ PUBLISHED")]
-    assert "`stop_moving` is an action, and actions are not believed" in line
+    assert "`stop_moving` is an action, and an action is never a belief" in line
 
 
 def test_verify_finds_that_the_published_environment_triggers_nothing(robot: Fretc) -> None:

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from compiler.files.records import replace as record_with
-from compiler.project.folder import Project, load
+from compiler.project.folder import load
+from compiler.project.project import Project
 from fretc.audit import many_logs as auditing
 from fretc.audit import one_log
 from fretc.audit.evidence.schema import Result

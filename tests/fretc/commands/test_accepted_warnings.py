@@ -144,7 +144,7 @@ def test_an_accepted_warning_is_counted_and_an_idle_acceptance_told(
     idle = codes(run, "warning:")
     assert {*idle} == {"F550"}
     for each in accepted:
-        assert f"F550 warning: {each} is accepted, and no such warning is there" in run.err
+        assert f"F550 warning: {each} is accepted, but there is no such warning" in run.err
 
 
 def test_a_warning_that_is_accepted_for_another_hazard_stays_open(fretc: Fretc) -> None:
@@ -182,7 +182,7 @@ def page(fretc: Fretc) -> str:
 def test_what_is_wrong_with_an_acceptance_is_an_error_and_the_warning_stays(fretc: Fretc) -> None:
     for code, reason, message in (
         ("F203", " ", "F549 F203 is accepted without a reason"),
-        ("F2O3", "x", "F549 `F2O3` is no code of fretc"),
+        ("F2O3", "x", "F549 `F2O3` is not a code of fretc"),
         ("F101", "x", "F549 F101 cannot be accepted: the sentence is not FRETish"),
         ("F310", "x", "F549 F310 cannot be accepted: the requirement and its binding state"),
         ("F631", "x", "F549 F631 is not about one requirement"),
@@ -310,7 +310,8 @@ def test_what_is_accepted_is_counted_once_wherever_it_comes_from(
 
 def audited(*findings: Mapping[str, object]) -> None:
     """Evidence of a run that satisfies R1, of the project as it is now."""
-    from compiler.project.folder import Project, load_folder
+    from compiler.project.folder import load_folder
+    from compiler.project.project import Project
 
     known = load_folder("requirements")
     assert isinstance(known, Project)

@@ -215,7 +215,7 @@ def test_what_has_no_trace_says_so(fretc: Fretc) -> None:
     write("b.fret", "whenever persisted(2, p) robot shall always satisfy q")
     run = fretc("explain", "b.fret")
     assert run.status == 0
-    assert "note: no traces are shown: `persisted` speaks of other ticks" in run.out
+    assert "note: no traces are shown: `persisted` refers to other ticks" in run.out
     write("c.fret", "the robot shall always satisfy q & !q")
     assert "note: no run that goes on satisfies the sentence\n" in fretc("explain", "c.fret").out
 

@@ -89,7 +89,7 @@ def test_tests_and_conflicts_are_there_as_long_as_they_are_about_the_same(fretc:
         ("{", "is not JSON"),
         ("{}", "is not what `fretc test` writes"),
         ("[" * 100_000, "nested too deeply"),
-        ('{"a": 1, "a": 2}', "`a` is there twice in one object"),
+        ('{"a": 1, "a": 2}', "`a` appears twice in one object"),
     ],
 )
 def test_a_file_of_something_else_is_refused(fretc: Fretc, text: str, message: str) -> None:

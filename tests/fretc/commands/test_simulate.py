@@ -74,7 +74,7 @@ def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(fretc: Fretc
         (("walker", "nominal", "--out", "a.mcap"), "F907 several scenarios need --campaign"),
         (("--out", "bad.toml/a.mcap"), "F905 `bad.toml/a.mcap` cannot be written: File exists"),
         (("--out", "-"), "F905 `-` cannot be written"),
-        (("--out", "."), "F905 `.` cannot be written: it is no regular file"),
+        (("--out", "."), "F905 `.` cannot be written: it is not a regular file"),
         (("--out", "a.x", "--png", "a.x"), "F905 `a.x` cannot be written: two outputs"),
         (("--out", "a.mcap", "--png", "bad.toml/a.png"), "F905 `bad.toml/a.png` cannot be written"),
         (("--out", "a.mcap", "--duration", "inf"), "F905 `a.mcap` cannot be written: a mission"),

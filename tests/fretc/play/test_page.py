@@ -19,8 +19,8 @@ from compiler.formalization.reference import (
     Automaton,
     accepts,
     explore,
-    happening,
     template,
+    tick_role,
 )
 from compiler.targets.python.monitor import text as monitor_text
 from fretc.play.starts import Start, Ticks, of_suite
@@ -54,7 +54,7 @@ def judged(automaton: Automaton, rows: Sequence[Mapping[str, bool]]) -> Iterator
         letter = tuple(row.get(name, True) for name in "mpqs")
         place = automaton.letters.index(letter)
         if not broken:
-            now = happening(automaton.template, automaton.states[state], letter[0], letter[1])
+            now = tick_role(automaton.template, automaton.states[state], letter[0], letter[1])
             triggered = triggered or now.triggered
             state = automaton.moves[state][place]
         broken = broken or state == BROKEN or automaton.verdicts[state] == "violated"

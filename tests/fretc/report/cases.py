@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from compiler.formalization.record import wording
-from compiler.project.folder import Project, load
+from compiler.project.folder import load
+from compiler.project.project import Project
 from fretc.audit.bases import bases
 from fretc.audit.evidence import reader as reading
 from fretc.audit.evidence.basis import BINDINGS as BINDINGS_PART

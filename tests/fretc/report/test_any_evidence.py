@@ -13,7 +13,7 @@ import yaml
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.audit.evidence.verdicts import VERDICTS
 from fretc.commands.report import _status
 from fretc.report.forms.csv_rows import csv_text

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 
 from benchmarks.report import JSON, STORE, project, written
 from compiler.files.templating import to_json
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.audit.evidence.briefs import Briefs, EvidenceSource, brief, run_facts
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.schema import Result

@@ -25,7 +25,8 @@ from compiler.logic.claims import (
     refuted,
     vacuous,
 )
-from compiler.project.folder import Project, load_folder
+from compiler.project.folder import load_folder
+from compiler.project.project import Project
 from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.reader import read
 from fretc.audit.many_logs import SEQUENTIAL, LogAudits, LogResult, audit_logs

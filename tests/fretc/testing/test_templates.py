@@ -8,7 +8,7 @@ import pytest
 
 from compiler.formalization import reference
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import atoms_of, meanings
+from compiler.formalization.letters import atoms_of, letters_by_valuation
 from compiler.formalization.reference import State
 from compiler.situations.mutants import mutants
 from fretc.testing.generation import batch
@@ -28,7 +28,7 @@ def accept_the_same(one: FormalizedRequirement, other: FormalizedRequirement) ->
     sides = []
     for each_rule in (one, other):
         template = reference.template(each_rule.sentence, each_rule.ticks or 0)
-        sides.append((template, meanings(each_rule.sentence, atoms)))
+        sides.append((template, letters_by_valuation(each_rule.sentence, atoms)))
     start: tuple[State | None, ...] = tuple(reference.initial(template) for template, _ in sides)
     seen, waiting = {start}, [start]
     while waiting:

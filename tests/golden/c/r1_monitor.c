@@ -1,7 +1,7 @@
 /* Runtime monitor of R1: what it says and needs stands in r1_monitor.h */
 #include "r1_monitor.h"
 
-/* Each proposition that is true, and each that is false: unknown ones are both on one rail, and neither on the other. */
+/* The literals of a tick: an unknown proposition makes both or none of its literals true. */
 typedef struct {
     bool is_too_close;
     bool not_stopped;

@@ -29,19 +29,19 @@ extern "C" {
 typedef uint8_t fretc_truth;
 enum { FRETC_FALSE = 0, FRETC_TRUE = 1, FRETC_UNKNOWN = 2 };
 
-/* Whatever follows: satisfied or violated; or pending. */
+/* Satisfied or violated for every continuation; else pending. */
 typedef enum { FRETC_PENDING, FRETC_SATISFIED, FRETC_VIOLATED } fretc_verdict;
 
-/* A requirement after a tick. What holds for certain and what may hold are two readings of it. */
+/* A requirement after a tick: once with certain, once with possible values. */
 typedef struct {
-    int32_t left;  /* ticks to the deadline of the open demand, 0 at it; -1: none is ahead */
-    bool violated; /* it was violated up to here, whatever follows */
+    int32_t left;  /* ticks to the deadline of the open demand, 0 at it; -1: no deadline is ahead */
+    bool violated; /* it was violated at or before this tick */
     bool failed;   /* it is violated if the run ends here */
     bool trigger;  /* a demand begins at this tick */
     bool breach;   /* a demand is broken at this tick */
     bool open;     /* a demand is open after it */
-    bool settled;  /* nothing that follows can break a demand */
-    bool answer;   /* the response came that settles a demand */
+    bool settled;  /* no later tick can break a demand */
+    bool answer;   /* the response that meets a demand came */
 } fretc_reading;
 
 typedef struct {
@@ -60,7 +60,7 @@ typedef struct {
     fretc_truth stopped;
 } r1_inputs;
 
-/* What holds for certain, or what may hold. */
+/* The certain or the possible values. */
 typedef struct {
     bool since_1; /* !stopped S (too_close & !stopped) */
 } r1_rail;

@@ -20,10 +20,10 @@ extern "C" {
 #error "floats are computed in their own precision: compile with -msse2 -mfpmath=sse"
 #endif
 
-/* Of which kind a number is. Exact: a whole number of 64 bits from 2^53 on, or what is chosen beside one. */
+/* The kind of a number. Exact: an integer of 64 bits from 2^53 on, or a number selected beside one. */
 typedef enum { FRETC_NO_NUMBER, FRETC_SINGLE, FRETC_DOUBLE, FRETC_EXACT } fretc_number_kind;
 
-/* A number as it was measured; a NaN is unknown, as is no number. Make it by the functions fretc_of_... */
+/* A measured number; NaN and no number are unknown. Create it by the functions fretc_of_... */
 typedef struct {
     double value;       /* rounded, where it is exact */
     uint64_t magnitude; /* of a whole number from 2^53 on; else 0 */
@@ -48,7 +48,7 @@ typedef struct {
     fretc_element_type type;
 } fretc_array;
 
-/* What an element means that is no measurement. */
+/* The meaning of an element that is not a measurement. */
 typedef enum { FRETC_MEASURED, FRETC_DROP, FRETC_FAR, FRETC_NEAR, FRETC_UNKNOWABLE } fretc_meaning;
 
 typedef enum { FRETC_LT, FRETC_LE, FRETC_GT, FRETC_GE, FRETC_EQ, FRETC_NE } fretc_sign;
@@ -150,7 +150,7 @@ static inline bool fretc_is_known(fretc_number number)
     return number.kind != FRETC_NO_NUMBER && !fretc_is_nan(number.value);
 }
 
-/* What is computed: a 64-bit float, or unknown. */
+/* A computed number: a 64-bit float, or unknown. */
 static inline fretc_number fretc_computed(bool is_known, double value)
 {
     return (is_known && !fretc_is_nan(value)) ? fretc_of_double(value) : fretc_no_number();
@@ -258,7 +258,7 @@ static inline int fretc_order_of_whole(fretc_number x, double other)
     return is_negative ? -order : order;
 }
 
-/* The same of any two numbers. */
+/* The comparison of any two numbers. */
 static inline int fretc_order(fretc_number x, fretc_number y)
 {
     int order;
@@ -401,7 +401,7 @@ static inline fretc_truth fretc_same(fretc_truth x, fretc_truth y)
     return FRETC_UNKNOWN;
 }
 
-/* What an element means: a measurement where it is finite and valid, else what is declared for its like. */
+/* The meaning of an element: a measurement if it is finite and valid, else as declared for its kind. */
 static inline fretc_meaning fretc_meaning_of(
     fretc_number x, fretc_truth valid, fretc_meaning nan, fretc_meaning far_off, fretc_meaning below, fretc_meaning other)
 {
@@ -433,7 +433,7 @@ static inline fretc_number fretc_meant(fretc_number x, fretc_meaning meaning)
     return fretc_no_number();
 }
 
-/* What was chosen of an array, as it is recorded. */
+/* The selected element of an array. */
 static inline fretc_number fretc_recorded(fretc_number x)
 {
     x.kind = (x.kind == FRETC_EXACT && x.magnitude == 0u) ? FRETC_DOUBLE : x.kind;
@@ -472,7 +472,7 @@ typedef struct {
     fretc_sample wz; /* /odom.twist.twist.angular.z, rad/s */
 } r1_samples;
 
-/* Whether each of these held without a break for so long. */
+/* Whether each of these conditions held without a break for its duration. */
 typedef struct {
     fretc_truth stopped_for_1; /* stopped: its part number 1, for 200000000 ns */
 } r1_held;
@@ -486,13 +486,13 @@ fretc_number r1_sample_wz(fretc_number field);
 /* The truth of each proposition at an instant, in nanoseconds as the samples have them. */
 void r1_instant(const r1_samples *samples, int64_t now, const r1_held *held, r1_inputs *inputs);
 
-/* The truth at an instant of what has to hold for a duration. */
+/* The truth at an instant of the conditions that have to hold for a duration. */
 void r1_holding(const r1_samples *samples, int64_t now, const r1_held *held, r1_held *holding);
 
 /* The instants of a tick, one after the other: those before `next` are in `tick`. */
 void r1_gather(r1_inputs *tick, const r1_inputs *next);
 
-/* At the end of a tick: what an unknown proposition is taken to be. */
+/* At the end of a tick: the declared value of unknown propositions. */
 void r1_assume(r1_inputs *tick);
 
 #ifdef __cplusplus

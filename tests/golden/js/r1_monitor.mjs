@@ -12,15 +12,15 @@
 const REQUIREMENTS = [
   { id: "R1", sentence: "whenever too_close agilex_agent shall eventually satisfy stopped", fingerprint: "88c8c3a2f5ec2ba2eaa7b6b844529f5025f00f1d405c6d456fdd4b87e1524610", horizon: null },
 ];
-/** What `judge` takes. */
+/** The inputs of `judge`. */
 const PROPOSITIONS = ["too_close", "stopped"];
-/** What `step` takes: numbers, truth values, or one of some words. */
+/** The inputs of `step`: numbers, truth values, or enumeration values. */
 const VARIABLES = [
   { name: "too_close", kind: "truth" },
   { name: "stopped", kind: "truth" },
 ];
 
-/** What holds for certain or, with `doubt`, what may hold, before the first tick. */
+/** The state of the certain values, or with `doubt` of the possible values, before the first tick. */
 function rail(doubt) {
   return {
     doubt,
@@ -31,7 +31,7 @@ function rail(doubt) {
   };
 }
 
-/** A tick of one rail. */
+/** A tick of the certain or of the possible values. */
 function advance(rail, tick, truths) {
   const is_too_close = truths[0] === null ? rail.doubt : truths[0];
   const not_stopped = truths[1] === null ? rail.doubt : !truths[1];
@@ -58,9 +58,9 @@ function truths(state, values) {
   return values;
 }
 
-// What is the same in every monitor -------------------------------------------------------------
+// Common to all monitors ------------------------------------------------------------------------
 
-/** What holds for certain and what may hold, as one truth value; null: unknown. */
+/** The certain and the possible value as one truth value; null: unknown. */
 function truth(certain, possible) {
   return certain === possible ? certain : null;
 }
@@ -85,7 +85,7 @@ function slide(window, tick, lo, hi, guard, witness) {
   return window.first < runs.length && runs[window.first][0] <= tick - lo;
 }
 
-/** The ticks that a rail remembers of a requirement; -1: none. */
+/** The remembered ticks of a requirement; -1: none. */
 function unmarked() {
   return { broken: -1, doomed: -1, last: -1, open: -1 };
 }
@@ -99,7 +99,7 @@ function mark(marks, tick, now, renewed) {
   else if (marks.open < 0) marks.open = tick;
 }
 
-/** What a rail says of a requirement: its signals, and with them ticks, null where there is none. */
+/** The values of a requirement: its signals, and ticks, null if there is none. */
 function reading(signals, { broken, doomed, last, open }, horizon) {
   const violated = broken < 0 ? doomed : doomed < 0 ? broken : Math.min(broken, doomed);
   signals.firstViolation = violated < 0 ? null : violated;

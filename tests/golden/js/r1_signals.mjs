@@ -31,7 +31,7 @@ function instant(samples, now, held) {
   };
 }
 
-/** The truth at an instant of what has to hold for a duration; `held` says whether it did. */
+/** The truth at an instant of the conditions that have to hold for a duration; `held`: whether they did. */
 function holding(samples, now, held) {
   const s_clearance = inForce(samples, "clearance", now, 300000000n);
   const s_vx = inForce(samples, "vx", now, 100000000n);
@@ -51,7 +51,7 @@ function gather(tick, next) {
   };
 }
 
-/** At the end of a tick: what an unknown proposition is taken to be. */
+/** At the end of a tick: the declared value of unknown propositions. */
 function assume(tick) {
   return {
     ...tick,
@@ -185,7 +185,7 @@ function in_base(value, [top, bottom]) {
   return value === null ? null : known((plain(value) * top) / bottom);
 }
 
-/** What comes before the first tick: a constant as the nearest number. */
+/** The value before the first tick: a constant as the nearest number. */
 function first(term) {
   if (!isConstant(term)) return term;
   const isLarge = term.floor !== null && term.floor === term.ceil;
@@ -233,7 +233,7 @@ function besideField(value, name) {
   return given === null ? null : plain(given);
 }
 
-/** What an element means: a measurement where it is finite and valid, else what is declared for its like. */
+/** The meaning of an element: a measurement if it is finite and valid, else as declared for its kind. */
 function meaning(x, valid, [nan, above, below, other]) {
   if (x === null) return "unknown";
   const value = bare(x);
@@ -251,7 +251,7 @@ function meant(x, meaning) {
   return isSingle(x) ? float32(end) : end;
 }
 
-/** What was chosen of an array, as it is recorded. */
+/** The selected element of an array. */
 const recorded = (x) => x?.wide ?? x;
 
 function measured(x, valid, invalid) {

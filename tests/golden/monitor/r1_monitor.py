@@ -45,7 +45,7 @@ from typing import (
 
 
 class R1Rail:
-    """What holds for certain or, with `doubt`, what may hold, tick by tick."""
+    """The certain values, or with `doubt` the possible values, tick by tick."""
 
     __slots__ = (
         "doubt",
@@ -74,7 +74,7 @@ class R1Rail:
         self.r1_signals: tuple[bool, ...] = (False,) * 7
 
     def advance(self, rows: Iterable[Sequence[Any]]) -> bool:
-        """Step every row; whether all was known in them."""
+        """Step every row; returns whether all values were known."""
         known = True
         doubt = self.doubt
         tick = self.tick
@@ -121,7 +121,7 @@ class R1Rail:
         )
 
     def marks(self) -> tuple[Marks, ...]:
-        """What is remembered, for each requirement."""
+        """The remembered ticks, for each requirement."""
         return (
             Marks(self.r1_broken, self.r1_doomed, self.r1_last, self.r1_open),
         )
@@ -153,7 +153,7 @@ class R1Monitor(Monitor):
     may: R1Rail
 
     def step(self, *, too_close: Truth, stopped: Truth) -> Verdict:
-        """One tick; None stands for unknown. It is `advance` for one row where all is known."""
+        """One tick; None stands for unknown. Equals `advance` for one row if all is known."""
         rail = self.must
         if (
             rail is not self.may
@@ -186,7 +186,7 @@ class R1Monitor(Monitor):
         return self.verdicts()[0]
 
     def verdicts(self) -> tuple[Verdict, ...]:
-        """Of each requirement, whatever follows: satisfied or violated; or pending."""
+        """For each requirement: satisfied or violated for every continuation; else pending."""
         must = self.must
         return (
             VIOLATED

@@ -224,8 +224,8 @@ def test_what_ajpf_cannot_say_is_refused_first() -> None:
 @pytest.mark.parametrize(
     ("bindings", "what"),
     [
-        ('[variable.a]\nmodality = "G"\n', "the trigger `a`, not a belief,"),
-        ('[variable.r]\nmodality = "G"\n', "the response `r`, neither,"),
+        ('[variable.a]\nmodality = "G"\n', "the trigger `a` (not a belief)"),
+        ('[variable.r]\nmodality = "G"\n', "the response `r` (neither a belief nor an action)"),
     ],
 )
 def test_modalities_that_no_agent_brings_about_are_refused(bindings: str, what: str) -> None:

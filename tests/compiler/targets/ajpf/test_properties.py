@@ -463,7 +463,7 @@ def test_a_name_that_ajpf_cannot_read_is_another_one_there(sentence: str, functo
         (
             "sw shall always satisfy f(p)",
             "the proposition `f(p)`",
-            "give it a name of its own that begins with a small letter, and bind that",
+            "bind it as a proposition whose name begins with a small letter, and use that",
         ),
         (
             "whenever FTP sw shall eventually satisfy q",

@@ -175,7 +175,7 @@ def test_all_as_expected_is_shown(mcapl: Mcapl) -> None:
         "R1_reach.jpf: VIOLATED, as expected\n"
         "R1_resp.jpf: VIOLATED, as expected\n"
         "R1_mutant.jpf: VIOLATED, as expected\n"
-        "AJPF says all that is expected of it\n"
+        "AJPF gives every expected verdict\n"
     )
     assert (mcapl.bundle / "logs/R1.jpf.txt").read_text() == SAYS_HOLDS
 
@@ -238,7 +238,7 @@ def test_a_file_that_was_changed_is_not_verified(mcapl: Mcapl) -> None:
     done = mcapl.run()
     assert done.returncode == 2
     assert done.stderr == (
-        "error: SIF.gwen is not the file that manifest.json tells of; "
+        "error: SIF.gwen is not the file that manifest.json lists; "
         "`--agent SIF.gwen` checks an agent of your own\n"
     )
 
@@ -263,7 +263,7 @@ def test_a_folder_that_ajpf_cannot_name_is_refused(mcapl: Mcapl, name: str) -> N
     mcapl.bundle = mcapl.folder / name
     done = mcapl.run()
     assert done.returncode == 2
-    assert "AJPF reads paths of letters, digits and `_ . / + @ ~ -` alone" in done.stderr
+    assert "AJPF reads only paths of letters, digits and `_ . / + @ ~ -`" in done.stderr
 
 
 @pytest.mark.slow
@@ -277,7 +277,7 @@ def test_a_file_that_changes_while_ajpf_is_at_work_leaves_no_result(
     mcapl.tool("java", script.replace("name=$(base", f"echo >> '{path}'; name=$(base"))
     done = mcapl.run()
     assert done.returncode == 2
-    assert done.stderr == "error: a file was changed while AJPF was at work: run it again\n"
+    assert done.stderr == "error: a file was changed while AJPF was running: start run.py again\n"
     assert not (mcapl.bundle / "result.json").exists()
 
 
@@ -296,7 +296,7 @@ def test_two_runs_in_one_folder_do_not_read_each_others_files(mcapl: Mcapl) -> N
         fcntl.flock(other, fcntl.LOCK_EX)
         done = mcapl.run()
     assert done.returncode == 2
-    assert done.stderr == f"error: another run.py is at work in {mcapl.bundle}\n"
+    assert done.stderr == f"error: another run.py is running in {mcapl.bundle}\n"
     assert mcapl.run().returncode == 0
 
 
@@ -365,7 +365,7 @@ def test_modules_that_stand_beside_it_are_not_imported(mcapl: Mcapl) -> None:
     for path in ("", f"{os.pathsep}{mcapl.bundle}", str(mcapl.bundle)):
         done = mcapl.started(PYTHONPATH=path)
         assert done.returncode == 0
-        assert "AJPF says all that is expected of it" in done.stdout
+        assert "AJPF gives every expected verdict" in done.stdout
 
 
 @pytest.mark.slow
@@ -479,7 +479,7 @@ def test_the_second_round_of_a_loop_is_left_out(
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        (f"MODEL PRODUCED BY AJPF\n0:\n{ENDING}", "only the model was made"),
+        (f"MODEL PRODUCED BY AJPF\n0:\n{ENDING}", "only the model was built"),
         (f"[SEVERE] ajpf[WARNING|main]: file not found\n{ENDING}", "[SEVERE]"),
         (f"line 1:0 mismatched input '<EOF>'\n{ENDING}", "a file was misread: line 1:0"),
         ("java.lang.NullPointerException\n\tat ajpf.psl", "no verdict in the output"),

@@ -28,8 +28,14 @@ def test_each_requirement_has_a_file_of_each_kind(fretc: Fretc) -> None:
 def test_where_one_kind_is_refused_the_others_are_written(fretc: Fretc) -> None:
     run = fretc(write("r.fret", TWO), "--emit", "hoa", "--emit", "prism", "-o", "out")
     assert run.status == 2
-    assert "F601 PRISM cannot express a certainty such as that of A" in run.err
-    assert "F601 PRISM cannot express a certainty such as that of B-1" in run.err
+    assert (
+        "F601 PRISM cannot express a requirement without a probability, such as that of A"
+        in run.err
+    )
+    assert (
+        "F601 PRISM cannot express a requirement without a probability, such as that of B-1"
+        in run.err
+    )
     assert sorted(path.name for path in Path("out").iterdir()) == ["a.hoa", "b-1.hoa"]
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from compiler.formalization import reference as counters
-from compiler.formalization.letters import atoms_of, meanings
+from compiler.formalization.letters import atoms_of, letters_by_valuation
 from compiler.targets.automata.chart import chart
 from tests.each import each
 from tests.effort import FULL
@@ -101,7 +101,7 @@ def assert_walked_as_defined(sentence: str, traces: int) -> None:
     made = requirement(sentence)
     picture, defined = read(text_of(sentence)), chart(made)
     kind, atoms = counters.template(made.sentence, made.ticks or 0), atoms_of(made.sentence)
-    letters = meanings(made.sentence, atoms)
+    letters = letters_by_valuation(made.sentence, atoms)
     choose = random.Random(sentence)
     for _ in range(traces):
         walk, index, register = Walk(picture), defined.start, 0

@@ -7,7 +7,7 @@ import pytest
 import spot
 
 from compiler.logic import printing
-from compiler.targets.comparison_names import comparison_names, renamed
+from compiler.targets.comparison_names import comparison_names, with_renamed_atoms
 from tests.each import each
 from tests.emitting import LOOKING_BACK, MANY, PROBABLE, SHARING, emitted, refused, requirement
 from tests.strategies import Template, few_templates
@@ -29,7 +29,9 @@ def read(text: str) -> Any:
 
 
 def assert_has_the_language_of_the_formula(sentence: str) -> None:
-    read_as = renamed(requirement(sentence).ft_infinite, comparison_names(requirement(sentence)))
+    read_as = with_renamed_atoms(
+        requirement(sentence).ft_infinite, comparison_names(requirement(sentence))
+    )
     formula = printing.text(read_as, printing.SPOT)
     assert spot.are_equivalent(read(text_of(sentence)), spot.formula(formula)), sentence
 

@@ -11,7 +11,7 @@ import pytest
 from lark import Lark, Token, Tree
 
 from compiler.formalization import reference as counters
-from compiler.formalization.letters import atoms_of, meanings
+from compiler.formalization.letters import atoms_of, letters_by_valuation
 from compiler.formalization.reference import State, accepts
 from compiler.logic import printing
 from compiler.logic.definition import holds
@@ -217,7 +217,7 @@ def assert_runs_as_defined(sentence: str, traces: int, length: int) -> None:
     assert set(atoms_of(made.sentence)) <= set(atoms.values())
     order = tuple(atoms.values())
     letters, known = (
-        meanings(made.sentence, order),
+        letters_by_valuation(made.sentence, order),
         counters.template(made.sentence, made.ticks or 0),
     )
     choose = random.Random(sentence)

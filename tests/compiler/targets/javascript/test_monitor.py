@@ -227,7 +227,7 @@ for (const row of [...rows, ...rows, ...rows]) {{
 
 
 def test_what_python_refuses_is_refused() -> None:
-    assert "one run does not tell a probability" in refused("js", PROBABLE)
+    assert "one run does not show a probability" in refused("js", PROBABLE)
     deep = "(p & (q | " * 40 + "p" + "))" * 40
     refusal = refused("js", f"the sw shall always satisfy {deep}")
     assert "JavaScript cannot express more than 60 nested operators" in refusal

@@ -21,7 +21,7 @@ from compiler.targets.javascript.constants import Constants, scale, truth
 from compiler.targets.javascript.monitor import text
 from compiler.targets.python.comparisons import (
     NUMBER,
-    Compared,
+    CompiledComparison,
     Input,
     NotCompiledError,
     Spelling,
@@ -89,7 +89,7 @@ def by_node(cases: Sequence[tuple[e.Comparison, Units, Mapping[str, Any]]]) -> l
         inputs = {name: Input(NUMBER) for name in sorted(names)}
         kept = {name: unit for name, unit in units.items() if name in names}
         writer = Writer({name: name for name in names}, Spelling(constants.name, scale, truth))
-        texts.append(f"(x, y, z) => {writer.comparison(Compared(inputs, tree, kept))}")
+        texts.append(f"(x, y, z) => {writer.comparison(CompiledComparison(inputs, tree, kept))}")
     values = [[plain(row.get(name)) for name in NAMES] for _, _, row in cases]
     parts = (
         render("js/readings.js.j2"),

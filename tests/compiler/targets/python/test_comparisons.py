@@ -18,11 +18,11 @@ from compiler.targets.python import monitor as target
 from compiler.targets.python.comparisons import (
     FUNCTIONS,
     NUMBER,
-    Compared,
+    CompiledComparison,
     Input,
     NotCompiledError,
     Writer,
-    written,
+    fraction_text,
 )
 from fretc.logs.signals.measures import ExpressionError, Scope
 from fretc.logs.signals.propositions import truth, truth_values
@@ -104,7 +104,7 @@ def compiled(
     names = {name.id for name in e.names(tree)}
     inputs = {name: Input(NUMBER) for name in sorted(names)}
     kept = {name: unit for name, unit in units.items() if name in names}
-    text = Writer({name: name for name in names}).comparison(Compared(inputs, tree, kept))
+    text = Writer({name: name for name in names}).comparison(CompiledComparison(inputs, tree, kept))
     code = compile(text, "comparison", "eval")
     functions = {name: getattr(readings, name) for name in FUNCTIONS}
 
@@ -253,7 +253,7 @@ def test_where_nothing_is_rounded_both_are_exact(tree: e.Comparison, row: dict[s
 @given(st.fractions(), st.integers(0, 14))
 def test_a_constant_is_written_exactly(fraction: Fraction, places: int) -> None:
     for value in (fraction, Fraction(fraction.numerator, 10**places)):
-        assert Fraction(written(value)) == value
+        assert Fraction(fraction_text(value)) == value
 
 
 # Monitors -------------------------------------------------------------------------------------

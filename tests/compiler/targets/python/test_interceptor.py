@@ -157,7 +157,7 @@ def test_what_can_go_wrong_is_said() -> None:
     assert codes(f"{watched}{assume.replace('lost = 2', 'lost = 0')}") == []
     (diagnostic,) = TARGET.remarks(Options(declarations=declared(watched + assume)))
     assert diagnostic.message == (
-        "zero is held for 0 s for certain, and messages may be lost for 200 ms: a robot that was "
+        "zero is held for 0 s for certain, but messages may be lost for 200 ms: a robot that was "
         "stopped may move between two requests"
     )
     assert diagnostic.help == "make `hold` longer than 250 ms"

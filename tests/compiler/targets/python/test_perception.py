@@ -253,7 +253,7 @@ def test_the_text_is_of_python_3_10() -> None:
         (Setting(time="publish_time").bindings, "the time of publication"),
         (Setting().bindings.replace("lateness", "#"), "how long a tick waits"),
         (Setting(slow="y - pre(9, y) < 5").bindings, "looks back by ticks"),
-        (Setting().bindings.replace("proposition.near", "proposition.far"), "what `near` is"),
+        (Setting().bindings.replace("proposition.near", "proposition.far"), "do not define `near`"),
     ],
 )
 def test_what_cannot_be_computed_live_is_refused(bindings: str, why: str) -> None:

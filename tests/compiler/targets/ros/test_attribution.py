@@ -12,7 +12,7 @@ import tomli_w
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from compiler.files.attribution import EXAMPLE, FIELDS, Attribution, Unfit, attribution
+from compiler.files.attribution import EXAMPLE, FIELDS, Attribution, InvalidField, attribution
 from tests.command import Fretc, write
 from tests.effort import FULL
 
@@ -74,7 +74,7 @@ def test_what_is_missing_is_asked_for_once(fretc: Fretc, missing: str | None) ->
     assert run.status == 2
     assert run.err.count("F634") == 1
     names = missing or ", ".join(FIELDS)
-    assert f"what `[project]` of fretc.toml does not say: {names}\n" in run.err
+    assert f"fields that `[project]` of fretc.toml lacks: {names}\n" in run.err
     assert f"\n\n{EXAMPLE}" in run.err
     assert not Path("build").exists()
 
@@ -132,4 +132,4 @@ def test_a_new_project_has_the_table_to_fill_in(fretc: Fretc) -> None:
 
 
 def test_a_text_of_another_kind_is_unfit() -> None:
-    assert isinstance(attribution({"email": "x"}), Unfit)
+    assert isinstance(attribution({"email": "x"}), InvalidField)

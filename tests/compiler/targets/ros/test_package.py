@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import load
-from compiler.project.paths import listed
+from compiler.project.paths import expanded_paths
 from compiler.targets.python import interceptor
 from compiler.targets.ros import package as p
 from compiler.targets.target import Options
@@ -27,7 +27,7 @@ ROOT = Path(__file__).parents[4]
 
 
 def described(path: str) -> p.Package:
-    paths = listed([str(ROOT / path)])
+    paths = expanded_paths([str(ROOT / path)])
     assert not isinstance(paths, Diagnostic)
     project = load(paths)
     assert project.formalized
@@ -136,12 +136,12 @@ expr = "v < 3"
     ("old", "new", "said"),
     [
         ('type = "std_msgs/Float64"\n', "", "`v` has no type"),
-        ("std_msgs/Float64", "foxglove.Thing", "`v` is of `foxglove.Thing`"),
-        ("/a.data", "/a-b.data", "`/a-b` is no name of a topic"),
+        ("std_msgs/Float64", "foxglove.Thing", "`v` has the type `foxglove.Thing`"),
+        ("/a.data", "/a-b.data", "`/a-b` is not a valid ROS topic name"),
         (
             "[proposition.p]",
             '[signal.w]\npath = "/a.other"\ntype = "std_msgs/Bool"\n[proposition.p]',
-            "/a is of `std_msgs/Float64`, and of another type",
+            "/a has the type `std_msgs/Float64` for one signal and another type",
         ),
         ('tick = "100 ms"', 'tick = "100 ms"\ntime = "header.stamp"', "how long a tick waits"),
     ],

@@ -12,7 +12,7 @@ from catkin_pkg.package import parse_package_string
 from compiler.emit import TARGETS
 from compiler.files.text_files import write as deliver
 from compiler.project.folder import load
-from compiler.project.paths import listed
+from compiler.project.paths import expanded_paths
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.target import Options
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -25,7 +25,7 @@ PROJECTS = ("requirements/r1.fret", "requirements/mission", "requirements/agv")
 
 def files(path: str) -> dict[str, str]:
     """The texts of a package by their places."""
-    paths = listed([str(ROOT / path)])
+    paths = expanded_paths([str(ROOT / path)])
     assert not isinstance(paths, Diagnostic)
     project = load(paths)
     options = Options(declarations=project.declarations, attribution=project.attribution)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from compiler.targets.witness_traces import words
+from compiler.targets.witness_traces import witness_traces
 from monitors.kernel import Monitor
 from tests.c_monitors import of_python
 from tests.compiler.targets.c.test_c_monitor import (
@@ -99,12 +99,14 @@ def passes(cargo: str, folder: Path) -> bool:
 
 
 def test_words_reach_each_verdict_and_the_deadline() -> None:
-    found = {word.name: word for word in words(requirement(WITHIN))}
+    found = {word.name: word for word in witness_traces(requirement(WITHIN))}
     assert [*found] == ["soonest_breach", "soonest_pending", "latest_state"]
     assert sum(ticks.count for ticks in found["latest_state"].ticks) == 100
     assert found["soonest_breach"].ticks[-1].verdict == "violated"
     assert sum(ticks.count for ticks in found["soonest_breach"].ticks) == 101
-    assert not words(requirement("whenever persisted(3, p) the sw shall immediately satisfy q"))
+    assert not witness_traces(
+        requirement("whenever persisted(3, p) the sw shall immediately satisfy q")
+    )
 
 
 def test_a_bound_changes_nothing_but_numbers() -> None:

@@ -4,7 +4,7 @@ from itertools import product
 
 import pytest
 
-from compiler.formalization.reference import accepting, accepts, happening, initial, step
+from compiler.formalization.reference import accepting, accepts, initial, step, tick_role
 from compiler.formalization.reference import template as template_of
 from compiler.logic import decision_diagrams as bdd
 from fretc.analysis.arena.transition import Transition
@@ -37,7 +37,7 @@ def assert_same(template: Template) -> None:
             after = step(reference, state, m, p, q, s)
             where = (template, state, row)
             assert (bdd.at(counter.safe, known) == bdd.true()) is (after is not None), where
-            happens = happening(reference, state, m, p)
+            happens = tick_role(reference, state, m, p)
             assert (bdd.at(counter.enforced, known) == bdd.true()) is happens.enforced, where
             assert (bdd.at(counter.triggered, known) == bdd.true()) is happens.triggered, where
             may_end = after is not None and accepts(reference, after)

@@ -158,10 +158,10 @@ def test_a_hash_is_a_hash(tmp_path: Path, name: str, sha256: str) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
-        ('"verdict"', '"verdict": "violated", "verdict"', "`verdict` is there twice in one object"),
-        ('"fretc"', '"fretc": "0.0.0", "fretc"', "`fretc` is there twice in one object"),
+        ('"verdict"', '"verdict": "violated", "verdict"', "`verdict` appears twice in one object"),
+        ('"fretc"', '"fretc": "0.0.0", "fretc"', "`fretc` appears twice in one object"),
         ("2.4", "1e999", "`1e999` is too large for a number"),
-        ("2.4", "Infinity", "`Infinity` is no number of JSON"),
+        ("2.4", "Infinity", "`Infinity` is not a JSON number"),
         ("2.4", f"{10**400}", "is too large for a number"),
     ],
 )

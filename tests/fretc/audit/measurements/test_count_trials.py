@@ -8,7 +8,7 @@ from itertools import product
 
 import pytest
 
-from compiler.formalization.formalized import plain
+from compiler.formalization.formalized import without_probability
 from compiler.targets.python.monitor import text
 from fretc.audit.measurements.count_trials import chance, trials
 from fretc.audit.measurements.trials import Trials
@@ -322,5 +322,5 @@ def test_the_text_is_the_monitor_of_the_sentence_without_its_probability_and_say
 
 def test_a_rule_without_a_probability_stays_itself() -> None:
     own = requirement("whenever c the robot shall satisfy r")
-    assert plain(own) is own
+    assert without_probability(own) is own
     assert chance(own) is None

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.report.front.speech import days, duration
 from tests.effort import FULL
 from tests.fretc.report.cases import content_of, project, requirement, result

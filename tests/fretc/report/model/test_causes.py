@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.audit.evidence.declared_units import in_declared_units
 from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.writer import as_record

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from tests.fretc.report.cases import BINDINGS as DECLARED
 from tests.fretc.report.cases import R1, content_of, project, requirement, result, violation
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.report.make import make
 from tests.browsing import Visits, serious
 from tests.effort import some

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import yaml
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.report.forms.gsn import gsn
 from fretc.report.make import make
 from fretc.report.model.views import Report

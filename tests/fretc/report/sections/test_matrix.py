@@ -2,7 +2,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretish.diagnostics.diagnostic import Code, Severity
 from tests.fretc.report.cases import (
     HAZARDS,

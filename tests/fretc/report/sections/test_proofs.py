@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from compiler.targets.python import monitor
 from compiler.targets.target import Options
 from fretc.cli import cli

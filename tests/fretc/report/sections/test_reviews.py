@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.report.make import make
 from fretish.diagnostics.diagnostic import Code
 from tests.fretc.report.cases import (

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.project.folder import Project
+from compiler.project.project import Project
 from fretc.audit.evidence import reader as reading
 from fretc.audit.evidence.briefs import Briefs
 from fretc.report.traceability.chain import Chain, Link, Node, chains, suspects

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from compiler.project.folder import Project, load
+from compiler.project.folder import load
+from compiler.project.project import Project
 from fretc.analysis.assumptions import assumptions
 from fretc.testing.assembly import jobs, suite
 from fretc.testing.log_synthesis.logs import StagedTest, logs

@@ -10,7 +10,8 @@ import pytest
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import PROVERS, Layer, Proof, not_checked, proof
-from compiler.project.folder import Project, load
+from compiler.project.folder import load
+from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.verification import verify
 from fretc.verification.engines.sandbox import Limits

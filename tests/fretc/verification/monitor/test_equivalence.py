@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from compiler.formalization.letters import Valuation, meanings
+from compiler.formalization.letters import Valuation, letters_by_valuation
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.logic.definition import holds
@@ -314,7 +314,7 @@ def test_an_atom_that_is_not_named_is_the_callers_mistake() -> None:
 
 def test_what_the_values_of_the_atoms_make_of_the_expressions() -> None:
     sentence = read("before x > 3 upon a & b the sw shall until a satisfy b -> x > 3")
-    assert meanings(sentence, ("(x > 3)", "a", "b")) == {
+    assert letters_by_valuation(sentence, ("(x > 3)", "a", "b")) == {
         (False, False, False): (False, False, True, False),
         (False, False, True): (False, False, False, False),
         (False, True, False): (False, False, True, True),
@@ -327,7 +327,7 @@ def test_what_the_values_of_the_atoms_make_of_the_expressions() -> None:
 
 
 def test_what_a_sentence_lacks_is_false() -> None:
-    letters = meanings(read("the sw shall always satisfy q"), ("q",))
+    letters = letters_by_valuation(read("the sw shall always satisfy q"), ("q",))
     assert letters == {(False,): (False,) * 4, (True,): (False, False, True, False)}
 
 
@@ -346,7 +346,7 @@ def test_letters_have_the_values_of_the_expressions(sentence: s.Sentence) -> Non
     ]
     names = tuple(dict.fromkeys(name for formula in read for name in f.atoms(formula)))
     assume(len(names) <= 6)
-    letters = meanings(sentence, names)
+    letters = letters_by_valuation(sentence, names)
     assert len(letters) == 2 ** len(names)
     for valuation, letter in letters.items():
         row = dict(zip(names, valuation, strict=True))
@@ -359,4 +359,4 @@ def test_a_deep_expression_is_read() -> None:
         response = e.both(e.Name("p"), e.Not(response))
         response = e.Implies(e.Name("p"), response)
     sentence = s.Sentence(None, None, "sw", None, s.Always(), response)
-    assert meanings(sentence, ("p", "q"))[False, False] == (False, False, True, False)
+    assert letters_by_valuation(sentence, ("p", "q"))[False, False] == (False, False, True, False)

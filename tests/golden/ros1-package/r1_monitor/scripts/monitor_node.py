@@ -62,13 +62,13 @@ class Node:
 
     def __init__(self) -> None:
         self.waits = ""
-        """What it still waits for; empty: it is at work."""
+        """What the node still waits for; empty: it runs."""
         self.reason = ""
-        """Why ROS has ended it."""
+        """The reason why ROS has ended the node."""
         self.end: Callable[[], None] = lambda: None
 
     def run(self, arguments: list[str]) -> None:
-        """Hear and publish until ROS is shut down."""
+        """Subscribe and publish until ROS is shut down."""
         import rosgraph
         import rospy
         from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue

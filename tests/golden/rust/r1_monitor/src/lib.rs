@@ -15,10 +15,10 @@
 // Names are those of the requirements, and conditions those of their formulas: simpler ones might say less.
 #![allow(non_snake_case, clippy::assign_op_pattern, clippy::nonminimal_bool, clippy::overly_complex_bool_expr, clippy::if_same_then_else)]
 
-/// What is known of a truth value; `None`: it is unknown.
+/// A truth value; `None`: unknown.
 pub type Truth = Option<bool>;
 
-/// Whatever follows: satisfied or violated; or pending.
+/// Satisfied or violated for every continuation; else pending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     Pending,
@@ -26,12 +26,12 @@ pub enum Verdict {
     Violated,
 }
 
-/// What holds for certain of a requirement after a tick, or what may hold.
+/// The certain or the possible values of a requirement after a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
-    /// Ticks to the deadline of the open demand, 0 at it; `None`: none is ahead.
+    /// Ticks to the deadline of the open demand, 0 at it; `None`: no deadline is ahead.
     pub left: Option<u32>,
-    /// It was violated up to here, whatever follows.
+    /// It was violated at or before this tick.
     pub violated: bool,
     /// It is violated if the run ends here.
     pub failed: bool,
@@ -41,9 +41,9 @@ pub struct Reading {
     pub breach: bool,
     /// A demand is open after it.
     pub open: bool,
-    /// Nothing that follows can break a demand.
+    /// No later tick can break a demand.
     pub settled: bool,
-    /// The response came that settles a demand.
+    /// The response that meets a demand came.
     pub answer: bool,
 }
 

@@ -76,6 +76,6 @@ pub fn gather(tick: &mut Inputs, next: &Inputs) {
     tick.stopped = next.stopped;
 }
 
-/// At the end of a tick: what an unknown proposition is taken to be.
+/// At the end of a tick: the declared value of unknown propositions.
 pub fn assume(tick: &mut Inputs) {
 }

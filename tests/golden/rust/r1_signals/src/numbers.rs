@@ -5,7 +5,7 @@ use core::cmp::Ordering;
 #[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
 compile_error!("floats are computed in their own precision: choose a target with SSE2");
 
-/// What is known of a truth value; `None`: it is unknown.
+/// A truth value; `None`: unknown.
 pub type Truth = Option<bool>;
 
 /// A number as it was measured: make it by `Number::from`. A NaN is unknown.

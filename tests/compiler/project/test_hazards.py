@@ -6,7 +6,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.project.parent_graph import cycles, unknown_parents, without_hazard
+from compiler.project.hazards import cycles, unknown_parents, without_hazard
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
 
