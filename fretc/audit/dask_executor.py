@@ -43,7 +43,7 @@ def engine(name: str, jobs: int) -> Engine | Diagnostic:
     if name != SCHEME and not (place.scheme == SCHEME and _is_address(place.netloc)):
         return _bad_engine(name)
     encrypts = ["cryptography"] if name == SCHEME else []
-    missing = unless_installed("a fleet needs", ["distributed", *encrypts], "fleet")
+    missing = unless_installed("the engine `dask` needs", ["distributed", *encrypts], "fleet")
     if missing is not None:
         return missing
     if name == SCHEME:
@@ -124,7 +124,7 @@ def _cluster_at(address: str) -> Iterator[Client]:
     try:
         client = Client(address, timeout=PATIENCE)
     except (OSError, ValueError) as error:
-        raise _FleetError(_unreachable(address, "no scheduler of Dask answers")) from error
+        raise _FleetError(_unreachable(address, "no Dask scheduler answers")) from error
     with client:
         try:
             client.wait_for_workers(1, timeout=PATIENCE)
@@ -181,7 +181,7 @@ def _tasks(client: Client, plan: Plan, logs: Sequence[str]) -> LogAudits:
     for log in again:
         with contextlib.closing(_results(client, remote_plan, [log])) as done:
             for _, result in done:
-                yield log, result or given_up(plan, log, "all workers of Dask that tried it died")
+                yield log, result or given_up(plan, log, "all Dask workers that tried it died")
 
 
 def _results(
@@ -214,16 +214,18 @@ def _result(future: Future) -> LogResult | None:
         result = future.result()
         if isinstance(result, LogResult):
             return result
-        raise _FleetError(_other_edition(f"the worker {result} has another fretc than this one"))
+        raise _FleetError(_other_edition(f"the worker {result} has another version of fretc"))
     if future.status in ("lost", "pending"):  # its worker died before the result was fetched
         return None
     if future.status != "error":
-        raise _FleetError(_unreachable(future.client.scheduler_info()["address"], "it has gone"))
+        raise _FleetError(
+            _unreachable(future.client.scheduler_info()["address"], "the connection was lost")
+        )
     error = future.exception()
     if isinstance(error, KilledWorker):
         return None
     if isinstance(error, ImportError | AttributeError):
-        raise _FleetError(_other_edition(f"a worker has no fretc, or another one: {error}"))
+        raise _FleetError(_other_edition(f"a worker has no fretc, or another version: {error}"))
     assert error is not None
     raise error
 
@@ -274,14 +276,14 @@ def _bad_engine(name: str) -> Diagnostic:
         f"`{name}` is no engine",
         help=f"write `--evaluation {name}`"
         if name in EVALUATIONS
-        else "it is `local`, `dask`, or `dask://HOST:PORT`",
+        else "write `local`, `dask` or `dask://HOST:PORT`",
     )
 
 
 def _unreachable(address: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.NO_FLEET,
-        f"the fleet at `{address.replace('tcp', SCHEME, 1)}` cannot be reached: {why}",
+        f"the Dask cluster at `{address.replace('tcp', SCHEME, 1)}` cannot be reached: {why}",
         help="start `dask scheduler` there, and `dask worker HOST:PORT --nthreads 1` on each "
         "machine; `--engine dask` needs neither",
     )
@@ -291,6 +293,6 @@ def _other_edition(what: str) -> Diagnostic:
     return Diagnostic(
         Code.OTHER_EDITION,
         what,
-        help="install the same fretc, Python and libraries on all machines: "
-        "verdicts of another one are not mixed in",
+        help="install the same fretc, Python and libraries on all machines: verdicts of "
+        "different versions are not mixed",
     )

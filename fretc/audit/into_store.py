@@ -514,7 +514,7 @@ def busy(folder: Path) -> Diagnostic:
     """F912."""
     return Diagnostic(
         Code.BUSY,
-        f"another audit is at work on `{folder}`",
+        f"another audit is writing to `{folder}`",
         Source(str(folder), "").span(),
-        help="wait for it, or name another place with `-o`",
+        help="wait until it ends, or name another folder with `-o`",
     )

@@ -174,7 +174,7 @@ def _empty(path: str) -> Diagnostic:
         Code.NO_SUCH_FILE,
         f"no log (`*.mcap`, `*.bag`, `*.db3`) is in `{name_of(path)}`",
         Source(name_of(path), "").span(),
-        help="name the folder that your logs are in",
+        help="name the folder that contains the logs",
     )
 
 
@@ -183,5 +183,5 @@ def _no_match(path: str) -> Diagnostic:
         Code.NO_SUCH_FILE,
         f"no file matches `{name_of(path)}`",
         Source(name_of(path), "").span(),
-        help="`*` stands for any part of one name, `**` for folders below each other",
+        help="`*` matches any part of one name, `**` any number of nested folders",
     )

@@ -73,14 +73,14 @@ def was_late(log: str, how: TimedOut, limits: Limits) -> Diagnostic:
             Code.LOG_OUT_OF_TIME,
             f"the audit of `{name_of(log)}` was ended after {exact_duration(limits.each)}",
             Source(name_of(log), "").span(),
-            help="give it more time by `--log-time`, or audit it alone",
+            help="allow more time with `--log-time`, or audit this log alone",
             severity=Severity.WARNING,
         )
     assert limits.all is not None
     return Diagnostic(
         Code.AUDIT_OUT_OF_TIME,
         f"the {exact_duration(limits.all)} of the audit were over: no data",
-        help="audit the logs that are left, or give more time by `--time`",
+        help="audit the remaining logs, or allow more time with `--time`",
         severity=Severity.WARNING,
     )
 
@@ -96,7 +96,7 @@ def was_killed(log: str, how: str) -> Diagnostic:
         Code.PROCESS_KILLED,
         f"the process that audited `{name_of(log)}` was killed, and again when it ran alone: {how}",
         Source(name_of(log), "").span(),
-        help="was there memory enough? audit this log on a machine that has more",
+        help="it may have run out of memory: audit this log on a machine with more memory",
     )
 
 

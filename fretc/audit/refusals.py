@@ -65,7 +65,7 @@ def _unusable(project: Project, first: FormalizedRequirement) -> Diagnostic | No
     if declarations is None:
         return Diagnostic(
             Code.UNBOUND,
-            "no bindings say what the propositions mean in the messages",
+            "no bindings map the propositions to messages",
             first.entry.wording,
             help="write `bindings.toml` beside the requirements, or name it with `--bindings`",
         )

@@ -30,7 +30,7 @@ def part(
         log: the file.
         sink: receives the messages.
         integrity: what is looked at beyond them.
-        place: the file, as the user named it.
+        place: the file, as named on the command line.
         wanted: what is asked for of its metadata records.
 
     Raises:
@@ -84,8 +84,8 @@ def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None
     backup = unclosed_backup(file)
     if backup is not None and span is not None:
         what = (
-            f"it was reindexed, and the chunk that was being written when its recording broke off "
-            f"is not in it (`{backup}` is beside it)"
+            f"the bag was reindexed: the chunk that was being written when the recording "
+            f"stopped is missing (`{backup}` is beside it)"
         )
         yield Damage(NOWHERE, what, code=Code.REINDEXED), (span[1], span[1])
 

@@ -33,7 +33,7 @@ def labels(
 
     Args:
         declared: each label with its sources.
-        run: the path of its log, as the user named it.
+        run: the path of its log, as named on the command line.
         described: what the metadata of the log says: `build.version` → values.
     """
     found: dict[str, str] = {}
@@ -89,12 +89,12 @@ def given(texts: Sequence[str]) -> Labels | Diagnostic:
             )
         if name in found:
             return Diagnostic(
-                Code.BAD_LABEL, f"`--label {name}=...` is given twice", help="take one of them out"
+                Code.BAD_LABEL, f"`--label {name}=...` is given twice", help="remove one of them"
             )
         found[name] = value
     if len(found) > MOST_LABELS:
         return Diagnostic(
-            Code.BAD_LABEL, f"there are {len(found)} labels, and {MOST_LABELS} is the most"
+            Code.BAD_LABEL, f"there are {len(found)} labels; at most {MOST_LABELS} are allowed"
         )
     return found
 
@@ -103,8 +103,8 @@ def _conflict(name: str) -> Diagnostic:
     """F552; the same for all logs, so that many of them are one warning."""
     return Diagnostic(
         Code.LABEL_CONFLICT,
-        f"sources of the label `{name}` say different things of one run",
-        help="the command counts first, then the sources in the order of `[run.label]`",
+        f"sources of the label `{name}` give one run different values",
+        help="the command line takes precedence, then the sources in the order of `[run.label]`",
         severity=Severity.WARNING,
     )
 
@@ -113,11 +113,11 @@ def _none(name: str, sources: Sequence[LabelSource], *, is_given: bool) -> Diagn
     """F553."""
     texts = (f"{'path' if one.is_path else 'metadata'}:{one.text}" for one in sources)
     where = " or ".join(f"`{text}`" for text in texts)
-    what = f"is empty, or longer than {LONGEST} characters" if is_given else "says nothing"
+    what = f"is empty, or longer than {LONGEST} characters" if is_given else "has no value"
     return Diagnostic(
         Code.NO_LABEL,
         f"a run has no label `{name}`: {where} {what}",
-        help=f"say it with `--label {name}=...`, or fix its sources in `[run.label]`",
+        help=f"give it with `--label {name}=...`, or fix its sources in `[run.label]`",
         severity=Severity.WARNING,
     )
 

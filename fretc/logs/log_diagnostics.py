@@ -34,7 +34,7 @@ def changed(place: Span) -> Diagnostic:
     """F903: what was read and what was hashed may be different bytes."""
     return Diagnostic(
         Code.UNREADABLE,
-        "it was changed while it was read",
+        "the log was changed while it was read",
         place,
         "wait until its recording or its copy is complete",
     )
@@ -67,15 +67,15 @@ def not_a_log(start: bytes, place: Span) -> Diagnostic:
         if start.startswith(magic):
             return Diagnostic(
                 Code.NOT_A_LOG,
-                f"it is a whole file compressed with {codec}",
+                f"the whole file is compressed with {codec}",
                 place,
-                f"unpack it first: `{command} FILE`; MCAP compresses within the file",
+                f"unpack it first: `{command} FILE`; MCAP has a compression of its own",
             )
     return Diagnostic(
         Code.NOT_A_LOG,
-        "it is not a log: neither MCAP, nor a ROS 1 bag, nor rosbag2's SQLite",
+        "it is not a log: neither MCAP, nor a ROS 1 bag, nor an SQLite file of rosbag2",
         place,
-        "name a recording",
+        "name an MCAP file, a ROS 1 bag or a rosbag2 folder",
     )
 
 
@@ -121,10 +121,10 @@ def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagno
         )
         return Diagnostic(
             damage.code,
-            f"{description}: whole messages go {_seconds(gap[0] - origin)} far, and what came then "
-            "is unknown",
+            f"{description}: complete messages end after {_seconds(gap[0] - origin)}; what "
+            "follows is unknown",
             place,
-            "what it shows up to there counts, and nothing counts as satisfied",
+            "violations up to there count, but no requirement counts as satisfied",
             Severity.WARNING,
         )
     lost = "no message is known to be lost"
@@ -136,7 +136,7 @@ def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagno
         damage.code,
         f"{where}{damage.description}; {lost}",
         place,
-        "copy the log again from where it was recorded; nothing counts as shown by a damaged log",
+        "copy the log again from where it was recorded; a damaged log does not count as shown",
         Severity.WARNING,
     )
 
@@ -202,8 +202,8 @@ def no_constant(signal: Signal, known: Mapping[str, int]) -> Diagnostic:
     name = ".".join(signal.path.fields)
     missing = [word for word in signal.values if word not in known]
     if not missing:
-        message = f"two values of `{signal.name}` are one number of `{name}`"
-        fix = "take one out"
+        message = f"two values of `{signal.name}` have the same number in `{name}`"
+        fix = "remove one of them"
     else:
         near = _constant(missing[0], known)
         listed = f"it names {', '.join(list(known)[:8])}{', ...' if len(known) > 8 else ''}"
@@ -214,7 +214,7 @@ def no_constant(signal: Signal, known: Mapping[str, int]) -> Diagnostic:
         fix = (
             f"did you mean `{near}`?"
             if near
-            else f"{listed if known else 'it names none'}; or write the number of each word: "
+            else f"{listed if known else 'it names none'}; or write the number of each value: "
             f"`values = {{ {as_key(missing[0])} = 0 }}`"
         )
     return Diagnostic(Code.UNKNOWN_WORD, message, signal.span, fix)
@@ -232,15 +232,15 @@ def foreign_value(signal: Signal, foreign: UnmappedSamples, count: int, after: i
     near = suggestion(foreign.text, signal.values)
     is_number = re.fullmatch(r"-?[\d.]+", foreign.text) is not None
     if is_number and not signal.numbers:
-        fix = "give the number of each word: `values = { drive = 0 }`"
+        fix = "give the number of each value: `values = { drive = 0 }`"
     elif signal.numbers and not is_number:
-        fix = 'the field holds texts: `values = ["drive"]`'
+        fix = 'the field is a text: `values = ["drive"]`'
     else:
-        fix = f"did you mean `{near}`?" if near else "add it, if it is one of them"
+        fix = f"did you mean `{near}`?" if near else "add this one if it is valid"
     return Diagnostic(
         Code.FOREIGN_VALUE,
-        f"{foreign.count} of {count} samples of `{signal.name}` are none of its values, the first "
-        f"one `{foreign.text}` at {_seconds(after)}: they are unknown",
+        f"{foreign.count} of {count} samples of `{signal.name}` are not among its values, the "
+        f"first one `{foreign.text}` at {_seconds(after)}: they are unknown",
         signal.span,
         f"its values are {listed(signal.values)}; {fix}",
         Severity.WARNING,
@@ -254,7 +254,7 @@ def no_truth(signal: Signal, foreign: UnmappedSamples, count: int, after: int) -
         f"`{signal.name}` stands for a truth value, and {foreign.count} of {count} samples are "
         f"neither 1 nor 0, the first one {foreign.text} at {_seconds(after)}: they are unknown",
         signal.span,
-        f"is it a number? Then compare it: `{signal.name} > 0`",
+        f"if it is a number, compare it: `{signal.name} > 0`",
         Severity.WARNING,
     )
 
@@ -276,7 +276,7 @@ def several_types(signal: Signal, types: Sequence[str]) -> Diagnostic:
     return Diagnostic(
         Code.SEVERAL_TYPES,
         f"`{signal.path.topic}` has messages of {', '.join(some)} and {last}: "
-        f"`{signal.name}` is read of all of them",
+        f"`{signal.name}` is read from all of them",
         signal.span,
         "a field of the same name may mean something else there; "
         f'with `type = "{types[0] or types[-1]}"` a log with any other is refused',
@@ -317,8 +317,8 @@ def out_of_order(signal: Signal, late: int, count: int) -> Diagnostic:
     """Messages of the topic are earlier than one before them."""
     return Diagnostic(
         Code.OUT_OF_ORDER,
-        f"{late} of {count} messages of `{signal.path.topic}` are earlier than one before them: "
-        "they are sorted by time",
+        f"{late} of {count} messages of `{signal.path.topic}` are out of order: they are sorted "
+        "by time",
         signal.span,
         "check the clocks of publisher and recorder",
         Severity.WARNING,
@@ -332,8 +332,7 @@ def unstamped(signal: Signal, shift: int) -> Diagnostic:
         return Diagnostic(Code.NO_FIELD, message, signal.span, severity=Severity.NOTE)
     return Diagnostic(
         Code.NO_FIELD,
-        f"{message}, and that is {duration(shift / _SECOND)} away from the stamps of "
-        "the other topics",
+        f"{message}, which is {duration(shift / _SECOND)} away from the stamps of the other topics",
         signal.span,
         'two clocks are mixed: use `time = "log_time"` under `[clock]`',
         Severity.WARNING,
@@ -346,8 +345,7 @@ def zero_stamps(
     """F416: the publisher, or the recorder, never set the time of some messages."""
     return Diagnostic(
         Code.ZERO_STAMP,
-        f"{zero} of {count} messages of `{topic}` have a zero for a time: their samples are "
-        "unknown",
+        f"{zero} of {count} messages of `{topic}` have the time 0: their samples are unknown",
         place,
         _other_time(time),
         Severity.WARNING,
@@ -361,9 +359,9 @@ def still_clock(
     return Diagnostic(
         Code.STILL_CLOCK,
         f"the clock of `{topic}` stands still: {same} of {count} messages have the {time} of "
-        f"{STILL_RUN - 1} or more beside them",
+        f"{STILL_RUN - 1} or more neighbours",
         place,
-        f"{_other_time(time)}; what happened between them is taken for one instant",
+        f"{_other_time(time)}; what happened between them counts as one instant",
         Severity.WARNING,
     )
 
@@ -382,8 +380,8 @@ def clock_jumps(signal: Signal, jumps: int, largest: int) -> Diagnostic:
         f"the clock of `{signal.path.topic}` jumps against log_time {times} by "
         f"{duration(largest / _SECOND)}",
         signal.span,
-        "was a clock set, a simulation begun anew, or were messages held back? "
-        "durations around it are not what they seem",
+        "a clock was set, a simulation was restarted, or messages were delayed: durations around "
+        "the jump are unreliable",
         Severity.WARNING,
     )
 
@@ -393,8 +391,8 @@ def mixed_clocks(signal: Signal, other: str, apart: int) -> Diagnostic:
     return Diagnostic(
         Code.MIXED_CLOCKS,
         f"the stamps of `{signal.path.topic}` are {duration(abs(apart) / _SECOND)} "
-        f"{'ahead of' if apart > 0 else 'behind'} those of `{other}`, by the times at which both "
-        "were recorded",
+        f"{'ahead of' if apart > 0 else 'behind'} those of `{other}`, measured by their "
+        "recording times",
         signal.span,
         'two clocks are mixed: use `time = "log_time"` under `[clock]`, or set the clocks',
         Severity.WARNING,

@@ -304,7 +304,7 @@ def _folder(
     damages = list(_losses(about, places, found))
     if about.messages not in (None, sink.counted) and not damages:
         lost = (min(a for a, _ in spans), max(b for _, b in spans))
-        what = f"its {METADATA} states {about.messages} messages, and its files hold {sink.counted}"
+        what = f"its {METADATA} states {about.messages} messages, but its files hold {sink.counted}"
         damage = Damage(NOWHERE, what, code=Code.COUNT_MISMATCH)
         damages.append((place, damage, lost if sink.counted < (about.messages or 0) else None))
     hashes = {
@@ -331,7 +331,7 @@ def _losses(
             for damage, gap in widened(part, before, after):
                 yield place, damage, gap
         else:
-            what = f"a file of the run is lost: {part.message}"
+            what = f"a file of the run cannot be read: {part.message}"
             yield place, Damage(NOWHERE, what, code=Code.LOST_PART), about.lost(i, before, after)
 
 

@@ -240,13 +240,13 @@ class Stream:
         if time == 0:
             return Diagnostic(
                 Code.ZERO_STAMP,
-                f"a message of `{topic}` has a zero for a time: its clock was never set",
-                help="leave it out, or give it the time at which it was received",
+                f"a message of `{topic}` has the time 0: its clock was never set",
+                help="drop the message, or give it the time at which it was received",
             )
         if not 0 < time < LATEST:
             return Diagnostic(
                 Code.BAD_MESSAGE,
-                f"a message of `{topic}` has the time {time}, which no clock tells",
+                f"a message of `{topic}` has the time {time}, which is out of range",
                 help="give the time in nanoseconds",
             )
         passed = self._ticking.passed
@@ -255,7 +255,7 @@ class Stream:
                 Code.OUT_OF_ORDER,
                 f"a message of `{topic}` is {passed - time} ns late: the ticks up to "
                 f"{passed} ns are judged",
-                help="let time pass only up to where no message can come any more",
+                help="advance the time only as far as no earlier message can arrive any more",
             )
         return None
 
@@ -296,7 +296,7 @@ class Stream:
         if not 0 <= time < LATEST:
             return Diagnostic(
                 Code.BAD_MESSAGE,
-                f"time cannot pass up to {time}: no clock tells that",
+                f"time cannot advance to {time}: it is out of range",
                 help="give the time in nanoseconds",
             )
         if (many := _too_many(self._ticking.due(time))) is not None:
@@ -326,7 +326,7 @@ class Stream:
     def _over(self) -> Diagnostic | None:
         if not self._ended:
             return None
-        return Diagnostic(Code.BAD_USAGE, "the stream has ended", help="begin a new one")
+        return Diagnostic(Code.BAD_USAGE, "the stream has ended", help="begin a new stream")
 
     def _ticks(self, times: Sequence[int], end: int) -> tuple[Tick, ...]:
         """What each of the new ticks sees, in a log that goes on up to `end`."""
@@ -494,7 +494,7 @@ def _too_many(times: Sequence[int]) -> Diagnostic | None:
 def _needs_messages(declarations: Declarations) -> Diagnostic:
     return Diagnostic(
         Code.MESSAGE_CLOCK,
-        f"the clock ticks with {declarations.clock}: a sample of one signal is no message",
+        f"the clock ticks with {declarations.clock}: a sample of one signal is not a message",
         declarations.source.span(0, 0),
         help="give whole messages, with their topic",
     )

@@ -115,7 +115,7 @@ def _grid(stated: Mapping[str, tuple[str, ...]], columns: Columns) -> tuple[int 
     for record in (GRID, WATCH):
         named = stated.get(f"{record}.clock", (clock,))[0]
         if named != clock:
-            return f"it is of the clock `{named[:_SHOWN]}`, and not `{clock}`"
+            return f"it uses the clock `{named[:_SHOWN]}`, not `{clock}`"
     texts = [stated.get(key, ("",))[0] for key in (f"{GRID}.origin", f"{WATCH}.until")]
     for text in texts:
         if text and not (_TIME.fullmatch(text) and int(text) < LATEST):
@@ -167,9 +167,9 @@ def _taken_over(origin: int | None, until: int, columns: Columns, place: Span) -
 def _refused(why: str, place: Span) -> Diagnostic:
     return Diagnostic(
         Code.FOREIGN_GRID,
-        f"what the log says of a watch does not count: {why}",
+        f"the watch that the log records is ignored: {why}",
         place,
-        "audit a recording with the clock of its watch",
+        "audit the recording with the same clock as the watch",
         Severity.WARNING,
     )
 
@@ -177,10 +177,10 @@ def _refused(why: str, place: Span) -> Diagnostic:
 def _missing(gaps: Sequence[Gap], place: Span) -> Diagnostic:
     length = sum(b - a for a, b in gaps)
     times = "once" if len(gaps) == 1 else f"{len(gaps)} times"
-    how = f"{times}, for {seconds(length / 1e9)} in all: what came then is unknown"
+    how = f"{times}, for {seconds(length / 1e9)} in all: messages of these times are unknown"
     return Diagnostic(
         Code.MISSED,
-        f"the watch has missed messages {how if gaps else 'and does not say when'}",
+        f"the watch has missed messages {how if gaps else 'at unknown times'}",
         place,
         severity=Severity.WARNING,
     )

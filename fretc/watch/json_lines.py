@@ -17,21 +17,24 @@ from compiler.files.records import (
 from fretc.watch.news import Changed, Found, Late, News, RunEnded
 from fretc.watch.sources.source import Interrupted, Missed, Opened, Reconnected
 
-_Time = Annotated[Whole | None, about("nanoseconds of the declared clock; null: there is none")]
+_Time = Annotated[Whole | None, about("nanoseconds on the declared clock; null: there is none")]
 
 
 class RequirementLine(Record, frozen=True, tag="requirement", tag_field="type"):
     """A requirement of which something is otherwise than before."""
 
     requirement: Name
-    verdict: Annotated[str, about("if the run ended now, as an audit calls it")]
+    verdict: Annotated[str, about("the verdict of an audit if the run ended now")]
     owed: Annotated[
         bool | None,
-        about("whether a demand is open that the robot must meet now: it stops unless it is false"),
+        about(
+            "whether an obligation is open (null: unknown); a robot with a stop supervisor "
+            "stops unless it is false"
+        ),
     ]
-    triggered_ns: Annotated[_Time, about("the last tick that has triggered it")]
-    open_ns: Annotated[_Time, about("the trigger of the demand that is open")]
-    deadline_ns: Annotated[_Time, about("the last tick at which it can be met")]
+    triggered_ns: Annotated[_Time, about("the last tick with a trigger")]
+    open_ns: Annotated[_Time, about("the trigger of the open obligation")]
+    deadline_ns: Annotated[_Time, about("the last tick at which the open obligation can be met")]
     violated_ns: Annotated[_Time, about("the first tick at which it was violated")]
     time_ns: Annotated[Whole, about("the latest time of all messages, on the declared clock")]
 
@@ -39,8 +42,8 @@ class RequirementLine(Record, frozen=True, tag="requirement", tag_field="type"):
 class LateLine(Record, frozen=True, tag="late", tag_field="type"):
     """Ticks that were judged have become unknown."""
 
-    ticks: Annotated[Count, about("all of the run so far")]
-    messages: Annotated[dict[Name, Count], about("of each topic, all of the run so far")]
+    ticks: Annotated[Count, about("the total in this run so far")]
+    messages: Annotated[dict[Name, Count], about("the total of each topic in this run so far")]
 
 
 class MessageLine(Record, frozen=True, tag="message", tag_field="type"):
@@ -71,8 +74,8 @@ class MissedLine(Record, frozen=True, tag="missed", tag_field="type"):
 
     since_ns: Annotated[Whole, about("receive time")]
     until_ns: Annotated[Whole, about("receive time")]
-    reconnected: Annotated[bool, about("whether the source is there again")]
-    count: Annotated[Count | None, about("how many; null: nobody knows")]
+    reconnected: Annotated[bool, about("true: the source is connected again")]
+    count: Annotated[Count | None, about("the number of missed messages; null: unknown")]
 
 
 class RunLine(Record, frozen=True, tag="run", tag_field="type"):
@@ -104,7 +107,7 @@ def schema() -> dict[str, Any]:
         _Lines,
         SCHEMA,
         "A line of `fretc watch --format jsonl`",
-        "Times are nanoseconds. `type` tells the kinds of lines from each other.",
+        "Times are nanoseconds. `type` is the kind of a line.",
     )
     line_ = found["properties"]["lines"]["items"]
     head = {key: value for key, value in found.items() if key.startswith("$") or key in _HEAD}

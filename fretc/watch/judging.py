@@ -62,7 +62,7 @@ class Judges:
         return tuple(standing.owed for standings in found for standing in standings)
 
     def last_triggers(self) -> tuple[int | None, ...]:
-        """Of each requirement the time of the last tick that has triggered it for certain."""
+        """Of each requirement the time of the last tick with a trigger for certain."""
         marks = (monitor.must.marks()[0] for monitor in self.monitors)
         return tuple(self.ledger.time(each.last) if each.last >= 0 else None for each in marks)
 

@@ -38,7 +38,7 @@ class Reaction:
         """Start it with facts: as JSON on standard input, and each as `FRETC_NAME` beside."""
         self._threads = [thread for thread in self._threads if thread.is_alive()]
         if len(self._threads) >= MOST:
-            self._failed(f"was not started: {MOST} of it still run")
+            self._failed(f"was not started: {MOST} earlier ones still run")
             return
         thread = Thread(target=self._run, args=(dict(facts),), daemon=True)
         self._threads.append(thread)
@@ -93,10 +93,10 @@ class Reaction:
         except subprocess.TimeoutExpired:
             _kill(process)
             process.communicate()
-            self._failed(f"took longer than {PATIENCE} s, and was ended")
+            self._failed(f"took longer than {PATIENCE} s, and was stopped")
         else:
             if self._is_over and process.returncode == -signal.SIGKILL:
-                self._failed(f"was ended: it still ran {_LAST} s after the watch")
+                self._failed(f"was stopped: it still ran {_LAST} s after the end of the watch")
             elif process.returncode:
                 self._failed(f"ended with exit status {process.returncode}")
 
@@ -105,7 +105,7 @@ class Reaction:
             Diagnostic(
                 Code.REACTION_FAILED,
                 f"`{self._command[0]}` {how}",
-                help="try it by hand; the watch does not depend on it",
+                help="run the command by hand to see the error; the watch continues without it",
                 severity=Severity.WARNING,
             )
         )

@@ -31,7 +31,7 @@ from monitors.ticking import Ledger, is_jump
 
 @dataclass(frozen=True, slots=True)
 class Jump:
-    """The clock of a topic was set back: what follows is another run."""
+    """The clock of a topic was set back: a new run begins."""
 
     topic: str
     by: int
@@ -92,7 +92,7 @@ class Session:
         self._gap_from: int | None = None
         """The latest time before messages were missed, until another one comes."""
         self.interrupted = False
-        """Whether the source is gone."""
+        """Whether the source is not connected."""
         self._ahead: tuple[Truth, ...] | None = None
         self._final: Mapping[str, str] = {}
         """The verdicts of a run that has ended."""

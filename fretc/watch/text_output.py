@@ -44,10 +44,10 @@ def rows(session: Session, titles: Mapping[str, str], screen: Screen) -> Iterato
 
 def _ticks(session: Session) -> str:
     if session.waiting:
-        return f"  waits for {', '.join(session.waiting)} to place the first tick"
+        return f"  waits for {', '.join(session.waiting)} before the first tick"
     late = f", {session.late_ticks} became unknown" if session.late_ticks else ""
     behind = session.disordered
-    why = f"; {behind} messages behind later ones: judged again at the end" if behind else ""
+    why = f"; {behind} messages out of order: judged again at the end" if behind else ""
     return f"  {session.ticks} ticks{late}{why}"
 
 
@@ -87,13 +87,13 @@ def line(news: News, start: int | None) -> str | None:
             return _changed(state, before, time, start)
         case Late(ticks, messages):
             of = ", ".join(f"{count} of {topic}" for topic, count in messages.items() if count)
-            return f"late messages ({of}): {ticks} ticks that were judged are unknown"
+            return f"late messages ({of}): {ticks} judged ticks became unknown"
         case Opened(name):
             return f"watches {name}"
         case Interrupted(_, problem):
             return f"interrupted: {problem.message}"
         case Reconnected(since, until):
-            return f"connected again: what came within {duration((until - since) / _S)} is lost"
+            return f"connected again: messages of {duration((until - since) / _S)} are lost"
         case Missed(since, until, count):
             what = "1 message" if count == 1 else f"{count} messages"
             within = f" within {duration((until - since) / _S)}" if until > since else ""

@@ -248,8 +248,9 @@ class Watch:
 def _silent(topic: str) -> Diagnostic:
     return Diagnostic(
         Code.NOTHING_COMES,
-        f"nothing has come of `{topic}` for {duration(SILENCE / 1e9)}: what reads it is unknown",
-        help="compare its name with those that the robot sends",
+        f"no message has arrived of `{topic}` for {duration(SILENCE / 1e9)}: propositions that "
+        "read it are unknown",
+        help="compare its name with the topics of the robot",
         severity=Severity.WARNING,
     )
 
@@ -257,8 +258,7 @@ def _silent(topic: str) -> Diagnostic:
 def _set_back(jump: Jump) -> Diagnostic:
     return Diagnostic(
         Code.CLOCK_SET_BACK,
-        f"the clock of `{jump.topic}` was set back by {duration(jump.by / 1e9)}: what follows is "
-        "another run",
+        f"the clock of `{jump.topic}` was set back by {duration(jump.by / 1e9)}: a new run begins",
         severity=Severity.WARNING,
     )
 
@@ -266,13 +266,13 @@ def _set_back(jump: Jump) -> Diagnostic:
 def _two_clocks(jump: Jump) -> Diagnostic:
     return Diagnostic(
         Code.CLOCK_SET_BACK,
-        f"the clock of `{jump.topic}` was set back {MOST_RUNS} times: it is given up",
-        help="are there two publishers of the topic, with different clocks?",
+        f"the clock of `{jump.topic}` was set back {MOST_RUNS} times: the watch gives up",
+        help="check whether two publishers of the topic use different clocks",
     )
 
 
 def _disordered(count: int, log: str | None, judged: object) -> Diagnostic:
-    messages = f"{count} message{'s' * (count > 1)} of the log stood behind later ones"
+    messages = f"{count} message{'s' * (count > 1)} of the log came after later ones"
     if not isinstance(judged, Diagnostic):
         return Diagnostic(
             Code.DISORDERED,
@@ -296,6 +296,6 @@ def _no_log() -> Diagnostic:
 def _not_recorded(path: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.NOT_RECORDED,
-        f"`{path}` cannot be written on: {why}; the watch goes on without it",
-        help="make room, and watch again with another file",
+        f"`{path}` cannot be written any further: {why}; the watch continues without it",
+        help="free some space, and watch again with another file",
     )

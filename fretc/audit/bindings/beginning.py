@@ -170,7 +170,7 @@ def _limit(largest: float) -> str:
 def _no_signal(log: str) -> Diagnostic:
     return Diagnostic(
         Code.NOTHING_TO_DO,
-        f"no number of `{name_of(log)}` can be read throughout: there is nothing to require of it",
+        f"no number of `{name_of(log)}` is known throughout: no requirement can be drafted from it",
         Source(name_of(log), "").span(),
-        help="look at it with `fretc info`, or leave `--from` out",
+        help="list its topics with `fretc info`, or leave out `--from`",
     )

@@ -325,9 +325,9 @@ def _remark(topic: Topic, leaves: Leaves | None, paths: Sequence[str]) -> str:
     if leaves is None:
         return f"its messages cannot be read (encoded as `{topic.encoding}`)"
     if not paths:
-        return "no number, and no text of few words, has a place of its own in its messages"
+        return "its messages have no number and no enumeration text at a fixed path"
     if path(paths[0]) is None:
-        return "no path can name a topic that is called so"
+        return "a path cannot contain the name of this topic"
     return ""
 
 

@@ -62,9 +62,9 @@ def _steered(prefix: str) -> tuple[Quantity, ...]:
     )
 
 
-_PLAIN = (Quantity("data", "", note="a plain number: the type says no unit"),)
+_PLAIN = (Quantity("data", "", note="a plain number: the type states no unit"),)
 _FLAG = (Quantity("data", "", note="true or false: its name alone is an expression"),)
-_WORD = (Quantity("data", "", note="the words of this log; add those that it lacks"),)
+_WORD = (Quantity("data", "", note="the values in this log; add the missing ones"),)
 
 QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
     "sensor_msgs/LaserScan": (
@@ -75,7 +75,8 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
             reduce="min",
             valid="range_min <= x and x <= range_max",
             invalid=_REP_117,
-            note="from the sensor to what is nearest; `outline` measures from the robot's outline",
+            note="from the sensor to the nearest obstacle; `outline` measures from the robot's "
+                "outline",
         ),
     ),
     "sensor_msgs/Range": (
@@ -91,7 +92,8 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
         *(Quantity(f"linear_acceleration.{axis}", f"a{axis}", "m/s^2") for axis in "xyz"),
     ),
     "sensor_msgs/Temperature": (
-        Quantity("temperature", "", note="degrees Celsius, which are no unit: a plain number"),
+        Quantity("temperature", "", note="degrees Celsius, which is not a unit of fretc: a "
+            "plain number"),
     ),
     "sensor_msgs/FluidPressure": (Quantity("fluid_pressure", "", "Pa"),),
     "sensor_msgs/RelativeHumidity": (Quantity("relative_humidity", "", note="from 0 to 1"),),

@@ -27,10 +27,10 @@ _WHY = {
     SENTENCE: "the sentence has changed since the audit",
     PARAMS: "the numbers in `params` have changed since the audit",
     CLOCK: "the clock has changed since the audit",
-    TOPICS: "the topics that the audit reads, and its ticks begin with, have changed since then",
+    TOPICS: "the topics that the audit reads have changed since the audit",
     BINDINGS: "the bindings have changed since the audit",
-    MONITOR: "the monitor that is made now is not the one of the audit",
-    FRETC: "another version of fretc has made the audit",
+    MONITOR: "the generated monitor has changed since the audit",
+    FRETC: "the audit was made with another version of fretc",
 }
 
 Basis = Mapping[str, str]

@@ -47,9 +47,9 @@ def no_way(recording: Recording, declarations: Declarations) -> Iterator[Diagnos
         if samples is None or not np.isfinite(samples.values.astype(np.float64)).any():
             yield Diagnostic(
                 Code.NO_WAY,
-                f"there is no map: nothing is known of `{signal.path}`",
+                f"no map can be drawn: no value is known of `{signal.path}`",
                 signal.span,
-                "name a number of a topic that a requirement reads",
+                "name a numeric field of a topic that a requirement reads",
                 Severity.WARNING,
             )
             return

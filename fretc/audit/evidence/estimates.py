@@ -51,7 +51,7 @@ def warnings(estimates: Sequence[Estimated]) -> Iterator[Diagnostic]:
                 f"the probability of {one.requirement} is estimated from "
                 f"{times(one.logs.counted, 'log')} with a trigger",
                 help=f"audit {least} or more: triggers of one log may depend on each other, so "
-                "logs count",
+                "logs are counted, not triggers",
                 severity=Severity.WARNING,
             )
 
@@ -115,10 +115,13 @@ def _reason(estimate: odds.Estimate, answer: str, text: str) -> str:
             f"it lies between {least} and {most}, so {'' if answer == SUPPORTED else 'not '}{text}"
         )
     if estimate.runs < 2:
-        return "one log does not tell a probability: its triggers depend on each other"
+        return "one log is not enough for a probability: its triggers may depend on each other"
     return f"it lies between {least} and {most}, which leaves {text} open"
 
 
 def _damaged(count: int) -> str:
     what = "log is" if count == 1 else "logs are"
-    return f"{count} {what} damaged or could not be read: what is lost could speak against it"
+    return (
+        f"{count} {what} damaged or could not be read: the lost part could "
+        "contradict the requirement"
+    )

@@ -15,8 +15,8 @@ from fretish.units import number
 
 AnswerWord = Literal["supported", "refuted", "inconclusive"]
 AVERAGE = (
-    "this is the average over the triggers seen; PCTL demands it of every reachable state with a "
-    "trigger, which is more"
+    "this is the average over the recorded triggers; PCTL demands the probability in "
+    "every reachable state with a trigger, which is stronger"
 )
 """Said with every answer."""
 
@@ -28,7 +28,7 @@ class Outcomes(Record, frozen=True):
     failed: Annotated[Count, about("triggers whose demand was broken")]
     open: Annotated[
         Count,
-        about("triggers of which the log does not tell, and ticks that may be triggers"),
+        about("triggers whose outcome the log does not show, and ticks that may be triggers"),
     ]
 
 
@@ -38,7 +38,7 @@ class Logs(Record, frozen=True):
     counted: Annotated[Count, about("with a trigger")]
     silent: Annotated[Count, about("intact, and without a trigger")]
     damaged: Annotated[Count, about("damaged or not readable; what could be read of them counts")]
-    copies: Annotated[Count, about("of the same content as another one: not counted")]
+    copies: Annotated[Count, about("copies of another log: not counted")]
 
 
 class Estimated(Record, frozen=True):
@@ -52,15 +52,21 @@ class Estimated(Record, frozen=True):
     confidence: Annotated[float, Meta(gt=0.5, lt=1)]
     triggers: Annotated[Outcomes, about("of all logs that count")]
     logs: Logs
-    estimate: Annotated[Share | None, about("answered ones of the decided; null: none is")]
+    estimate: Annotated[
+        Share | None,
+        about("share of answered triggers among the decided ones; null: none is decided"),
+    ]
     bounds: Annotated[
-        Bounds, about("by whole logs, one-sided each; open triggers count against either bound")
+        Bounds, about("one-sided bounds, over whole logs; open triggers count against either bound")
     ]
     needed: Annotated[
         Ordinal | None,
-        about("further logs, all of whose triggers are as they should be, that would support it"),
+        about(
+            "number of further logs, with every trigger answered as required, that would "
+            "support the requirement"
+        ),
     ]
-    meaning: Annotated[str, about("what the answer is about, and what PCTL would be")]
+    meaning: Annotated[str, about("the meaning of the answer, and its difference from PCTL")]
 
     def __post_init__(self) -> None:
         """Raise ValueError where the bound is no probability."""

@@ -17,7 +17,7 @@ Word = Annotated[str, Meta(min_length=1, max_length=100)]
 """A value of an enumerated signal."""
 Reading = Annotated[
     Number | Literal["+inf", "-inf"] | None,
-    about("in base units; +inf: nothing in range, -inf: too near to measure, null: unknown"),
+    about("values in base units; +inf: nothing in range, -inf: too near to measure, null: unknown"),
 ]
 
 
@@ -61,7 +61,8 @@ class Surroundings(Record, frozen=True):
     end_ns: Whole
     samples: dict[str, Series]
     words: Annotated[
-        dict[str, WordSeries] | UnsetType, about("of signals of words; left out: there are none")
+        dict[str, WordSeries] | UnsetType,
+        about("the values of enumeration signals; absent: there are none"),
     ] = UNSET
 
     def __post_init__(self) -> None:

@@ -12,10 +12,10 @@ from monitors.kernel import Column
 class Tally(Record, frozen=True):
     """The ticks of one proposition; what is unknown in between changes nothing."""
 
-    true: Annotated[Count, about("at how many ticks")]
+    true: Annotated[Count, about("the number of ticks")]
     false: Count
     unknown: Count
-    changes: Annotated[Count, about("how often a known value followed another one")]
+    changes: Annotated[Count, about("the number of changes from one known value to another")]
 
     def __add__(self, other: Tally) -> Tally:
         """Over two runs: from one to the next nothing changes."""

@@ -137,12 +137,12 @@ def _events(result: Result, requirements: Mapping[str, FormalizedRequirement]) -
         content = {"requirement": id, "state": state.state}
         yield _Event(max(0, state.ns), state_topic(id), content)
         if state.state == OPEN:
-            yield event(state.ns, _INFO, f"{id}: triggered, an answer is awaited")
+            yield event(state.ns, _INFO, f"{id}: triggered, waiting for the response")
         elif state.state == UNKNOWN:
             yield event(state.ns, _WARNING, f"{id}: unknown from here on")
         elif before == OPEN and state.tick in answers:
             waited = duration(answers[state.tick] / _SECOND)
-            yield event(state.ns, _INFO, f"{id}: answered after {waited}")
+            yield event(state.ns, _INFO, f"{id}: response after {waited}")
         elif before == UNKNOWN:
             yield event(state.ns, _INFO, f"{id}: known again")
         before = state.state

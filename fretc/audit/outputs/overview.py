@@ -89,9 +89,9 @@ def _oddities(topic: Topic) -> Iterator[str]:
     if topic.out_of_order:
         yield f", {topic.out_of_order} out of order"
     if topic.equal_stamps:
-        yield f", {topic.equal_stamps} with the time of another"
+        yield f", {topic.equal_stamps} with the same time as another"
     if topic.zero_stamps:
-        yield f", {topic.zero_stamps} with a zero for a time"
+        yield f", {topic.zero_stamps} with the time 0"
 
 
 def _fields(overview: Overview, name: str, *, whole: bool) -> Iterator[str]:

@@ -191,7 +191,7 @@ def _mixed(requirement: str, kinds: int) -> Diagnostic:
         Code.STALE_EVIDENCE,
         f"{requirement} was audited as {kinds} different requirements: its sentence, its bindings "
         "or its monitor have changed between these runs",
-        help="audit the runs again, or tell them apart: `--query` with `sentence_sha256`",
+        help="audit the runs again, or select one version: `--query` with `sentence_sha256`",
         severity=Severity.WARNING,
     )
 
@@ -216,7 +216,7 @@ def _torn(rows_of_all: Sequence[Mapping[str, Any]]) -> Iterator[Diagnostic]:
 def _bad_query(message: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_QUERY,
-        f"the query cannot be answered: {message}",
-        help="it is SQL of DuckDB on the tables `results`, `violations`, `runs`: "
+        f"the query fails: {message}",
+        help="write DuckDB SQL on the tables `results`, `violations`, `runs`: "
         "`SELECT run, reason FROM results WHERE verdict = 'violated'`",
     )

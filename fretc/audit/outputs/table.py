@@ -162,7 +162,7 @@ def _read_parquet(path: str) -> Table | Diagnostic:
         last = schema.field(len(schema) - 1)
         return table.append_column(last, pyarrow.nulls(len(table), last.type)).cast(schema)
     if name != SCHEMA or not table.schema.equals(schema):
-        return _no_table(path, f"is no table of `{SCHEMA}`")
+        return _no_table(path, f"is not a table of `{SCHEMA}`")
     return table
 
 

@@ -15,7 +15,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Span
 from monitors import kernel
 
-_STAMPS = 'or let the messages tell their time: `time = "header.stamp"`'
+_STAMPS = 'or use the stamps of the messages: `time = "header.stamp"`'
 
 
 def findings(phases_of: Mapping[str, Phases], declarations: Declarations) -> Iterator[Diagnostic]:
@@ -38,10 +38,11 @@ def findings(phases_of: Mapping[str, Phases], declarations: Declarations) -> Ite
         if not phases.exact:
             yield Diagnostic(
                 Code.PHASES_NOT_JUDGED,
-                f"the verdict on {id} was computed for some phases of the ticks only: too much "
-                "changes within a tick",
+                f"the verdict on {id} was computed only for some phases of the ticks: too many "
+                "values change within a tick",
                 place(declarations),
-                help="the evidence names the phases that were not judged; shorter logs take less",
+                help="the evidence lists the phases that were not judged; a shorter log needs "
+                "less work",
                 severity=Severity.WARNING,
             )
 

@@ -49,5 +49,5 @@ def in_words(selection: Selection) -> str:
     if selection.since is not None:
         parts.append(f"{selection.older:,} are from before {selection.since}")
     if selection.sample_of is not None:
-        parts.append(f"a sample of {selection.sample_of:,} by chance, seed {selection.seed}")
+        parts.append(f"a sample of {selection.sample_of:,} chosen at random, seed {selection.seed}")
     return f"{selection.audited:,} of {selection.named:,} logs: {'; '.join(parts)}"

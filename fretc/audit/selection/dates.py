@@ -43,7 +43,7 @@ def since(text: str) -> datetime | Diagnostic:
     except (ValueError, OverflowError):
         return Diagnostic(
             Code.BAD_USAGE,
-            f"`--since {text}` is neither a date nor a time ago",
+            f"`--since {text}` is neither a date nor a length of time",
             help="write `--since 2026-11-22`, `--since 2026-11-22T18:00`, `--since 24h` or "
             "`--since 7d`",
         )

@@ -59,13 +59,13 @@ def check(tables: Tables) -> None:
     run_rows = _rows(main["run_row"], runs.num_rows)
     results = np.bincount(run_rows, minlength=runs.num_rows)
     if results.tolist() != runs["results"].to_pylist():
-        raise SchemaError("`results` does not have the rows that `runs` says")
+        raise SchemaError("`results` does not have the rows that `runs` states")
     if not _same(main["run"], runs["run"].take(run_rows)):
-        raise SchemaError("`results` names other runs than `runs`")
+        raise SchemaError("the runs in `results` and in `runs` differ")
     counts = np.bincount(rows, minlength=main.num_rows).tolist()
     known = zip(*_lists(main, "verdict", "judgement", "violations"), counts, strict=True)
     if [*known] != [*_expected(main, broken, tables[EVENTS], counts)]:
-        raise SchemaError("`results` does not count what is in the other tables")
+        raise SchemaError("the counts in `results` differ from the other tables")
 
 
 def _check_names(main: Taken, other: Taken, name: str) -> None:

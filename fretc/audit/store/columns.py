@@ -267,7 +267,7 @@ class Entries:
         rows = _cut(array, pairs)
         found = [None if row is None else dict(row) for row in rows]
         if sum(map(len, filter(None, found))) != len(pairs):
-            raise InexactError("a name is there twice")
+            raise InexactError("a name occurs twice")
         return found
 
 

@@ -62,10 +62,10 @@ class Manifest(Record, frozen=True):
     requirements: tuple[Requirement, ...]
     confidence: Annotated[
         Annotated[float, Meta(gt=0.5, lt=1)] | None,
-        about("of what all runs say of a probability; null: it is not known"),
+        about("over all runs, for a requirement with a probability; null: it is unknown"),
     ]
     parts: Annotated[tuple[Part, ...], about("in the order of the logs")]
-    register: Annotated[Table | UnsetType, about("which log is known by what")] = UNSET
+    register: Annotated[Table | UnsetType, about("how each log was identified")] = UNSET
     probabilities: Annotated[
         Annotated[tuple[Estimated, ...], Meta(min_length=1)] | UnsetType,
         about("what all runs together say of each requirement with a probability"),
@@ -91,6 +91,6 @@ def schema() -> dict[str, Any]:
         Manifest,
         SCHEMA,
         "The manifest of a store of evidence, as `fretc audit` writes it",
-        "A table lies in a folder of its name, and is called by the first 32 digits of its "
-        "SHA-256.",
+        "A table is a file in a folder with the name of the table; the file name is the first "
+        "32 digits of its SHA-256.",
     )

@@ -39,7 +39,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
 T = TypeVar("T")
-_BEGUN = "its audit has not come to its end"
+_BEGUN = "its audit was not finished"
 _BATCH = 512
 """Results that are read at once."""
 
@@ -60,7 +60,7 @@ def opened(path: str, name: str = FILE) -> Store | Diagnostic:
     try:
         found = decoded(parsed(source.text), Manifest)
     except SchemaError as error:
-        return _wrong(path, f"has a manifest that is none of fretc: {error}")
+        return _wrong(path, f"has a manifest that fretc did not write: {error}")
     store = Store(str(Path(path)), sha256(source.text), found)  # signatures stand beside it
     try:
         store.check()
@@ -95,7 +95,7 @@ class Store(Headed):
         """Hold every table against the manifest: its bytes, and how many rows there are."""
         for part in self.manifest.parts:
             if part.tables.keys() != TABLES.keys():
-                raise self._error("names other tables than fretc writes")
+                raise self._error("lists tables that fretc does not write")
             rows = {name: file.rows for name, file in part.tables.items()}
             if (rows[RESULTS], rows[EVENTS], rows[RUNS]) != (part.results, part.results, part.runs):
                 raise self._error("has a manifest that contradicts itself")
@@ -130,7 +130,7 @@ class Store(Headed):
                 counted = of_part[RESULTS].take(pa.array(some, pa.int64()))
                 found = tables.results(of_part, some)
                 if tables.briefs(counted) != [*map(brief, found)]:
-                    raise SchemaError("`results` does not count what is in the other tables")
+                    raise SchemaError("the counts in `results` differ from the other tables")
             except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
             yield from zip((start + row for row in some), found, strict=True)
@@ -225,7 +225,7 @@ class Store(Headed):
                 found = self._table(part, name)
                 for column in found.column_names:
                     if not found[column].equals(expected[name][column]):
-                        what = f"`{column}` of `{name}` is not what the results give"
+                        what = f"`{column}` of `{name}` does not match the results"
                         raise self._error(f"cannot be read: {what}")
             yield from results
 

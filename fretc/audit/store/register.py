@@ -33,25 +33,25 @@ class Entry(Record, frozen=True, kw_only=True):
     """A log of an audit. Without a size it is to be read again."""
 
     run: str
-    log: Annotated[str, about("as the user named it")]
-    place: Annotated[str, about("its path without links")]
+    log: Annotated[str, about("as named on the command line")]
+    place: Annotated[str, about("its path with symbolic links resolved")]
     known_by: Annotated[
         KnownBy,
         about(
-            "`read`: by this audit; its results, or its samples, were taken over as its size and "
-            "times are as they were (`stamp`), or its SHA-256"
+            "`read`: this audit read the log; otherwise earlier results or samples were reused, "
+            "because its size and times (`stamp`) or its SHA-256 are unchanged"
         ),
     ]
-    sha256: Annotated[str, about("empty: it was not read whole, or could not be")]
+    sha256: Annotated[str, about("empty: the log was not read as a whole, or could not be read")]
     size: Whole | None
     mtime_ns: Whole | None
     ctime_ns: Whole | None
     inode: Whole | None
     settled: Annotated[
-        bool | None, about("false: it had just been written, so that times do not tell")
+        bool | None, about("false: the log had just been written, so its times do not identify it")
     ]
-    labels: Annotated[dict[str, str], about("those of the log itself")]
-    diagnostics: Annotated[tuple[str, ...], about("what there was to say of it, as JSON")]
+    labels: Annotated[dict[str, str], about("the labels in the log itself")]
+    diagnostics: Annotated[tuple[str, ...], about("its diagnostics, as JSON")]
 
     @property
     def stamp(self) -> Stamp | None:

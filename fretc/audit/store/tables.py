@@ -402,7 +402,7 @@ def _chosen(table: Taken, key: str, rows: Sequence[int], count: int) -> list[int
         raise SchemaError(f"a `{key}` is missing")
     keys = column.to_numpy()
     if len(keys) and (keys[0] < 0 or keys[-1] >= count or (np.diff(keys) < 0).any()):
-        raise SchemaError(f"`{key}` does not rise within its table")
+        raise SchemaError(f"`{key}` does not increase within its table")
     found: list[int] = np.flatnonzero(np.isin(keys, np.asarray(rows, np.int64))).tolist()
     return found
 
@@ -426,7 +426,7 @@ def briefs(table: pa.Table) -> list[Brief]:
         [{**row, "trials": row.get("trials"), "fingerprints": p} for row, p in rows], list[Brief]
     )
     if not {each.verdict for each in found} <= {*VERDICTS}:
-        raise SchemaError("`results` has a verdict that is none")
+        raise SchemaError("`results` has an unknown verdict")
     whole = dict(zip(held, found, strict=True))
     return [
         whole[n] if text is None else brief(decoded(parsed(text), Result))

@@ -57,5 +57,5 @@ class Arena:
         """
         length = unpack_into(compression, packed, self.target(size), whole=whole)
         if length > size:
-            raise BrokenError("a chunk has another size than it states")
+            raise BrokenError("the size of a chunk differs from the size that it states")
         return length == size

@@ -141,17 +141,17 @@ def unpacked(chunk: Chunk) -> bytes:
     """
     size = chunk.uncompressed_size
     if is_absurd(size, len(chunk.data)):
-        raise BrokenError(f"a chunk states the absurd size of {size} bytes")
+        raise BrokenError(f"a chunk states an impossible size of {size} bytes")
     if chunk.compression not in _CODECS:
-        raise BrokenError(f"a chunk is compressed with the unknown `{chunk.compression}`")
+        raise BrokenError(f"a chunk is compressed with the unknown codec `{chunk.compression}`")
     try:
         data = _CODECS[chunk.compression](chunk.data, size + 1)
     except Exception as error:  # each codec has its own
         raise BrokenError("a chunk does not decompress") from error
     if len(data) != size:
-        raise BrokenError("a chunk has another size than it states")
+        raise BrokenError("the size of a chunk differs from the size that it states")
     if chunk.uncompressed_crc and crc32(data) != chunk.uncompressed_crc:
-        raise BrokenError("a chunk has another CRC than it states")
+        raise BrokenError("the CRC of a chunk does not match its data")
     return data
 
 

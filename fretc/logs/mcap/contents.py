@@ -85,7 +85,7 @@ def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integ
     projection.run()
     crc = index.data_crc if integrity is Integrity.HASH else 0
     if crc and _crc32(stream, index.data_end) != crc:
-        raise BrokenError("its data has another CRC than it states")
+        raise BrokenError("the CRC of its data section does not match the data")
     unprotected = projection.checked.without_crc > 0 and not crc
     statistics = index.statistics
     span = statistics.message_start_time, statistics.message_end_time

@@ -143,7 +143,7 @@ class Damages:
                 places[at].spans.append(span)
                 self._keep(places[at])
             else:
-                self.add(at, "a chunk that its index names is not there", span)
+                self.add(at, "a chunk that the index lists is missing", span)
 
     def _compare_counts(self, summary: Summary, counts: Counter[int], size: int) -> None:
         """Check that as many messages were read as the statistics state."""
@@ -158,10 +158,10 @@ class Damages:
         self._keep(*self._doubtful)
         if all(damage.lossless for damage in self.certain):
             description = (
-                f"it states {statistics.message_count} messages and holds {counts.total()}"
+                f"it states {statistics.message_count} messages, but holds {counts.total()}"
             )
             if right:
-                description = "its topics hold other numbers of messages than it states"
+                description = "the numbers of messages of its topics differ from the stated numbers"
             self.add(size, description, anywhere=True, code=Code.COUNT_MISMATCH)
 
     def _whole_log(self, summary: Summary) -> Gap:

@@ -125,7 +125,9 @@ class Projection:
             if id not in self._wanted:
                 self._sink.count(stream, counts.get(id, 0))
             elif self._counts[id] != counts.get(id, 0):
-                raise BrokenError("a topic holds another number of messages than is stated")
+                raise BrokenError(
+                    "the number of messages of a topic differs from the stated number"
+                )
 
     # One chunk
 
@@ -153,7 +155,7 @@ class Projection:
             needed = end
         if whole and crc:
             if crc32(self._arena.data.data[base : base + needed]) != crc:
-                raise BrokenError("a chunk has another CRC than it states")
+                raise BrokenError("the CRC of a chunk does not match its data")
             self._crc_checked += 1
         self._without_crc += not crc
         self.crcs[chunk.chunk_start_offset] = crc
@@ -192,7 +194,7 @@ class Projection:
         """Compare a record that declares something with the summary."""
         if (opcode, content) not in self._verified:
             if not is_known(opcode, content, self._schemas, self._channels):
-                raise BrokenError("a chunk declares what its summary does not")
+                raise BrokenError("a chunk declares a topic or type that is not in the summary")
             self._verified.add((opcode, content))
 
     def _places(self, chunk: ChunkIndex) -> Places:
@@ -215,7 +217,7 @@ class Projection:
         data = self._arena.data
         lengths = np.ndarray((len(data) - 8,), "<u8", data.data, 1, (1,))[there + base]
         if (data[there + base] != Opcode.MESSAGE).any() or (lengths > size).any():
-            raise BrokenError("the index of a chunk names what is no message")
+            raise BrokenError("the index of a chunk points to a record that is not a message")
         ends = np.append(0, there + HEAD.size + lengths.astype(np.int64))
         walls = np.append(places, size)[: len(ends)]
         for row in np.flatnonzero((ends != walls) & (walls <= needed)).tolist():
@@ -228,7 +230,7 @@ class Projection:
             opcode, length = HEAD.unpack_from(data, at) if at + HEAD.size <= wall else (0, 0)
             start, at = at + HEAD.size, at + HEAD.size + length
             if at > wall:
-                raise BrokenError("the records of a chunk are not where its index says")
+                raise BrokenError("the records of a chunk are not where its index points")
             self._as_declared(opcode, bytes(data[start:at]))
 
     def _entries(self, chunk: ChunkIndex, ids: Container[int]) -> list[tuple[int, bytes, int]]:
@@ -246,7 +248,7 @@ class Projection:
                 raise BrokenError("a record is cut off")
             opcode, length, channel, size = _INDEX_RECORD.unpack_from(data, at)
             if (opcode, channel, size % ENTRY.itemsize) != (Opcode.MESSAGE_INDEX, id, 0):
-                raise BrokenError("the index of a chunk is not there")
+                raise BrokenError("the index of a chunk is missing")
             if INDEX.size + size > length or start + size > len(data):
                 raise BrokenError("a record is cut off")
             if size:
@@ -254,7 +256,7 @@ class Projection:
                 few = size < _FEW * ENTRY.itemsize
                 last = max(_PLACE.iter_unpack(some))[0] if few else int(_numbers(some)[1::2].max())
                 if last >= chunk.uncompressed_size:
-                    raise BrokenError("the index of a chunk names a place outside of it")
+                    raise BrokenError("the index of a chunk points outside the chunk")
                 entries.append((id, some, last))
         return entries
 
@@ -268,10 +270,10 @@ class Projection:
         before = _HEAD.size + len(chunk.compression) + 8
         if not chunk.compression:
             if packed != chunk.uncompressed_size:
-                raise BrokenError("a chunk has another size than it states")
+                raise BrokenError("the size of a chunk differs from the size that it states")
             return used + before, self._fill(chunk, self._arena.target(before + size))
         if is_absurd(chunk.uncompressed_size, packed):
-            raise BrokenError("a chunk states an absurd size")
+            raise BrokenError("a chunk states an impossible size")
         for length in (packed,) if whole else (_share(chunk, size), packed):
             if before + length > len(self._packed):
                 self._packed = bytearray(before + length)
@@ -279,7 +281,7 @@ class Projection:
             crc = self._fill(chunk, some)
             if self._arena.unpack(chunk.compression, some[before:], size, whole=whole):
                 return used, crc
-        raise BrokenError("a chunk has another size than it states")
+        raise BrokenError("the size of a chunk differs from the size that it states")
 
     def _fill(self, chunk: ChunkIndex, target: memoryview) -> int:
         """Read the beginning of a chunk, with its head, in one step; gives the CRC that it states.
@@ -306,7 +308,7 @@ class Projection:
             or target[_HEAD.size : before] != tail
             or chunk.chunk_length < before + chunk.compressed_size
         ):
-            raise BrokenError("a chunk is not what its index says")
+            raise BrokenError("a chunk does not match its index")
         return int(crc)
 
     def _end(self, id: int, base: int, last: int, needed: int) -> int:
@@ -340,7 +342,7 @@ class Projection:
         bases, limits = (np.repeat(some, counts.astype(np.int64)) for some in of_chunks[:2])
         times, places = entries[::2], (entries[1::2] + bases).astype(np.int64)
         if not _in_time(times, counts, *of_chunks[2:]):
-            raise BrokenError("the index of a chunk names other messages than are in it")
+            raise BrokenError("the index of a chunk does not match its messages")
         if (places[1:] < places[:-1]).any():  # some writers sort the index by time
             order = np.argsort(places)
             places, times, limits = places[order], times[order], limits[order]
@@ -354,10 +356,10 @@ class Projection:
             or (contents.astype(np.uint64) + lengths > limits).any()
             or lengths.min() < Messages.HEAD
         ):
-            raise BrokenError("the index of a chunk names what is no message")
+            raise BrokenError("the index of a chunk points to a record that is not a message")
         messages = Messages.behind(heads, data, contents, contents + lengths.astype(np.int64))
         if (messages.channels != id).any() or (messages.logs != times).any():
-            raise BrokenError("the index of a chunk names other messages than are in it")
+            raise BrokenError("the index of a chunk does not match its messages")
         self._counts[id] += len(messages)
         return messages
 

@@ -115,7 +115,7 @@ class Walk:
         if not tail.sound:
             self.damages.add(tail.footer, "its summary is damaged", lossless=True)
         if tail.after != self._size:
-            self.damages.add(tail.after, "it goes on after its end", lossless=True)
+            self.damages.add(tail.after, "it contains data after its end", lossless=True)
 
     def settled(self) -> list[tuple[Damage, Gap | None]]:
         """All damages, with the time that each has cost; None where it cost nothing."""
@@ -221,10 +221,10 @@ class Walk:
 
     def _record(self, opcode: int, at: int, length: int) -> None:
         if opcode == 0:
-            raise BrokenError("a record has no kind")
+            raise BrokenError("a record has the opcode 0")
         if opcode not in _OPCODES:
             self._skip(length)
-            self.damages.doubt(at, f"a record is of the unknown kind {opcode}")
+            self.damages.doubt(at, f"a record has the unknown opcode {opcode}")
             return
         if length > LARGEST:
             self._skip(length)
@@ -247,7 +247,7 @@ class Walk:
                 if opcode == Opcode.METADATA and (some := described(content, self._wanted)):
                     self._found = [together([*self._found, some])]
             case _:
-                raise BrokenError("a record of the summary stands among the data")
+                raise BrokenError("the data section contains a record of the summary")
 
     def _data_end(self, length: int, stop: int, crc: int | None) -> None:
         if self._summary.sound and stop != self._summary.end:
@@ -255,18 +255,18 @@ class Walk:
         expected = parse(DataEnd.read, self._take(length)).data_section_crc
         self._all_covered = bool(expected) and crc == expected
         if expected and crc is not None and crc != expected and not self.damages.certain:
-            description = "its data has another CRC than it states"
+            description = "the CRC of its data section does not match the data"
             self.damages.add(stop, description, lossless=not self._unprotected, anywhere=True)
 
     def _define(self, schema: Schema, at: int) -> None:
         first = self._schemas.setdefault(schema.id, schema)
         if first != schema:
-            self.damages.add(at, f"it defines `{schema.name}` in two ways", anywhere=True)
+            self.damages.add(at, f"it defines `{schema.name}` twice, differently", anywhere=True)
 
     def _declare(self, channel: Channel, at: int) -> None:
         first = self._streams.get(channel.id)
         if first is not None and first.channel != channel:
-            description = f"it declares the topic `{channel.topic}` in two ways"
+            description = f"it declares the topic `{channel.topic}` twice, differently"
             self.damages.add(at, description, anywhere=True)
             channel = first.channel
         stream = Stream(channel, self._schemas.get(channel.schema_id))
@@ -340,9 +340,9 @@ class Walk:
                 elif opcode == Opcode.CHANNEL:
                     self._declare(parse(Channel.read, data[start:end]), at)
                 elif opcode == 0:
-                    raise BrokenError("a record has no kind")
+                    raise BrokenError("a record has the opcode 0")
                 elif not has_crc:
-                    raise BrokenError("a chunk holds a record that does not belong there")
+                    raise BrokenError("a chunk contains a record that is not allowed in chunks")
         except BrokenError as error:
             fault = str(error)
         return Messages.of(data, starts, ends), fault
@@ -351,9 +351,9 @@ class Walk:
         """Check messages that no CRC protects against the `span` that the chunk states."""
         times = messages.logs
         if ((times < span[0]) | (times > span[1])).any():
-            raise BrokenError("a message is of another time than its chunk states")
+            raise BrokenError("the time of a message is outside the range that its chunk states")
         if any(id not in self._streams for id in distinct(messages.channels).tolist()):
-            raise BrokenError("a message is of a topic that is not declared")
+            raise BrokenError("a message belongs to an undeclared topic")
 
     def _at_once(self, messages: Messages) -> bool:
         """Pass on all messages of a chunk, topic by topic; not where one of them is odd."""
@@ -385,7 +385,7 @@ class Walk:
             return
         listed = np.frombuffer(content, ENTRY, length // ENTRY.itemsize, INDEX.size)
         if not np.array_equal(np.sort(listed), np.sort(chunk.entries(channel))):
-            description = "the index of a chunk names other messages than are in it"
+            description = "the index of a chunk does not match its messages"
             if chunk.has_crc:
                 self.damages.add(chunk.at, description, lossless=True)
             else:
@@ -398,9 +398,9 @@ class Walk:
         self._counts[channel] += 1
         stream = self._streams.get(channel)
         if stream is None:
-            self.damages.add(at, "a message is of a topic that is not declared")
+            self.damages.add(at, "a message belongs to an undeclared topic")
         elif log_time >= LATEST:
-            self.damages.add(at, "a message is of an absurd time")
+            self.damages.add(at, "a message has an impossible time")
         else:
             self.damages.passed(log_time)
             payload = memoryview(data)[start + _MESSAGE.size : end]

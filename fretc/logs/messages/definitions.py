@@ -150,7 +150,7 @@ def measured(all_types: Types) -> Types:
             ):
                 raise DefinitionError(f"the type `{field.type}` is not defined")
     if _largest(all_types, elements=False) > _MOST_FIELDS:
-        raise TooLargeError("the types are too deep")
+        raise TooLargeError("the types are nested too deeply")
     if _largest(all_types, elements=True) > _MOST_ELEMENTS:
         raise TooLargeError("the arrays of fixed length are too long")
     return all_types
@@ -177,7 +177,7 @@ def _largest(all_types: Types, *, elements: bool) -> int:
         rest = {name: fields for name, fields in rest.items() if name not in ready}
         if not rest:
             return max(sizes.values())
-    raise TooLargeError("the types are too deep")
+    raise TooLargeError("the types are nested too deeply")
 
 
 def _builtin(*, ros1: bool) -> dict[str, tuple[Field, ...]]:

@@ -99,7 +99,8 @@ def _parsed(definition: str) -> Mapping[str, Any]:
     """The fields of each type, as rosbags has them.
 
     Raises:
-        DefinitionError: a name is none, a type is defined in two ways, or the definition could
+        DefinitionError: a name is none, a type is defined twice, differently, or the definition
+        could
             cost more than it is worth.
     """
     all_types: dict[str, Any] = {}
@@ -142,7 +143,7 @@ def _bare(section: str) -> str:
 
 def _kept(match: re.Match[str]) -> str:
     if match["open"]:
-        raise DefinitionError("a text or a comment has no end")
+        raise DefinitionError("a text or a comment is not closed")
     return match["text"] or " "
 
 

@@ -136,7 +136,7 @@ class Shape:
             wanted: numbers, or arrays of numbers.
 
         Raises:
-            LayoutError: the payload has another length than its fields, or is not plain
+            LayoutError: the length of the payload differs from that of its fields, or is not plain
                 little-endian CDR; or a wanted field is not there, or holds no numbers.
         """
         walk = _Walk(payload, self.types, frozenset(wanted), cdr=self.cdr)
@@ -145,10 +145,10 @@ class Shape:
         except struct.error:
             raise LayoutError("the payload is cut off") from None
         if not 0 <= len(payload) - walk.at <= (_PADDING if self.cdr else 0):
-            raise LayoutError("the payload has another length than its fields")
+            raise LayoutError("the length of the payload differs from that of its fields")
         absent = [where for where in wanted if where not in walk.locations]
         if absent:
-            raise LayoutError(f"there are no numbers in `{'.'.join(absent[0])}`")
+            raise LayoutError(f"no numbers are in `{'.'.join(absent[0])}`")
         return Layout(len(payload), tuple(walk.marks), walk.locations, tuple(walk.texts))
 
 

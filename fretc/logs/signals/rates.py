@@ -84,11 +84,11 @@ def late_messages(
     needed = -(-(lateness + over) // 10**7) * 10**7
     return Diagnostic(
         Code.LATE_MESSAGES,
-        f"{count} of {of} messages of `{topic}` came more than {in_words(lateness)} after a tick "
-        f"that should have seen them, at most {in_words(lateness + over)}: what reads them is "
-        "unknown there",
+        f"{count} of {of} messages of `{topic}` came more than {in_words(lateness)} after the "
+        f"tick that they belong to, at most {in_words(lateness + over)}: propositions that read "
+        "them are unknown there",
         place,
-        f'`lateness = "{in_words(needed)}"` under `[clock]` would have waited for them'
+        f'write `lateness = "{in_words(needed)}"` under `[clock]` to wait for them'
         if needed <= _MOST_LATENESS
         else "the clocks of publisher and recorder differ: set them, or use "
         '`time = "log_time"` under `[clock]`',
@@ -129,9 +129,9 @@ def _slow(signal: Signal, period: int, clock: Clock, tick: int) -> Diagnostic:
     return Diagnostic(
         Code.SLOW_TOPIC,
         f"`{signal.path.topic}` comes every {_long(period, tick)}, and the clock ticks every "
-        f"{exact_duration(tick / 1e9)}{by}: most ticks see a sample of an earlier one",
+        f"{exact_duration(tick / 1e9)}{by}: most ticks use the sample of an earlier tick",
         signal.span,
-        help="state `max_age` if that is meant, use a longer `tick`, or publish more often",
+        help="state `max_age` if this is intended, use a longer `tick`, or publish more often",
         severity=Severity.WARNING,
         subject=signal.path.topic,
     )

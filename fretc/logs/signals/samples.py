@@ -119,8 +119,8 @@ class Topic:
     """Statistics of one topic by the declared time (`log_time` where no signal reads it).
 
     `first_ns` and `last_ns` are None for a topic without messages, `median_period_ns` for one
-    with less than two. `out_of_order` counts the messages that are earlier than one before them,
-    `equal_stamps` those with the time of another, `unstamped` those without a stamp where the
+    with less than two. `out_of_order` counts the messages out of order,
+    `equal_stamps` those with the same time as another, `unstamped` those without a stamp where the
     clock goes by stamps, `zero_stamps` those with a stamp that was never set, and `clock_jumps`
     those before which the clock jumped against the log times. All but the count are None where
     the messages were only counted.

@@ -416,10 +416,10 @@ def _blind_zone(
         Code.BLIND_ZONE,
         f"`{proposition.name}` compares `{signal.name}` with "
         f"{amounts.exact(shown_bound, unit)}, and `{signal.path.topic}` reports nothing nearer "
-        f"than {amounts.value(shown_limit, unit, [shown_bound])}: what is "
-        f"nearer than the bound cannot be seen{where}",
+        f"than {amounts.value(shown_limit, unit, [shown_bound])}: an obstacle nearer than the "
+        f"bound is not detected{where}",
         proposition.span,
         help="raise the bound above what the sensor can measure, or use a sensor that measures "
-        "nearer; only a reading of -inf could tell that something is too near",
+        "nearer; only a reading of -inf would report an obstacle that is too near",
         severity=Severity.WARNING,
     )

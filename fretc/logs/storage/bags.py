@@ -1,6 +1,6 @@
 """Bags: ROS 1's `.bag` and rosbag2's `.db3`, read with rosbags; their messages go to a sink.
 
-Neither format has check sums: a changed byte within a message cannot be seen, and a note says so.
+Neither format has check sums: a changed byte within a message is not detected, and a note says so.
 Reading ends where the reader ends; the number and the times of its messages are compared with
 those that the bag states. Times are nanoseconds, log times.
 """
@@ -56,7 +56,7 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagCont
         same: another path of the same open file, which no other file can take over.
         start: its first bytes, `BAG` or `DB3`.
         sink: receives the messages.
-        place: the bag, as the user named it.
+        place: the bag, as named on the command line.
 
     Returns:
         Its contents; or why the bag cannot be read.
@@ -209,9 +209,9 @@ class _Way:
             return
         if counts != self._counts:
             expected, received = sum(counts.values()), sum(self._counts.values())
-            description = f"it states {expected} messages and holds {received}"
+            description = f"it states {expected} messages, but holds {received}"
             if expected == received:
-                description = "its topics hold other numbers of messages than it states"
+                description = "the numbers of messages of its topics differ from the stated numbers"
             self._damage(description, code=Code.COUNT_MISMATCH)
 
     def _stated_counts(self, connections: list[Any]) -> dict[int, int]:
@@ -226,7 +226,7 @@ class _Way:
     def _message(self, id: int, time: int, payload: bytes) -> None:
         self._counts[id] = self._counts.get(id, 0) + 1
         if not (isinstance(payload, bytes) and isinstance(time, int) and 0 <= time < LATEST):
-            self._damage("a message is of an absurd time, or has no contents")
+            self._damage("a message has an impossible time, or has no contents")
             return
         first, _ = self.span or (time, time)
         self.span = first, time

@@ -118,7 +118,7 @@ def _name(listed: Any) -> str:
 def _compressed(about: Mapping[str, Any]) -> str:
     mode = about.get("compression_mode") or ""
     if not isinstance(mode, str):  # never as a text: that of a list of aliases has no end
-        raise ValueError("the mode of compression is no text")
+        raise ValueError("the compression mode is not a text")
     return "" if mode.lower() == "none" else mode.lower()
 
 

@@ -35,7 +35,7 @@ _MOST = 2**36
 """The most bytes of a log whose length the server does not state."""
 _SMALL_BLOCK = 2**14
 """Bytes of one request where most of the file is skipped."""
-_SLOW = "the server sends next to nothing"
+_SLOW = "the server sends hardly any data"
 _HASHED = 2**18
 """Bytes of one step of hashing."""
 _SMALL = 2**20
@@ -255,7 +255,7 @@ class _Hashed(io.RawIOBase):
         length = max(0, min(length, self._size - self._at))
         data = self._file.read(length, self._at)
         if length and not data:
-            raise OSError(None, f"nothing came from byte {self._at} on")
+            raise OSError(None, f"the server sent nothing from byte {self._at} on")
         if self._at <= self._hashed < self._at + len(data):
             self._digest.update(data[self._hashed - self._at :])
             self._hashed = self._at + len(data)
@@ -334,7 +334,7 @@ class _Limited(io.BytesIO):
         self._file, self._size, self._got = _Paced(file), size, 0
         room = shutil.disk_usage(tempfile.gettempdir()).free
         if size is not None and size > room:
-            raise OSError(None, f"it has {size} bytes, and there is room for {room} of a copy")
+            raise OSError(None, f"it has {size} bytes, but there is only room for {room} of a copy")
         self._most = min(_MOST, room) if size is None else size
 
     def read(self, length: int | None = -1) -> bytes:
@@ -343,7 +343,7 @@ class _Limited(io.BytesIO):
         if self._got > self._most:
             raise OSError(None, "the server sends more than a log has, or than there is room for")
         if not data and self._size not in (None, self._got):
-            raise OSError(None, f"nothing came from byte {self._got} on")
+            raise OSError(None, f"the server sent nothing from byte {self._got} on")
         return data
 
 
@@ -359,4 +359,4 @@ def as_os_error(error: Exception) -> OSError:
     if status == 404:
         return FileNotFoundError(errno.ENOENT, "not found")
     text = str(error).strip().partition("\n")[0] or type(error).__name__
-    return OSError(None, f"the server says {status}" if status else text[:200])
+    return OSError(None, f"the server answered {status}" if status else text[:200])

@@ -99,7 +99,7 @@ def _start(url: str, path: str) -> str:
     """What stands before the names of a store in its addresses."""
     bare, path = url.rstrip("/"), path.rstrip("/")
     if not path or not bare.endswith(path):
-        raise OSError(None, "its names are no addresses: name each log")
+        raise OSError(None, "its file names cannot be turned into addresses: name each log")
     return bare[: len(bare) - len(path)]
 
 

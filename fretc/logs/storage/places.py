@@ -33,11 +33,11 @@ class Places:
         if any(_begins(url, start) for start in self.allowed if is_url(start)):
             return ""
         if "::" in url:
-            return "it is a chain of protocols"
+            return "it combines several protocols"
         try:
             parts = urlsplit(url)
         except ValueError:
-            return "it is no URL"
+            return "it is not a URL"
         scheme = parts.scheme.lower()
         return "" if scheme == "https" and parts.hostname else f"its protocol is `{scheme}`"
 
@@ -48,7 +48,7 @@ class Places:
             os.path.commonpath([real, folder]) == folder
             for folder in map(os.path.realpath, folders)
         )
-        return "" if inside else "it lies outside of the folders that are looked into"
+        return "" if inside else "it is outside the folders that are searched"
 
 
 def _begins(url: str, start: str) -> bool:

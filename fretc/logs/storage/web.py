@@ -99,7 +99,7 @@ def _redirects(scheme: str) -> Any:
         place = request.response.headers.get("Location", "")
         where = urlsplit(place).scheme.lower() or request.url.scheme
         if where not in {scheme, "https"}:
-            raise OSError(None, f"the server sends us on to another protocol, `{where}`")
+            raise OSError(None, f"the server redirects to another protocol, `{where}`")
 
     return check
 
@@ -113,4 +113,4 @@ async def _check_answer(session: object, context: object, request: Any) -> None:
     length = answer.content_length
     if length is None or length > int(part[2]) - int(part[1]) + 1:
         answer.close()
-        raise OSError(None, "the server sends another part than it was asked for")
+        raise OSError(None, "the server sent another byte range than requested")

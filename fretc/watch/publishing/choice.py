@@ -34,7 +34,8 @@ def _publisher(word: str, source: Source) -> Publisher | Diagnostic:
             return Diagnostics(source)
         return Diagnostic(
             Code.BAD_USAGE,
-            f"`--publish diagnostics` goes through what is watched, and `{source.name}` takes none",
+            f"`--publish diagnostics` publishes on the watched middleware, and `{source.name}` "
+            "accepts none",
             help="watch `dds` or `ros1`; or publish to Foxglove: `--publish foxglove`",
         )
     server = _SERVER.fullmatch(word)

@@ -132,6 +132,6 @@ def opened(host: str, port: int) -> FoxgloveServer | Diagnostic:
         why = str(error).rpartition(": ")[2]
         return Diagnostic(
             Code.NOT_PUBLISHED,
-            f"no Foxglove server can be opened at {host}:{port}: {why}",
-            help="name another port: `--publish foxglove:8766`; 0 is one that is free",
+            f"no Foxglove server can be started at {host}:{port}: {why}",
+            help="name another port: `--publish foxglove:8766`; 0 picks a free one",
         )

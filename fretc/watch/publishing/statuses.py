@@ -28,7 +28,7 @@ def statuses(
     def fault(topics: Collection[str]) -> str:
         """Why what is read cannot be relied on; empty: nothing is wrong."""
         if session.interrupted:
-            return "the source is gone"
+            return "the source is not connected"
         return "; ".join(f"no message of {each} yet" for each in topics if each in silent)
 
     wrong = fault(session.topics)

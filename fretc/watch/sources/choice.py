@@ -59,6 +59,6 @@ _MIDDLEWARE: Mapping[str, Callable[[Sequence[str]], Source | Diagnostic]] = {
 def _one_name_too_many(name: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
-        f"`{name}` is one name too many: a watch has one source",
-        help="watch two robots by two commands",
+        f"`{name}` is a second source: a watch has only one",
+        help="run one watch for each robot",
     )

@@ -59,7 +59,7 @@ class Dds(Middleware):
             self._lost(domain)
             return False
         try:
-            self._opened(f"domain {domain.number} of DDS")
+            self._opened(f"DDS domain {domain.number}")
             listening = _Listening(domain, frozenset(topics), self._mailbox)
             diagnosing = _Diagnosing(domain)
             while not self._closed.is_set():
@@ -188,7 +188,12 @@ class _Listening:
             self._tell_once(topic, _no_definition(topic, offer))
         kind = self._kinds[topic, offer] = _Kind(None, channel)
         if sum(each == topic for each, _ in self._kinds) > MOST_KINDS:
-            self._tell_once(topic, _not_read(topic, f"they are of more than {MOST_KINDS} kinds"))
+            self._tell_once(
+                topic,
+                _not_read(
+                    topic, f"there are more than {MOST_KINDS} kinds of publishers of the topic"
+                ),
+            )
             return
         try:
             kind.reader = self._domain.reader(topic, offer, definition)
@@ -205,7 +210,7 @@ class _Listening:
                 found.append(handle)
             elif self._mailbox.now - since > _SOON:
                 found.append(handle)
-                why = f"the fields or the encoding of its `{peer.offer.type}` are others"
+                why = f"its `{peer.offer.type}` has other fields or another encoding"
                 self._tell_once(peer.topic, _not_read(peer.topic, why))
         return found
 
@@ -270,14 +275,14 @@ def _definition(offer: Offer) -> str | None:
 def _no_definition(topic: str, offer: Offer) -> Diagnostic:
     found = ros2_types.definitions(offer.type)
     if not found:
-        why = "is none of ROS 2's own, and DDS does not say what is in it"
+        why = "is not a type of ROS 2 itself, and DDS does not send definitions"
     elif offer.hash is None:
-        why = "is not the same in all releases of ROS 2, and its publisher does not say which it is"
+        why = "differs between releases of ROS 2, and its publisher sends no type hash"
     else:
-        why = "is defined otherwise by its publisher: the type hash is another one"
+        why = "is defined differently by its publisher: the type hash differs"
     return Diagnostic(
         Code.NO_DEFINITION,
-        f"what `{topic}` sends cannot be decoded: `{offer.type}` {why}",
+        f"messages of `{topic}` cannot be decoded: `{offer.type}` {why}",
         help="watch through foxglove_bridge, which sends definitions, or follow a log of rosbag2",
     )
 
@@ -286,14 +291,14 @@ def _not_read(topic: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.PUBLISHER_NOT_READ,
         f"a publisher of `{topic}` is not read: {why}",
-        help="what it sends is not known; `fretc explain` says what it must offer",
+        help="its messages count as unknown; `fretc explain` lists what a publisher must offer",
     )
 
 
 def _no_publisher(topic: str) -> Diagnostic:
     return Diagnostic(
         Code.PUBLISHER_GONE,
-        f"nobody publishes `{topic}` any more",
+        f"`{topic}` has no publisher any more",
         help="`max_age` says for how long its last message counts",
         severity=Severity.WARNING,
     )
@@ -303,5 +308,5 @@ def _broken(error: Exception) -> Diagnostic:
     return Diagnostic(
         Code.ROBOT_NOT_REACHED,
         f"Cyclone DDS fails: {type(error).__name__}: {error}",
-        help="the domain is joined once more",
+        help="fretc joins the domain again",
     )

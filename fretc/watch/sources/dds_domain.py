@@ -63,8 +63,8 @@ def domain_id() -> int | Diagnostic:
         return int(text)
     return Diagnostic(
         Code.ROBOT_NOT_REACHED,
-        f"ROS_DOMAIN_ID is `{text[:40]}`, which is no number from 0 to {_HIGHEST}",
-        help="set it to that of the robot, or unset it",
+        f"ROS_DOMAIN_ID is `{text[:40]}`, which is not a number from 0 to {_HIGHEST}",
+        help="set it to the domain of the robot, or unset it",
     )
 
 
@@ -77,7 +77,7 @@ def join() -> Domain | Diagnostic:
     except Exception as error:  # beside the absent package, its C library may not be found
         return Diagnostic(
             Code.MISSING_EXTRA,
-            f"DDS is watched by Cyclone DDS, which is not installed: {error}",
+            f"watching DDS needs Cyclone DDS, which is not installed: {error}",
             help=install("live"),
         )
     number = domain_id()
@@ -95,7 +95,7 @@ def _joined(number: int) -> Domain | Diagnostic:
     except DDSException:
         return Diagnostic(
             Code.ROBOT_NOT_REACHED,
-            f"domain {number} of DDS cannot be joined",
+            f"DDS domain {number} cannot be joined",
             help="Cyclone DDS has printed why: no network, or a mistake in CYCLONEDDS_URI",
         )
     library.dds_set_log_mask(0)  # from here on it speaks of packets of others, without end
@@ -175,7 +175,7 @@ class Domain:
         if not is_type(offer.type):
             raise UnreadableError("its type has no name")
         if offer.described and definition is None:
-            raise UnreadableError("its type is none of ROS 2's own")
+            raise UnreadableError("its type is not a type of ROS 2")
         try:
             reader = Reader(self._participant, self._topic(topic, offer, definition), offer)
         except DDSException as error:

@@ -189,7 +189,7 @@ class Foxglove(Middleware):
             SchemaError: it speaks another protocol.
         """
         if connection.socket.subprotocol is None:
-            raise _GoneError("it does not speak Foxglove's protocol")
+            raise _GoneError("it does not use the Foxglove protocol")
         greeting = read(connection.socket.recv(timeout=PATIENCE), connection.topics)
         if not isinstance(greeting, Greeting):
             raise _GoneError("it does not begin with `serverInfo`")
@@ -299,7 +299,7 @@ class Foxglove(Middleware):
             self._warn(problem)
 
 
-_TRUST = "SSL_CERT_FILE names the file with the authority that has signed it"
+_TRUST = "set SSL_CERT_FILE to the file with the authority that signed it"
 
 
 def _reason(error: Exception) -> tuple[str, str | None]:
@@ -310,25 +310,25 @@ def _reason(error: Exception) -> tuple[str, str | None]:
         case SSLCertVerificationError():
             return f"its certificate is not trusted: {error.verify_message}", _TRUST
         case SSLError():
-            return "it does not speak TLS", "write `ws://` in place of `wss://`"
+            return "it does not use TLS", "write `ws://` in place of `wss://`"
         case TimeoutError():
             return f"it has not answered within {PATIENCE:g} s", None
         case OSError():
             return error.strerror or str(error), None
         case SchemaError():
-            return f"it sends what is not of the protocol: {str(error)[:_EXCERPT]}", None
+            return f"it violates the protocol: {str(error)[:_EXCERPT]}", None
         case InvalidStatus():
             status = f"HTTP status {error.response.status_code}"
-            return f"{status}: does it speak Foxglove's protocol, at this address?", None
+            return f"{status}: check that a Foxglove server is at this address", None
         case InvalidHandshake() | EOFError():
-            return "it is no WebSocket server, or speaks another protocol than Foxglove's", None
+            return "it is not a WebSocket server with the Foxglove protocol", None
         case ConnectionClosed(sent=sent) if sent is not None and sent.code == _TOO_BIG:
             return f"it has sent a message of more than {LARGEST >> 20} MiB", None
         case ConnectionClosed(rcvd=rcvd) if rcvd is not None:
             why = f": {rcvd.reason[:_EXCERPT]}" if rcvd.reason else ""
             return f"it has closed the connection{why}", None
         case ConnectionClosed():
-            return "the connection has broken off", None
+            return "the connection was lost", None
         case _:
             return str(error)[:_EXCERPT], None
 
@@ -336,7 +336,7 @@ def _reason(error: Exception) -> tuple[str, str | None]:
 def _no_websockets(why: str) -> Diagnostic:
     return Diagnostic(
         Code.MISSING_EXTRA,
-        f"a Foxglove server is watched by `websockets`, which cannot be imported: {why}",
+        f"watching a Foxglove server needs `websockets`, which cannot be imported: {why}",
         help=install("live"),
     )
 
@@ -353,7 +353,7 @@ def _several_channels(topic: str) -> Diagnostic:
     return Diagnostic(
         Code.SEVERAL_PUBLISHERS,
         f"the server has several channels of `{topic}`",
-        help="each message counts, of whichever channel; end what should not publish",
+        help="messages of all channels count; stop the nodes that should not publish",
         severity=Severity.WARNING,
     )
 
@@ -362,9 +362,9 @@ def _too_many_channels(most: int) -> Diagnostic:
     """The server makes new ones without end."""
     return Diagnostic(
         Code.CHANNEL_REFUSED,
-        f"the server has had {most} different channels of the topics that are bound: no more are "
+        f"the server has had {most} different channels of the bound topics: no further ones are "
         "watched",
-        help="does it change the types of its topics again and again?",
+        help="check whether the server keeps changing the types of its topics",
     )
 
 
@@ -372,7 +372,7 @@ def _unreadable_channel(topic: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.CHANNEL_REFUSED,
         f"a channel of `{topic}` cannot be watched: {why}",
-        help="what reads the topic is unknown; look at what the server advertises",
+        help="propositions that read the topic are unknown; check what the server advertises",
     )
 
 
@@ -380,8 +380,8 @@ def _withdrawn(topic: str) -> Diagnostic:
     """A warning, since what has stopped sends nothing."""
     return Diagnostic(
         Code.CHANNEL_REFUSED,
-        f"the server has withdrawn `{topic}`",
-        help="it is watched again when the server has it again; does its node still run?",
+        f"the server no longer offers `{topic}`",
+        help="it is watched again when the server offers it again; check that its node runs",
         severity=Severity.WARNING,
     )
 
@@ -389,8 +389,8 @@ def _withdrawn(topic: str) -> Diagnostic:
 def _status(text: str) -> Diagnostic:
     return Diagnostic(
         Code.SERVER_STATUS,
-        f"the server says: {text}",
-        help="look at the server's own log",
+        f"the server reports: {text}",
+        help="see the log of the server",
         severity=Severity.WARNING,
     )
 
@@ -399,7 +399,7 @@ def _more_statuses(most: int) -> Diagnostic:
     """The rest is not shown."""
     return Diagnostic(
         Code.SERVER_STATUS,
-        f"the server says more than {most} different things; the rest is not shown",
-        help="look at the server's own log",
+        f"the server has reported more than {most} different texts; further ones are not shown",
+        help="see the log of the server",
         severity=Severity.WARNING,
     )

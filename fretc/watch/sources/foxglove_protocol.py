@@ -108,7 +108,7 @@ def _binary(message: bytes) -> Message | None:
             raise SchemaError("a binary message is empty")
         case b"\x01":
             if len(message) < _DATA_HEAD.size:
-                raise SchemaError("a message of a channel breaks off")
+                raise SchemaError("a message of a channel is truncated")
             subscription, time = _DATA_HEAD.unpack_from(message)
             return Data(subscription, time, message[_DATA_HEAD.size :])
         case b"\x02":
@@ -183,6 +183,6 @@ def address(url: str) -> SplitResult | Diagnostic:
 def _no_url(text: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
-        f"`{text}` is no URL of a Foxglove server" if text else "no Foxglove server is named",
-        help="write `ws://HOST:PORT`, or `wss://HOST:PORT`; foxglove_bridge has port 8765",
+        f"`{text}` is not the URL of a Foxglove server" if text else "no Foxglove server is named",
+        help="write `ws://HOST:PORT`, or `wss://HOST:PORT`; foxglove_bridge uses port 8765",
     )

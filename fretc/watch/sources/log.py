@@ -108,7 +108,7 @@ class Log:
                 return data
             changed = self._changed(stream, at)
             if changed is None and len(known) == size and known != self._before:
-                changed = "another log has been written over it"
+                changed = "another log was written over it"
             if changed is not None:
                 yield Problem(_broken(at, changed, place))
                 return None
@@ -206,7 +206,7 @@ def _log_time(arrival: Arrival) -> int:
 def _broken(at: int, why: str, place: Span) -> Diagnostic:
     return Diagnostic(
         Code.UNREADABLE_LOG,
-        f"the log cannot be read on from byte {at}: {why}",
+        f"the log cannot be read from byte {at} on: {why}",
         place,
-        "audit what there is of it with `fretc audit`",
+        "audit the part before it with `fretc audit`",
     )

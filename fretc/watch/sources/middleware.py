@@ -112,7 +112,7 @@ def several_publishers(topic: str, count: int, names: Collection[str] = ()) -> D
     return Diagnostic(
         Code.SEVERAL_PUBLISHERS,
         f"{count} nodes publish `{topic}`{who}",
-        help="each message counts, no matter who sent it; end what should not publish",
+        help="messages of all publishers count; stop the nodes that should not publish",
         severity=Severity.WARNING,
     )
 
@@ -121,7 +121,7 @@ def simulated_time() -> Diagnostic:
     """F957: durations are wrong where it does not run as real time does."""
     return Diagnostic(
         Code.SIMULATED_TIME,
-        "the robot's time is simulated, and the times of arrival are those of this machine",
+        "the robot uses simulated time, but arrival times are measured by this machine",
         help='set `time = "header.stamp"` under `[clock]`, unless the simulation runs in real time',
         severity=Severity.WARNING,
     )

@@ -157,7 +157,7 @@ def _frames(stream: IO[bytes]) -> Iterator[tuple[dict[str, Any], bytes]]:
 def _no_rospy(python: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.MISSING_EXTRA,
-        f"ROS 1 is watched by rospy, which `{python}` does not have: {why}",
+        f"watching ROS 1 needs rospy, which `{python}` does not have: {why}",
         help="apt install python3-rospy",
     )
 
@@ -181,6 +181,6 @@ def _no_master(uri: str) -> Diagnostic:
 def _node_ended() -> Diagnostic:
     return Diagnostic(
         Code.ROBOT_NOT_REACHED,
-        "the node that hands messages on has ended",
-        help="is there a name for this machine in /etc/hosts?",
+        "the node that forwards messages has exited",
+        help="check that /etc/hosts has a name for this machine",
     )

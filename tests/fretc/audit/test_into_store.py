@@ -357,7 +357,7 @@ def test_two_audits_do_not_share_a_store(fretc: Fretc) -> None:
     with session():
         run = fretc("audit", *LOGS)
         assert (run.status, run.out) == (2, "")
-        assert run.err.startswith(f"F912 another audit is at work on `{STORE}`\n")
+        assert run.err.startswith(f"F912 another audit is writing to `{STORE}`\n")
     assert fretc("audit", *LOGS).status == 0
 
 

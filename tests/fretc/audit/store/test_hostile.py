@@ -133,7 +133,7 @@ def test_what_is_no_manifest_is_refused(store: Path, text: str) -> None:
 
 def test_a_store_whose_audit_was_stopped_says_so(store: Path) -> None:
     os.rename(store / "manifest.json", store / "unfinished.json")
-    assert refused(store).endswith("has no manifest: its audit has not come to its end")
+    assert refused(store).endswith("has no manifest: its audit was not finished")
 
 
 def tables() -> dict[TableName, pa.Table]:

@@ -290,8 +290,8 @@ def warnings(declarations: Declarations, limit: float) -> list[str]:
 def test_a_bound_below_the_least_range_is_blind() -> None:
     declarations = bound("gap < 5 cm", "min")
     assert warnings(declarations, 0.2) == [
-        "`close` compares `gap` with 0.05 m, and `/scan` reports nothing nearer than 0.2 m: what "
-        "is nearer than the bound cannot be seen"
+        "`close` compares `gap` with 0.05 m, and `/scan` reports nothing nearer than 0.2 m: an "
+        "obstacle nearer than the bound is not detected"
     ]
     (diagnostic,) = blind_zones(declarations.propositions["close"], declarations, {"gap": 0.2})
     assert diagnostic.span is not None

@@ -151,11 +151,11 @@ EXPECTED: Mapping[str, dict[str, list[Expected]]] = {
 }
 """What each single change is reported as; a change that is not here changes nothing."""
 OF_EVIDENCE = {
-    "another fretc": "another version of fretc has made the audit",
+    "another fretc": "the audit was made with another version of fretc",
     "a sentence": "the sentence has changed since the audit",
     "numbers": "the numbers in `params` have changed since the audit",
     "a clock": "the clock has changed since the audit",
-    "topics": "the topics that the audit reads, and its ticks begin with, have changed since then",
+    "topics": "the topics that the audit reads have changed since the audit",
     "bindings": "the bindings have changed since the audit",
     "a monitor": "what was audited or proved is about another artefact r1_monitor.py",
     "of before the clock": "the clock has changed since the audit",

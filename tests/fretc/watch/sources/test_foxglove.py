@@ -300,7 +300,7 @@ def test_nothing_of_a_stranger_reaches_the_terminal_as_it_is(
         lines.tell(event, Session(plan))
     output = capsys.readouterr()
     assert "out of order" in output.out
-    assert "the server says" in output.err
+    assert "the server reports" in output.err
     assert not {"\x1b", "\x07"} & {*output.out, *output.err}
 
 
