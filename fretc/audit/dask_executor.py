@@ -1,4 +1,4 @@
-"""Audit on many machines, by Dask: each log is a task, none is lost and none is counted twice.
+"""Audit on many machines with Dask: each log is a task, and its result counts exactly once.
 
 The only module that imports dask. The workers need the fretc that asks them, exactly, and
 must find the logs under the same names.
@@ -29,15 +29,16 @@ if TYPE_CHECKING:
 
 SCHEME = "dask"
 PATIENCE = 10
-"""Seconds after which a scheduler, or a worker, that is not there is not waited for."""
+"""Seconds to wait for a scheduler or a worker."""
 
 
 def engine(name: str, jobs: int) -> Engine | Diagnostic:
-    """The engine of a name.
+    """The executor with a given name.
 
     Args:
-        name: `dask`: a cluster of this machine; `dask://HOST:PORT`: that of the scheduler there.
-        jobs: how many processes of this machine.
+        name: `dask`: a cluster of processes on this machine; `dask://HOST:PORT`: an existing
+            scheduler.
+        jobs: the number of processes on this machine.
     """
     place = urlsplit(name)
     if name != SCHEME and not (place.scheme == SCHEME and _is_address(place.netloc)):
@@ -57,7 +58,7 @@ def _is_address(netloc: str) -> bool:
 
 
 def _audit(connected: Any, plan: Plan, logs: Sequence[str]) -> LogAudits:
-    """An engine, but for its first parameter: gives a context with a client."""
+    """Audit the tasks with a client of the given context."""
     if not logs:
         return
     try:
@@ -68,7 +69,7 @@ def _audit(connected: Any, plan: Plan, logs: Sequence[str]) -> LogAudits:
 
 
 class _FleetError(Exception):
-    """The fleet cannot do it."""
+    """The Dask cluster cannot audit."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
@@ -117,7 +118,7 @@ _NO_PAGES: dict[str, list[str]] = {
 
 @contextlib.contextmanager
 def _cluster_at(address: str) -> Iterator[Client]:
-    """The cluster of a scheduler that is there already, with one worker at least."""
+    """The cluster of an existing scheduler with at least one worker."""
     from distributed import Client
 
     _be_quiet()
@@ -134,7 +135,7 @@ def _cluster_at(address: str) -> Iterator[Client]:
 
 
 def _be_quiet() -> None:
-    """What Dask logs on its own behalf (a worker has died, a connection is closed) we tell."""
+    """Silence the log messages of Dask about dead workers and closed connections."""
     for name in ("distributed", "tornado", *logging.root.manager.loggerDict):
         if name.partition(".")[0] in ("distributed", "tornado"):
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
@@ -142,7 +143,7 @@ def _be_quiet() -> None:
 
 @contextlib.contextmanager
 def _deaf() -> Iterator[None]:
-    """Processes that begin in here hear no Ctrl-C: it goes to all, and the first one decides."""
+    """Ignore Ctrl-C in processes started within the context: the main process handles it."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -154,7 +155,7 @@ def _deaf() -> Iterator[None]:
 
 
 def _deaf_worker() -> WorkerPlugin:
-    """The same for workers that begin later, in place of one that died."""
+    """Ignore Ctrl-C in workers that start later, to replace one that died."""
     from distributed import WorkerPlugin
 
     class Deaf(WorkerPlugin):  # type: ignore[misc]
@@ -168,7 +169,7 @@ def _deaf_worker() -> WorkerPlugin:
 
 
 def _tasks(client: Client, plan: Plan, logs: Sequence[str]) -> LogAudits:
-    """Each log as a task; one whose workers died runs once more when nothing else does."""
+    """Run each log as a task; if its workers died, run it once more, alone."""
     # A task, not scattered data: Dask makes it anew when all who have it are dead.
     remote_plan = client.submit(bytes, packed(plan), key=f"fretc-plan-{secrets.token_hex(8)}")
     again: list[str] = []
@@ -187,7 +188,7 @@ def _tasks(client: Client, plan: Plan, logs: Sequence[str]) -> LogAudits:
 def _results(
     client: Client, plan: Future, logs: Sequence[str]
 ) -> Generator[tuple[str, LogResult | None], None, None]:
-    """Logs as they are done; None for one whose workers died.
+    """Logs as they are finished; None: the workers of the log died.
 
     Raises:
         _FleetError: the fleet is not able to.
@@ -231,11 +232,11 @@ def _result(future: Future) -> LogResult | None:
 
 
 _ALONE = threading.Lock()
-"""A worker may have many threads; a monitor has a state, and the current folder is of all."""
+"""A worker may have several threads, but a monitor has state and the current folder is shared."""
 
 
 def _work(plan: bytes, log: str, folder: str, client_edition: str) -> LogResult | str:
-    """Audit a log, in a worker; the worker's address, where its edition is another one."""
+    """Audit a log in a worker; the address of the worker if its version of fretc differs."""
     from distributed import get_worker
 
     if build_id() != client_edition:
@@ -251,7 +252,7 @@ def _plan(data: bytes) -> Plan:
 
 @contextlib.contextmanager
 def _in(folder: str) -> Iterator[None]:
-    """In the folder of the one who asks, where there is one of that name: logs keep their names."""
+    """Change to the caller's folder, if it exists on this machine, so that log names stay valid."""
     try:
         before = os.getcwd()
     except OSError:  # the worker began in a folder that is no more

@@ -1,4 +1,4 @@
-"""An audit whose results go into a store as they are found; a log that is known is not read again.
+"""An audit into a store: results are written as they are found, and unchanged logs are reused.
 
 In memory are only the logs of the parts that are being filled. Whatever ends the audit early, what
 is finished is in the store (`unfinished.json`), and the next audit takes it over.
@@ -56,21 +56,22 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
 _HEAVY = 2_000
-"""Events of a log that become columns at once, and do not wait for the other logs of its part."""
+"""Events of a log from which on its results become columns at once, without waiting for the other
+logs of its part."""
 _PATIENCE = 2.0
-"""Seconds after which what is finished is kept."""
+"""Seconds after which finished results are written."""
 _SHARE = 20
-"""Keeping takes one of so many seconds at most."""
+"""The inverse of the largest share of the time that writing unfinished results may take."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredAudit:
-    """The outcome of an audit, whose results are in a store."""
+    """The outcome of an audit with its results in a store."""
 
     source: Store
     diagnostics: tuple[Diagnostic, ...]
     read: int
-    """How many of the logs could be read."""
+    """Number of logs that could be read."""
     estimates: tuple[Estimated, ...]
 
 
@@ -79,54 +80,55 @@ class StoredAudit:
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """A log of an earlier audit by the same plan."""
+    """A log of an earlier audit with the same plan."""
 
     store: Store
     entry: Entry
     by: KnownBy
     part: int
     place: int
-    """Of its first result."""
+    """The index of its first result."""
     results: int
 
 
 @dataclass(frozen=True, slots=True)
 class _Some:
-    """A log of an audit by a plan that has some of the claims."""
+    """A log of an audit with a plan that has some of the same requirements."""
 
     store: Store
     claims: Collection[str]
     part: range
-    """The places of all results of its part."""
+    """The indices of all results of its part."""
     first: int
-    """Where in these its own begin."""
+    """The position of its first result in the part."""
     count: int
 
 
 class ReusableResults:
-    """What earlier audits of this plan have shown, and this user's key vouches for."""
+    """Reusable results of earlier audits: those that this user's key authenticates."""
 
     def __init__(self, folder: Path, plan: Plan, key: bytes | None, *, rehash: bool) -> None:
-        """Read the manifests and registers that are there.
+        """Read the existing manifests and registers.
 
         Args:
             folder: of the store.
-            plan: what logs are judged by.
-            key: of the user; None: nothing is known.
-            rehash: know a log by its SHA-256 alone.
+            plan: the plan of the present audit.
+            key: the key of the user; None: no earlier result is reused.
+            rehash: identify logs by their SHA-256 alone, not by size and times.
         """
         self.stale = False
-        """Whether a store of another plan is there."""
+        """Whether a store with another plan exists."""
         self.foreign = False
-        """Whether a store is there for which this user's key does not vouch."""
+        """Whether a store exists that this user's key does not authenticate."""
         self._plan, self._rehash = plan, rehash
         self._logs: dict[str, tuple[Store, Entry, int, int, int]] = {}
         self._parts: dict[tuple[str, ...], tuple[Store, Part]] = {}
         self.claims: set[str] = set()
-        """Those of another plan that are claims of this one, exactly."""
+        """The keys of requirements of another plan that are also in this one."""
         self._some: dict[str, _Some] = {}
         self._last: tuple[Store, range, list[Result]] | None = None
-        """The results of one part: its logs are asked for one after the other."""
+        """The results of the last part that was read, because logs of one part are asked for in
+        sequence."""
         for name in (FILE, UNFINISHED) if key is not None else ():
             assert key is not None
             self._read(folder, name, key)
@@ -150,7 +152,7 @@ class ReusableResults:
             self._add(store, alike=about["labels"] == dict(self._plan.labels))
 
     def _add_some(self, store: Store, same: Collection[str]) -> None:
-        """Results by claims that are what they were, though others are not."""
+        """Add results of unchanged requirements from an audit with another plan."""
         entries, counts = store.register(), [*store.counts()]
         if not same or len(entries) != len(counts):
             return
@@ -180,11 +182,11 @@ class ReusableResults:
                 self._parts[tuple(entry.log for entry in of_part)] = (store, part)
 
     def missing(self, logs: Sequence[str]) -> int:
-        """How many logs that are known are not among these."""
+        """The number of known logs that are not among the given ones."""
         return len({*self._logs, *self._some}.difference(logs))
 
     def find(self, log: str) -> _Known | None:
-        """What is known of a log that is as it was."""
+        """The reusable results of a log that is unchanged."""
         if log not in self._logs:
             return None
         store, entry, part, place, count = self._logs[log]
@@ -192,7 +194,7 @@ class ReusableResults:
         return None if by is None else _Known(store, entry, by, part, place, count)
 
     def results(self, log: str) -> tuple[Result, ...]:
-        """Those of a log by claims that are what they were, though the plan is not."""
+        """The reusable results of a log from an audit with another plan."""
         some = self._some.get(log)
         if some is None:
             return ()
@@ -206,14 +208,14 @@ class ReusableResults:
         return tuple(each for each in of_log if each.requirement in some.claims)
 
     def part(self, logs: Sequence[str], known: Mapping[str, _Known]) -> Part | None:
-        """A part that has just these logs, with all that all runs have."""
+        """A part that has exactly these logs, with the facts that all its runs share."""
         store, part = self._parts.get(tuple(logs), (None, None))
         is_same = all(log in known and known[log].store is store for log in logs)
         return part if is_same else None
 
 
 def _results(plan: Plan, known: _Known) -> tuple[Result, ...]:
-    """The results of a known log, with the labels that this audit gives."""
+    """The results of a known log, with the labels of the present audit."""
     places = range(known.place, known.place + known.results)
     own = known.entry.labels or UNSET
     results = (replace(one, labels=own) for _, one in known.store.details(places))
@@ -225,7 +227,7 @@ def _results(plan: Plan, known: _Known) -> tuple[Result, ...]:
 
 @dataclass(slots=True)
 class _Log:
-    """A log that is finished, until its part is written."""
+    """A finished log, until its part is written."""
 
     entry: Entry
     results: tuple[Result, ...] = ()
@@ -235,7 +237,7 @@ class _Log:
 
 @dataclass(slots=True)
 class _Draft:
-    """A part that is being filled, or is written."""
+    """A part that is being filled or written."""
 
     logs: Sequence[str]
     found: dict[str, _Log] = field(default_factory=dict)
@@ -252,19 +254,19 @@ class _WriteError(Exception):
 
 
 class StoreWriter:
-    """An audit into a store, from its beginning to its end."""
+    """The writer of an audit's results into a store, from the beginning to the end of the audit."""
 
     def __init__(
         self, folder: Path, plan: Plan, logs: Sequence[str], key: bytes | None, *, rehash: bool
     ) -> None:
-        """Lock the folder, and find out what is known of the logs.
+        """Lock the folder and find the logs with reusable results.
 
         Args:
             folder: of the store.
-            plan: what the logs are judged by.
+            plan: the plan of the audit.
             logs: each once.
-            key: of the user; None: nothing is taken over, now or later.
-            rehash: know a log by its SHA-256 alone.
+            key: the key of the user; None: no result is reused, now or later.
+            rehash: identify logs by their SHA-256 alone, not by size and times.
 
         Raises:
             OSError: the folder cannot be used.
@@ -281,16 +283,16 @@ class StoreWriter:
             os.close(self._lock)
             raise
         self._before = files(folder)
-        """What was there: an earlier manifest that is damaged may need it."""
+        """Files that existed before: an earlier manifest that is damaged may need them."""
         self._is_finished = False
         self._drafts = [_Draft([logs[n] for n in places]) for places in parts(logs)]
         self._draft_of = {log: draft for draft in self._drafts for log in draft.logs}
         self.known = {log: one for log in logs if (one := self.earlier.find(log)) is not None}
         self.new = [log for log in logs if log not in self.known]
         self.missing = self.earlier.missing(logs)
-        """How many logs of the store are not among those of this audit."""
+        """The number of logs of the store that are not among those of this audit."""
         self.kept = 0
-        """Logs that were audited by this session and that an audit after it takes over."""
+        """The number of logs that were audited here and whose results a later audit can reuse."""
         self._diagnostics: dict[Diagnostic, Diagnostic] = {}
         self._of_log: dict[str, tuple[Diagnostic, ...]] = {}
         self._read = 0
@@ -301,7 +303,7 @@ class StoreWriter:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Remove what no manifest names, and let another audit have the folder."""
+        """Remove the files that no manifest lists, and release the folder."""
         try:
             names = [name for name in (FILE, UNFINISHED) if (self.folder / name).exists()]
             found = [manifest(self.folder, name) for name in names]
@@ -317,10 +319,10 @@ class StoreWriter:
             os.close(self._lock)
 
     def run(self, engine: Engine, tell: Callable[[str], None]) -> StoredAudit | Diagnostic:
-        """Audit what is not known, and write all.
+        """Audit the logs without reusable results, and write all results.
 
         Args:
-            engine: where; the results do not depend on it.
+            engine: the executor; the results do not depend on it.
             tell: is called with each log that was audited.
         """
         try:
@@ -346,7 +348,7 @@ class StoreWriter:
             return error.diagnostic
 
     def _take_over(self) -> None:
-        """Everything that is known."""
+        """Reuse the results of all known logs."""
         for log, known in self.known.items():
             entry = replace(known.entry, known_by=known.by)
             source = self._plan.declarations.source
@@ -364,7 +366,7 @@ class StoreWriter:
                 self._complete(draft)
 
     def _take(self, log: str, own: LogResult) -> None:
-        """A log that was audited."""
+        """Add the results of a log that was audited."""
         audited = labelled(self._plan, own)
         source = self._plan.declarations.source
         first = own.results[0]
@@ -388,7 +390,7 @@ class StoreWriter:
         self._complete(draft)
 
     def _one(self, found: Diagnostic) -> Diagnostic:
-        """The same diagnostic once in memory: logs share them."""
+        """The diagnostic, or an equal one that is already in memory."""
         return self._diagnostics.setdefault(found, found)
 
     def _note(self, log: str, notes: tuple[Diagnostic, ...]) -> None:
@@ -396,7 +398,7 @@ class StoreWriter:
             self._of_log[log] = notes
 
     def _complete(self, draft: _Draft) -> None:
-        """Write a part, if all its logs are finished."""
+        """Write a part if all its logs are finished."""
         if len(draft.found) == len(draft.logs):
             draft.part = self._written(draft, draft.logs)
             draft.entries = tuple(draft.found[log].entry for log in draft.logs)
@@ -407,7 +409,7 @@ class StoreWriter:
         return _right(write_part(self.folder, joined(groups)))
 
     def _grouped(self, found: Iterator[_Log]) -> Iterator[Tables]:
-        """Tables of all of them, in their order."""
+        """The joined tables of all logs, in their order."""
         waiting: list[Result] = []
         for one in found:
             if one.tables is None:
@@ -442,7 +444,7 @@ class StoreWriter:
         return replace(made, probabilities=estimates or UNSET)
 
     def _write(self, made: Manifest, name: str) -> str:
-        """Write a manifest, and what vouches for it."""
+        """Write a manifest and the register that authenticates it."""
         digest = _right(write_manifest(self.folder, made, name))
         if self._key is not None:
             plan = self._plan
@@ -461,7 +463,7 @@ class StoreWriter:
             self._next = time.monotonic() + max(_PATIENCE, _SHARE * took)
 
     def _keep(self) -> None:
-        """Keep what is finished, for an audit that takes it over."""
+        """Write the finished results, so that a later audit can reuse them."""
         if self._key is None:
             return
         found: list[tuple[Part, Sequence[Entry]]] = []

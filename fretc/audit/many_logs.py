@@ -1,4 +1,4 @@
-"""From a plan and logs to verdicts: read each log, run the monitors, gather the evidence."""
+"""The audit of many logs: read each log, run the monitors, collect the evidence."""
 
 from __future__ import annotations
 
@@ -56,21 +56,21 @@ from monitors import kernel
 
 @dataclass(frozen=True, slots=True)
 class Audit:
-    """The outcome of an audit: one result for each run and requirement, runs in their order."""
+    """The outcome of an audit: a result for each run and requirement, ordered by run."""
 
     document: Document
     diagnostics: tuple[Diagnostic, ...]
     read: int = 0
-    """How many of the logs could be read."""
+    """Number of logs that could be read."""
 
     @property
     def results(self) -> tuple[Result, ...]:
-        """Each of a run and a requirement."""
+        """One result for each run and requirement."""
         return self.document.results
 
     @property
     def estimates(self) -> tuple[Estimated, ...]:
-        """What all runs say of each requirement with a probability."""
+        """The answer of all runs for each requirement with a probability."""
         return self.document.probabilities or ()
 
     @property
@@ -80,12 +80,12 @@ class Audit:
 
     @property
     def source(self) -> EvidenceSource:
-        """The results, to be read from."""
+        """The results as an `EvidenceSource`."""
         return EvidenceFile("", "", self.document)
 
 
 EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": kernel.stepped}
-"""How monitors are run: whole traces at once, or step by step."""
+"""The ways to run monitors: on whole traces at once, or step by step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,21 +93,21 @@ class LogResult:
     """The outcome of the audit of one log."""
 
     results: tuple[Result, ...]
-    """The record of each claim, in their order."""
+    """The result of each requirement, in order."""
     diagnostics: tuple[Diagnostic, ...]
     read: bool
     """Whether the log could be read."""
     stamp: Stamp | None = None
-    """The file's before its audit; None where it is no file, or has changed since."""
+    """The stamp of the file before its audit; None: it is not a file, or has changed since."""
     known_by: KnownBy = field(default="read", compare=False)
-    """Whether the log was read, or by what it is known to be what it was when it was."""
+    """Whether the log was read, or how it was identified as unchanged."""
 
 
 LogAudits = Generator[tuple[str, LogResult] | Diagnostic, None, None]
-"""Each log with its audit, as soon as that is complete; a diagnostic where the engine gives up."""
+"""Each log with its result, as soon as it is complete; a diagnostic if the executor gives up."""
 
 Engine = Callable[[Plan, Sequence[str]], LogAudits]
-"""Where logs are audited. Closing what it gives ends all work at once."""
+"""The executor of the audits of logs. Closing its iterator ends all work at once."""
 
 
 def _nothing(_: str) -> Sequence[Result]:
@@ -120,13 +120,13 @@ def local_executor(
     known: Callable[[str], Sequence[Result]] = _nothing,
     limits: Limits = ENDLESS,
 ) -> Engine:
-    """On this machine, in some processes.
+    """The executor on this machine, with several processes.
 
     Args:
-        jobs: how many.
-        kept: where the samples of logs are kept.
-        known: of a log, the results that `audited` may take over.
-        limits: of time; standard input only where there are none.
+        jobs: the number of processes.
+        kept: the cache of the samples of logs.
+        known: the reusable results of a log, by requirement.
+        limits: limits of time; a process for standard input has none.
     """
 
     def judged(plan: Plan, log: str) -> LogResult:
@@ -151,7 +151,7 @@ def local_executor(
 
 
 SEQUENTIAL = local_executor(1)
-"""One after the other."""
+"""The executor that audits one log after the other."""
 
 
 def audit_logs(
@@ -161,13 +161,13 @@ def audit_logs(
     finished: Mapping[str, LogResult] = MappingProxyType({}),
     tell: Callable[[str, LogResult], None] = lambda log, audited: None,
 ) -> Audit | Diagnostic:
-    """Audit every log against every claim.
+    """Audit every log against every requirement.
 
     Args:
-        plan: what the logs are judged by.
+        plan: the requirements, and how they are judged.
         logs: files, folders of rosbag2, URLs, or `-` for standard input, each once.
-        engine: where; the results do not depend on it.
-        finished: logs that have been audited by this plan already.
+        engine: the executor; the results do not depend on it.
+        finished: the results of logs that were audited with this plan before.
         tell: is called with each other log when it is done.
 
     Returns:
@@ -187,7 +187,7 @@ def audit_logs(
 
 
 def gathered(plan: Plan, audits: Sequence[LogResult]) -> Audit:
-    """One audit of the audits of single logs, in their order."""
+    """One audit from the results of single logs, in their order."""
     results = [result for one in audits for result in one.results]
     of_all_runs = estimates_of(plan, map(brief, results))
     tallies = (tallies_of(one.results) for one in audits)
@@ -200,7 +200,7 @@ def gathered(plan: Plan, audits: Sequence[LogResult]) -> Audit:
 
 
 def estimates_of(plan: Plan, results: Iterable[Brief]) -> tuple[Estimated, ...]:
-    """What all runs say of each requirement with a probability."""
+    """The answer of all runs for each requirement with a probability."""
     ids = {claim.id for claim in plan.claims if claim.chance is not None}
     counted = [each for each in results if each.requirement in ids] if ids else []
     return estimates(plan.claims, counted, plan.confidence)
@@ -212,13 +212,13 @@ def diagnostics_of_all(
     tallies: Iterable[Mapping[str, Tally]],
     of_all_runs: Sequence[Estimated],
 ) -> tuple[Diagnostic, ...]:
-    """What there is to say of all logs together.
+    """The diagnostics of all logs together.
 
     Args:
-        plan: what they were judged by.
-        of_logs: the name of each run, and what there is to say of its log.
-        tallies: of each run, by proposition.
-        of_all_runs: what all say of each requirement with a probability.
+        plan: the plan of the audit.
+        of_logs: the name of each run, and the diagnostics of its log.
+        tallies: the tally of each proposition in each run.
+        of_all_runs: the answer of all runs for each requirement with a probability.
     """
     diagnostics = _shared(of_logs)
     constant = never_changed(totals(tallies), plan.declarations, diagnostics)
@@ -226,7 +226,7 @@ def diagnostics_of_all(
 
 
 def _shared(of_logs: Sequence[tuple[str, Sequence[Diagnostic]]]) -> tuple[Diagnostic, ...]:
-    """The diagnostics of all logs. One that several logs share is given once."""
+    """The diagnostics of all logs. A diagnostic that several logs share is given once."""
     runs: dict[Diagnostic, list[str]] = {}
     for run, diagnostics in of_logs:
         for diagnostic in diagnostics:
@@ -235,7 +235,7 @@ def _shared(of_logs: Sequence[tuple[str, Sequence[Diagnostic]]]) -> tuple[Diagno
 
 
 def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
-    """The diagnostic. Unless its place is in one log, the message says in which logs it is."""
+    """The diagnostic with the names of its logs, unless its place is in one log."""
     if count == 1 or (diagnostic.span and diagnostic.span.source.name == runs[0]):
         return diagnostic
     which = f"in {len(runs)} of {count} logs, first in `{runs[0]}`"
@@ -245,15 +245,14 @@ def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
 def audited(
     plan: Plan, log: str, known: Sequence[Result] = (), kept: SampleCache | None = None
 ) -> LogResult:
-    """Audit one log; all that is needed for it is in the plan.
+    """Audit one log; all other inputs are in the plan.
 
     Args:
-        plan: what it is judged by.
+        plan: the requirements, and how they are judged.
         log: its path.
-        known: results of an earlier audit of it, by claims whose `keys` were what they are now.
-            They are taken over where the log still is what they were found in; what the log shows
-            to all claims alike is found again.
-        kept: where the samples of logs are kept: an unchanged one is not read again.
+        known: results of an earlier audit of the log, by requirements whose `keys` are unchanged.
+            They are reused if the log is unchanged; facts about the log itself are computed again.
+        kept: the cache of the samples of logs: an unchanged log is not read again.
     """
     declarations, requirements = plan.declarations, monitored_requirements(plan)
     before = stamp(log)
@@ -287,7 +286,7 @@ def _propositions(requirements: Sequence[MonitoredRequirement]) -> tuple[str, ..
 def _read(
     plan: Plan, log: str, names: Sequence[str], kept: SampleCache | None, before: Stamp | None
 ) -> tuple[Recording | Diagnostic, KnownBy]:
-    """The recording of a log with all signals of the propositions, read or kept."""
+    """The recording of a log with all signals of the propositions, read or from the cache."""
     declarations, integrity = plan.declarations, plan.integrity
     signals = signals_of(declarations, names)
     known = kept.recording(log, declarations, signals, integrity) if kept else None
@@ -304,8 +303,8 @@ def _read(
 def _taken_over(known: Sequence[Result], recording: Recording) -> Iterator[Result]:
     """The results that an audit of the recording would give again.
 
-    Why there is no data may be the fault of another claim's topic: such a result is taken over only
-    where everything that was found in the log is the same.
+    The topic of another requirement may be the reason for missing data: such a result is reused
+    only if all diagnostics of the log are equal.
     """
     if not known:
         return
@@ -327,7 +326,7 @@ def _taken_over(known: Sequence[Result], recording: Recording) -> Iterator[Resul
 def _with_own_labels(
     plan: Plan, one: LogResult, described: Mapping[str, tuple[str, ...]] = NO_METADATA
 ) -> LogResult:
-    """The audit of a log with the labels that the bindings ask for."""
+    """The result of a log, with the labels that the bindings ask for."""
     declared = plan.declarations.labels
     if not declared:
         return one
@@ -336,7 +335,7 @@ def _with_own_labels(
 
 
 def labelled(plan: Plan, one: LogResult) -> LogResult:
-    """The audit of a log with the labels that the command gives all runs."""
+    """The result of a log, with the labels that the command gives all runs."""
     if not plan.labels:
         return one
     first = one.results[0]
@@ -356,10 +355,10 @@ def _with_labels(
 
 
 def _refused_results(plan: Plan, sibling: Result) -> Iterator[Result]:
-    """The result of each refused requirement in a run: no data, and the reason.
+    """The result of each requirement that cannot be judged, in a run: no data, with the reason.
 
     Args:
-        plan: which requirements it refuses.
+        plan: the plan with the refused requirements.
         sibling: the result of a judged requirement in the same run.
     """
     log = {name: sha for name, sha in sibling.hashes.items() if name.startswith("log")}
@@ -377,9 +376,9 @@ def given_up(plan: Plan, log: str, how: str) -> LogResult:
     """The results of a log whose audit killed its process twice: no data.
 
     Args:
-        plan: what it was to be judged by.
+        plan: the plan of the audit.
         log: its path.
-        how: the process ended.
+        how: how the process ended.
     """
     return _unread(plan, log, was_killed(log, how), None)
 
@@ -388,10 +387,10 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogR
     """The results of a log that cannot be read.
 
     Args:
-        plan: what it was to be judged by.
+        plan: the plan of the audit.
         log: its path.
-        why: what keeps it from being read.
-        before: its stamp before that was tried; None: it is not known.
+        why: the diagnostic that says why the log cannot be read.
+        before: the stamp of the log before the attempt; None: it is unknown.
     """
     hashes = _hash_of(log, before)
     records = [unread(name_of(log), each.id, why, {**hashes, **each.basis}) for each in plan.named]
@@ -399,25 +398,25 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogR
 
 
 def _unaudited(plan: Plan, log: str, why: Diagnostic) -> LogResult:
-    """The results of a log for which there was no time: no data. It is not even hashed."""
+    """The results of a log that was not audited before the time limit: no data, and no hash."""
     records = [unread(name_of(log), each.id, why, each.basis) for each in plan.named]
     return _with_own_labels(plan, LogResult(tuple(records), (why,), read=False))
 
 
 def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
-    """SHA-256 of a log that could not be read as one, where it is still what was tried."""
+    """SHA-256 of a file that could not be read as a log, if it is unchanged since the attempt."""
     digest = file_sha256(log)
     changed = before is not None and stamp(log) != before
     return {} if digest is None or changed else {"log": digest}
 
 
 def named_situations(claim: AuditedRequirement) -> tuple[Situation, ...]:
-    """What evidence says of the situations of a claim."""
+    """The situations of a requirement, as evidence lists them."""
     return tuple(Situation(each.key, each.words) for each in claim.situations)
 
 
 def document(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estimated]) -> Document:
-    """The evidence of an audit."""
+    """The evidence document of an audit."""
     return Document(
         schema=SCHEMA,
         fretc=__version__,

@@ -1,4 +1,4 @@
-"""Run generated monitors over one recorded log and gather the evidence."""
+"""The audit of one log: run the monitors on its recording and collect the evidence."""
 
 from __future__ import annotations
 
@@ -44,21 +44,21 @@ from monitors.kernel.verdicts import Verdict
 
 @dataclass(frozen=True, slots=True)
 class MonitoredRequirement:
-    """A requirement with its monitor, and the hashes of what the monitor was made from."""
+    """A requirement with its monitor, and the hashes of the inputs of the monitor."""
 
     monitor: Monitor
     hashes: Mapping[str, str]
     demand: Demand = field(default_factory=Demand)
     count: Count | None = None
-    """Of a requirement with a probability: what its triggers came to."""
+    """The counter of trigger outcomes, for a requirement with a probability."""
     counted: tuple[str, ...] = ()
-    """The propositions that `count` needs; the monitor may do without some of them."""
+    """The propositions that `count` reads; the monitor may need fewer."""
     situations: tuple[Situation, ...] = ()
-    """In which runs are looked at; none: that is not measured."""
+    """The situations to look for in runs; empty: they are not measured."""
 
     @property
     def propositions(self) -> tuple[str, ...]:
-        """All that are needed, each once."""
+        """All propositions that the requirement needs, each once."""
         return _needed(self)
 
 
@@ -87,9 +87,10 @@ def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple
 def examined(
     recording: Recording, declarations: Declarations, propositions: Sequence[str]
 ) -> Recording:
-    """The recording, with further findings about the signals that the propositions read.
+    """The recording with further diagnostics about the signals that the propositions read.
 
-    What sensors cannot see, which topics are too slow, and which samples are no truth value.
+    They are about obstacles that sensors cannot detect, slow topics, and samples that are not a
+    truth value.
     """
     signals = signals_of(declarations, propositions)
     slow = slow_topics(declarations, recording, signals)
@@ -108,7 +109,7 @@ def examined(
 
 
 def _untrue(signal: Signal, recording: Recording) -> Diagnostic | None:
-    """F424 where samples of a signal that stands for a truth value are neither 0 nor 1."""
+    """F424 if samples of a signal that is read as a truth value are neither 0 nor 1."""
     samples = recording.samples.get(signal.name)
     if samples is None:
         return None
@@ -127,13 +128,13 @@ def audit(
     requirements: Sequence[MonitoredRequirement],
     engine: Engine = kernel.evaluate,
 ) -> tuple[RunResult, ...]:
-    """The evidence of one run for each requirement, in their order.
+    """The result of one run for each requirement, in their order.
 
     Args:
-        recording: read with all signals of all the monitors' propositions.
+        recording: the recording with all signals of all the monitors' propositions.
         declarations: every proposition of the monitors is declared.
-        requirements: with their monitors.
-        engine: how the monitors are run; the verdicts are the same.
+        requirements: the requirements with their monitors.
+        engine: the evaluator of the monitors; the verdicts do not depend on it.
     """
     names = dict.fromkeys(name for each in requirements for name in each.propositions)
     truths = trace(declarations, recording, tuple(names))
@@ -154,7 +155,7 @@ def audit(
 
 
 def _phased(evidence: RunResult, phases: Phases | None) -> RunResult:
-    """The evidence, with what other phases of the ticks make of the run."""
+    """The results, with the verdicts of the run at other phases of the ticks."""
     if phases is None:
         return evidence
     probabilistic = evidence.trials is not None
@@ -223,7 +224,7 @@ def _evidence(
 
 
 def _near(recording: Recording, declarations: Declarations, ticks: int) -> Near:
-    """Where numbers of the recording are: of the samples of a tick the last one counts."""
+    """The positions of the numbers of the recording; the last sample of a tick counts."""
     nowhere = nowhere_known(ticks)
 
     @cache
@@ -254,10 +255,10 @@ def _situations(
 
 
 def _counted(evidence: RunResult, trials: Trials) -> RunResult:
-    """The evidence, where one run decides nothing: the triggers of it are counted.
+    """The result with its triggers counted, if one run alone decides nothing.
 
-    A trigger may have failed where the monitor still waits: `finally` asks nothing of an endless
-    run, so its monitor gives up at the end only, even what no end can meet.
+    A trigger may have failed although the monitor still waits: `finally` demands nothing of an
+    endless run, so its monitor gives a verdict only at the end.
     """
     if evidence.verdict == kernel.VACUOUS:
         return replace(evidence, trials=trials)
@@ -277,18 +278,18 @@ def _trials(count: Count, columns: Mapping[str, Column], truths: Trace) -> Trial
 
 
 def hash_of(recording: Recording) -> Mapping[str, str]:
-    """SHA-256 of the log, by what it is of."""
+    """SHA-256 of the log, by the kind of its content."""
     return {"log" if recording.checked.hashed else "log_summary": recording.sha256}
 
 
 def hash_of_messages(recording: Recording) -> Mapping[str, str]:
-    """SHA-256 of all that was read of the messages, where there are any."""
+    """SHA-256 of all messages that were read, if there are any."""
     messages = fingerprint(recording)
     return {} if messages is None else {"messages": messages}
 
 
 def _moments(timeline: Timeline) -> Callable[[int], Moment]:
-    """The moment of each tick; triggers, answers and states ask for the same ones."""
+    """The moment of each tick, cached for triggers, answers and states."""
     times: list[int] = timeline.times.tolist()
 
     @cache
@@ -299,7 +300,7 @@ def _moments(timeline: Timeline) -> Callable[[int], Moment]:
 
 
 def _reason(evidence: RunResult, recording: Recording, declarations: Declarations) -> str:
-    """Why the verdict is what it is, in one sentence."""
+    """The reason of the verdict, in one sentence."""
     outcome = evidence.outcome
     match evidence.verdict:
         case kernel.VIOLATED:
@@ -350,7 +351,7 @@ def _unknown(evidence: RunResult, recording: Recording) -> str:
 
 
 def _of_whom(evidence: RunResult) -> str:
-    """The propositions that were unknown at all."""
+    """The propositions that were unknown at some tick."""
     parts = [
         f"`{name}` at {_times(tally.unknown, 'tick')}"
         for name, tally in evidence.propositions.items()
@@ -370,7 +371,7 @@ def _latency(evidence: RunResult) -> str:
 
 
 def _margin(evidence: RunResult, signals: Mapping[str, Signal]) -> str:
-    """The threshold that was nearest, as a part of its bound; those that were crossed have none."""
+    """The threshold that was nearest, as a fraction of its bound; crossed thresholds have none."""
     least = worst(evidence.margins)
     if least is None:
         return ""

@@ -1,6 +1,6 @@
-"""Work on many things in several processes; one that is killed costs no other thing its result.
+"""Map a function over items in several processes; a killed process costs no other item its result.
 
-Each process has a pipe of its own, so that it is certain which thing it worked on when it died.
+Each process has a pipe of its own, so that it is certain which item it worked on when it died.
 """
 
 from __future__ import annotations
@@ -28,45 +28,45 @@ R = TypeVar("R")
 
 @dataclass(frozen=True, slots=True)
 class WorkerDied:
-    """The process that worked on a thing was killed, twice: the second time it was alone."""
+    """The process of an item was killed twice, the second time while it worked alone."""
 
     status: int
-    """How it ended, as `Process.exitcode` tells it: negative is a signal."""
+    """The exit status, as in `Process.exitcode`: a negative one is a signal."""
 
     def __str__(self) -> str:
-        """In words."""
+        """The exit status in words."""
         return f"signal {-self.status}" if self.status < 0 else f"exit status {self.status}"
 
 
 class TimedOut(Enum):
-    """There was no time for a thing: its process was ended, or never began."""
+    """There was no time for an item: its process was stopped, or never began."""
 
     OWN = "own"
-    """It took longer than a thing may."""
+    """The item took longer than the limit for one."""
     ALL = "all"
-    """The time for all things was over."""
+    """The time limit for all items was reached."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Seconds of the clock that work may take."""
+    """Time limits in seconds."""
 
     each: float | None = None
-    """Of a thing; None: any."""
+    """The limit for one item; None: none."""
     all: float | None = None
-    """Of all things together, from their beginning."""
+    """The limit for all items together, from the start; None: none."""
 
 
 ENDLESS = Limits()
 
 
 def was_late(log: str, how: TimedOut, limits: Limits) -> Diagnostic:
-    """F440, F441: a log that was not audited to its end, for want of time.
+    """F440 or F441: a log that was not audited to its end because of a time limit.
 
     Args:
         log: its path.
-        how: which time was over.
-        limits: those of the audit.
+        how: the limit that was reached.
+        limits: the limits of the audit.
     """
     if how is TimedOut.OWN and limits.each is not None:
         return Diagnostic(
@@ -90,7 +90,7 @@ def was_killed(log: str, how: str) -> Diagnostic:
 
     Args:
         log: its path.
-        how: the process ended.
+        how: how the process ended.
     """
     return Diagnostic(
         Code.PROCESS_KILLED,
@@ -115,18 +115,18 @@ def each(
 def each(
     function: Callable[[T], R], things: Sequence[T], jobs: int, limits: Limits = ENDLESS
 ) -> Generator[tuple[int, R | WorkerDied | TimedOut], None, None]:
-    """The function of each thing with the thing's place, in the order in which they are done.
+    """The result of the function for each item with the item's index, in the order of completion.
 
     The processes end when the caller stops iterating.
 
     Args:
-        function: of anything, to what can be sent between processes.
-        things: in any number; a single one without limits is worked on by this process.
-        jobs: processes.
-        limits: of time; a thing that takes longer is late, and so is each one after all the time.
+        function: a function whose results can be sent between processes.
+        things: any number of items; a single one without limits is processed by this process.
+        jobs: the number of processes.
+        limits: the time limits; an item over a limit gives `TimedOut`.
 
     Raises:
-        Exception: what the function raises.
+        Exception: an exception that the function raises.
     """
     if len(things) < 2 and limits == ENDLESS:
         yield from ((place, function(thing)) for place, thing in enumerate(things))
@@ -144,7 +144,7 @@ def each(
 
 
 class _Clock:
-    """What is left of the time of all things, and of each."""
+    """The time that is left for all items, and for one."""
 
     def __init__(self, limits: Limits) -> None:
         self._each = limits.each
@@ -152,15 +152,15 @@ class _Clock:
 
     @property
     def is_over(self) -> bool:
-        """Whether there is no time for any thing."""
+        """Whether the limit for all items is reached."""
         return self._end is not None and time.monotonic() >= self._end
 
     def is_late(self, since: float) -> bool:
-        """Whether a thing that began then takes too long."""
+        """Whether an item that began then is over its limit."""
         return self._each is not None and time.monotonic() - since >= self._each
 
     def patience(self, begun: Iterable[float]) -> float | None:
-        """Seconds until one of the things that began then is late, or all are; None: never."""
+        """Seconds until the next limit is reached, for items that began then; None: never."""
         ends = [] if self._each is None else [since + self._each for since in begun]
         ends += [] if self._end is None else [self._end]
         return max(0.0, min(ends) - time.monotonic()) if ends else None
@@ -192,7 +192,7 @@ def _shared(
 
 
 class _WorkerPool:
-    """Processes, each at one thing or idle."""
+    """Processes that work on one item each, or are idle."""
 
     def __init__(
         self, function: Callable[[Any], Any], things: Sequence[Any], clock: _Clock
@@ -200,22 +200,22 @@ class _WorkerPool:
         self._function, self._things, self._clock = function, things, clock
         self._idle: list[tuple[Connection, ForkProcess]] = []
         self.busy: dict[Connection, tuple[ForkProcess, int, float]] = {}
-        """Each with the place of its thing, and when that began."""
+        """Each connection with its process, the index of its item, and its start time."""
 
     @property
     def places(self) -> list[int]:
-        """Of the things that are worked on."""
+        """The indices of the items in progress."""
         return [place for _, place, _ in self.busy.values()]
 
     def hire(self, place: int) -> None:
-        """Let an idle process, or a new one, work on a thing."""
+        """Let an idle process, or a new one, work on an item."""
         connection, process = self._idle.pop() if self._idle else self._born()
         with suppress(OSError):  # it has died meanwhile: `done` will tell
             connection.send(place)
         self.busy[connection] = process, place, time.monotonic()
 
     def done(self) -> Iterator[tuple[int, Any]]:
-        """Wait for results, and for what is late; the processes of results are free again."""
+        """Wait for results or for time limits; the processes of results become idle."""
         patience = self._clock.patience(since for _, _, since in self.busy.values())
         for connection in wait(list(self.busy), patience):
             assert isinstance(connection, Connection)
@@ -238,7 +238,7 @@ class _WorkerPool:
                 yield place, TimedOut.OWN
 
     def dismiss(self) -> None:
-        """End all processes at once: they only read."""
+        """Terminate all processes at once: they only read."""
         working = [(connection, process) for connection, (process, *_) in self.busy.items()]
         for _, process in (*working, *self._idle):
             process.kill()
@@ -271,7 +271,7 @@ def _serve(
     connection: Connection,
     inherited: Sequence[Connection],
 ) -> None:
-    """Work on the things whose places are sent, until nobody is there to send one."""
+    """Work on the items whose indices are sent, until the connection is closed."""
     ignore_interrupts()
     for other in inherited:
         other.close()

@@ -14,7 +14,7 @@ from fretish.bindings.declarations import Declarations, Signal
 
 
 def in_declared_units(result: Result, declared: Declarations | None) -> Result:
-    """The same result with every number in the unit that the bindings declare for its signal.
+    """The result with every number in the unit that the bindings declare for its signal.
 
     A signal that the bindings do not declare, or now in units of another dimension, stays in its
     base unit.
@@ -25,14 +25,14 @@ def in_declared_units(result: Result, declared: Declarations | None) -> Result:
 def thresholds_in_declared_units(
     thresholds: Sequence[Threshold], declared: Declarations | None
 ) -> tuple[Threshold, ...]:
-    """The same of thresholds alone."""
+    """The thresholds in declared units."""
     if declared is None:
         return tuple(thresholds)
     return tuple(_threshold(each, declared.signals) for each in thresholds)
 
 
 def without_samples(results: Sequence[Result], declared: Declarations | None) -> tuple[Result, ...]:
-    """Results as above, without the samples around their violations: those are many.
+    """Results in declared units, without the many samples around their violations.
 
     Args:
         results: in base units.
@@ -42,7 +42,7 @@ def without_samples(results: Sequence[Result], declared: Declarations | None) ->
 
 
 def bare(result: Result) -> Result:
-    """A result without those samples."""
+    """The result without the samples around its violations."""
     violations = tuple(replace(each, surroundings=None) for each in result.violations)
     return replace(result, violations=violations)
 

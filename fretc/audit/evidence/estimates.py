@@ -1,4 +1,4 @@
-"""What all runs of an audit say of the requirements with a probability."""
+"""The answers of all runs of an audit for the requirements with a probability."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 def estimates(
     claims: Sequence[AuditedRequirement], results: Sequence[Brief], confidence: float
 ) -> tuple[Estimated, ...]:
-    """One for each claim with a probability.
+    """The answer for each audited requirement with a probability.
 
     Args:
-        claims: all of an audit.
-        results: theirs, of all runs.
+        claims: all requirements of an audit.
+        results: the results of all runs.
         confidence: between 0.5 and 1.
     """
     return tuple(
@@ -42,7 +42,7 @@ def estimates(
 
 
 def warnings(estimates: Sequence[Estimated]) -> Iterator[Diagnostic]:
-    """F506 for each that so few logs cannot support, whatever their triggers came to."""
+    """F506 for each requirement that so few logs cannot support, whatever their triggers show."""
     for one in estimates:
         least = odds.fewest(one.operator, Fraction(one.bound), one.confidence)
         if one.answer == INCONCLUSIVE and one.logs.counted < least:
@@ -87,12 +87,12 @@ def _estimated(claim: AuditedRequirement, results: Sequence[Brief], level: float
 
 
 def _intact(results: Sequence[Brief]) -> int:
-    """Those that are intact and have a trigger."""
+    """The results of intact logs with a trigger."""
     return sum(bool(r.intact and _trials(r).count) for r in results)
 
 
 def _distinct(results: Sequence[Brief]) -> list[Brief]:
-    """Each content once: a copy of a log tells nothing new, nor does one that was written again."""
+    """One result for each content: a copy of a log adds no information."""
     first: dict[str, Brief] = {}
     for result in results:
         first.setdefault(result.content, result)

@@ -1,4 +1,4 @@
-"""What triggers came to, and what all runs say of a probability, as the evidence has them."""
+"""The outcomes of triggers and the probabilities over all runs, in the form of evidence."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ AVERAGE = (
     "this is the average over the recorded triggers; PCTL demands the probability in "
     "every reachable state with a trigger, which is stronger"
 )
-"""Said with every answer."""
+"""The note that accompanies every answer."""
 
 
 class Outcomes(Record, frozen=True):
-    """What triggers came to."""
+    """The outcomes of triggers."""
 
     answered: Annotated[Count, about("triggers whose demand was met")]
     failed: Annotated[Count, about("triggers whose demand was broken")]
@@ -33,7 +33,7 @@ class Outcomes(Record, frozen=True):
 
 
 class Logs(Record, frozen=True):
-    """How many logs there are."""
+    """The number of logs of each kind."""
 
     counted: Annotated[Count, about("with a trigger")]
     silent: Annotated[Count, about("intact, and without a trigger")]
@@ -42,7 +42,7 @@ class Logs(Record, frozen=True):
 
 
 class Estimated(Record, frozen=True):
-    """What all runs say of one requirement."""
+    """The answer of all runs for one requirement."""
 
     requirement: Name
     operator: ComparisonOperator
@@ -69,7 +69,7 @@ class Estimated(Record, frozen=True):
     meaning: Annotated[str, about("the meaning of the answer, and its difference from PCTL")]
 
     def __post_init__(self) -> None:
-        """Raise ValueError where the bound is no probability."""
+        """Raise ValueError if the bound is not a probability."""
         try:
             stated = number(self.bound)
         except (ValueError, ZeroDivisionError):
@@ -84,7 +84,7 @@ class Estimated(Record, frozen=True):
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """For a person, the answer first."""
+        """Lines of text, the answer first."""
         return tuple(self._lines())
 
     def _lines(self) -> Iterator[str]:
@@ -119,12 +119,12 @@ def shown(bounds: Bounds) -> str:
 
 
 def low(bound: float) -> str:
-    """Rounded down: never more than is known."""
+    """The number rounded down: a lower bound."""
     return f"{floor(bound * 10**4) / 10**4:.4f}"
 
 
 def high(bound: float) -> str:
-    """Rounded up."""
+    """The number rounded up: an upper bound."""
     return f"{ceil(bound * 10**4) / 10**4:.4f}"
 
 

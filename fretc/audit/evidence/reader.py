@@ -1,4 +1,4 @@
-"""The evidence file as checked values: the results of audits, or why that cannot be read.
+"""The evidence file as checked values, or the reason why it cannot be read.
 
 Nothing in the file is trusted: what its types (`fretc.audit.evidence.schema`) do not have is F503,
 never a report about half of it.
@@ -33,12 +33,12 @@ VERDICTS = (
     kernel.VACUOUS,
     kernel.SATISFIED,
 )
-"""What an audit can say, the worst first."""
+"""The verdicts, the worst first."""
 
 
 @dataclass(frozen=True)
 class EvidenceFile(Headed):
-    """A file of evidence, with its name and its SHA-256: a source of evidence, all in memory."""
+    """An evidence file in memory, with its name and its SHA-256: an `EvidenceSource`."""
 
     file: str
     sha256: str
@@ -46,16 +46,16 @@ class EvidenceFile(Headed):
 
     @property
     def head(self) -> Document:
-        """What it says of the audit as a whole."""
+        """The facts of the audit as a whole."""
         return self.document
 
     @property
     def results(self) -> tuple[Result, ...]:
-        """Each of a run and a requirement."""
+        """One result for each run and requirement."""
         return self.document.results
 
     def briefs(self) -> Iterator[tuple[int, Brief]]:
-        """Each result with its place, in order."""
+        """The summary of each result with its index, in order."""
         for place, result in enumerate(self.results):
             yield place, brief(result)
 
@@ -68,26 +68,26 @@ class EvidenceFile(Headed):
         yield from map(run_facts, results_of.values())
 
     def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
-        """The whole results at some places, in order."""
+        """The whole results at the given indices, in order."""
         for place in sorted({*places}):
             yield place, self.results[place]
 
     def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
-        """Latencies in seconds of each result of some requirements, with its place, in order."""
+        """Latencies in seconds of each result of some requirements, with its index, in order."""
         for place, result in self._of(requirements):
             yield place, result.latencies
 
     def thresholds(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Sequence[Threshold]]]:
-        """The thresholds of each result of some requirements, with its place, in order."""
+        """The thresholds of each result of some requirements, with its index, in order."""
         for place, result in self._of(requirements):
             yield place, result.thresholds
 
     def situations(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Situations | UnsetType]]:
-        """Which situations each result of some requirements shows, with its place, in order."""
+        """The situations that each result of some requirements shows, with its index, in order."""
         for place, result in self._of(requirements):
             yield place, result.situations
 
@@ -96,7 +96,7 @@ class EvidenceFile(Headed):
 
     @cached_property
     def _places(self) -> Mapping[str, Sequence[int]]:
-        """Those of each requirement."""
+        """The indices of the results of each requirement."""
         places_of: dict[str, list[int]] = {}
         for place, result in enumerate(self.results):
             places_of.setdefault(result.requirement, []).append(place)
@@ -104,7 +104,7 @@ class EvidenceFile(Headed):
 
 
 def read(path: str) -> EvidenceFile | Diagnostic:
-    """Read and check an evidence file; a note, not an error, where there is none yet."""
+    """Read and check an evidence file; a note, not an error, if it does not exist yet."""
     source = read_text(path)
     if isinstance(source, Diagnostic):
         return not_audited(path) if source.code is Code.NO_SUCH_FILE else source

@@ -48,7 +48,7 @@ SCHEMA: Final = "fretc-evidence-1"
 Verdict = Literal["satisfied", "violated", "inconclusive", "vacuous", "no data"]
 LabelName = Annotated[str, Meta(min_length=1, max_length=50)]
 LabelText = Annotated[str, Meta(min_length=1, max_length=200)]
-"""Texts of an untrusted log: they are escaped where they are shown."""
+"""Texts of an untrusted log: they are escaped when they are shown."""
 StateWord = Literal["idle", "open", "violated", "unknown"]
 Comparison = Literal["true", "false", "crossed"]
 Part = Annotated[
@@ -65,7 +65,7 @@ Part = Annotated[
 
 
 class Violation(Record, frozen=True):
-    """Ticks at which a demand was broken."""
+    """An interval of ticks at which a demand was broken."""
 
     first_tick: Count
     last_tick: Count
@@ -105,14 +105,14 @@ class Violation(Record, frozen=True):
 
     @property
     def window(self) -> Window | None:
-        """The signals around it, in seconds from the first tick; None where none were kept."""
+        """The signals around the violation, in seconds from the first tick; None: not kept."""
         if self.surroundings is None:
             return None
         return window(self.surroundings, self.start_ns - round(self.start_s * 1e9))
 
 
 class Instant(Record, frozen=True):
-    """A time of the log, which need not be that of a tick; before the first tick it is negative."""
+    """A time of the log, in nanoseconds and seconds; seconds are negative before the first tick."""
 
     ns: Whole
     seconds: Number
@@ -167,7 +167,7 @@ class Finding(Record, frozen=True):
 
 
 class Topic(Record, frozen=True):
-    """How one topic of a log is; null where its messages were only counted."""
+    """The condition of one topic of a log; null: its messages were only counted."""
 
     type: str
     count: Count
@@ -194,7 +194,7 @@ class Topic(Record, frozen=True):
 
 
 class Checked(Record, frozen=True):
-    """What was looked at of the chunks of an MCAP file."""
+    """The numbers of chunks of an MCAP file that were checked, by kind of check."""
 
     by_index: Annotated[
         bool, about("true: only the bound messages were read; false: every record was read")
@@ -209,14 +209,14 @@ class Checked(Record, frozen=True):
 
 
 class Gap(Record, frozen=True):
-    """A stretch of time of which the log has nothing."""
+    """An interval of time without data of the log."""
 
     start_ns: Whole
     end_ns: Whole
 
 
 class Health(Record, frozen=True):
-    """Whether the data of a run can be trusted, and why not."""
+    """The integrity of the data of a run, and its diagnostics."""
 
     intact: Annotated[bool, about("false: messages may have been lost")]
     size: Annotated[Count | None, about("bytes; null: the log could not be read")]
@@ -227,10 +227,10 @@ class Health(Record, frozen=True):
 
 
 class Hashes(Record, frozen=True, kw_only=True):
-    """SHA-256 of the log, and of what the verdict rests on beside it.
+    """SHA-256 of the log and of the other inputs of the verdict.
 
-    Of its meaning, so that `50 cm` and `0.5 m` are one. A result without one of them is older than
-    it, and suspect.
+    The inputs are hashed by their meaning: `50 cm` and `0.5 m` have one hash. A result without one
+    of these hashes is of an earlier version, and suspect.
     """
 
     log: Annotated[
@@ -273,7 +273,8 @@ class Hashes(Record, frozen=True, kw_only=True):
 
 
 MOST_POINTS, MOST_WORDS = 300, 300
-"""Points of the way, and changes of one signal of words, that evidence keeps of a run."""
+"""The most points of a path, and the most changes of an enumeration signal, in the evidence of a
+run."""
 
 
 _FAR = 10**9
@@ -281,7 +282,7 @@ Metre = Annotated[int, Meta(ge=-_FAR, le=_FAR)] | Annotated[float, Meta(ge=-_FAR
 
 
 class Way(Record, frozen=True):
-    """Where the robot was, as lines with few points, for a map; no verdict depends on it."""
+    """The path of the robot, as lines with few points, for a map; no verdict depends on it."""
 
     times_ns: Annotated[tuple[Whole, ...], Meta(max_length=MOST_POINTS)]
     x: Annotated[tuple[Metre, ...], Meta(max_length=MOST_POINTS), about("in metres")]
@@ -298,7 +299,7 @@ class Way(Record, frozen=True):
     lines_left_out: Annotated[Count, about("number of lines left out, because there are too many")]
 
     def __post_init__(self) -> None:
-        """Raise ValueError where it is no way."""
+        """Raise ValueError if the numbers do not form a path."""
         if not len(self.times_ns) == len(self.x) == len(self.y):
             raise ValueError("Expected as many times as places")
         if any(late < early for early, late in pairwise(self.times_ns)):
@@ -309,7 +310,7 @@ class Way(Record, frozen=True):
 
 
 class Words(Record, frozen=True):
-    """When a signal of words changed, and to which; null: it is unknown from then on."""
+    """The changes of an enumeration signal; null: it is unknown from then on."""
 
     times_ns: Annotated[tuple[Whole, ...], Meta(max_length=MOST_WORDS)]
     words: Annotated[tuple[Word | None, ...], Meta(max_length=MOST_WORDS)]
@@ -318,12 +319,12 @@ class Words(Record, frozen=True):
     ]
 
     def __post_init__(self) -> None:
-        """Raise ValueError where it is no series."""
+        """Raise ValueError if times and values do not form a series."""
         check_series(self.times_ns, self.words)
 
 
 class Course(Record, frozen=True):
-    """What the pictures of a run show beside its results; it stands in the first of them."""
+    """The plot data of a run, beside its results; present in the first of them."""
 
     way: Annotated[Way | None, about("null: the bindings declare no map, or no position is known")]
     words: Annotated[dict[str, Words], about("each enumeration signal that the requirements read")]
@@ -333,7 +334,7 @@ class Course(Record, frozen=True):
 
 
 class State(Record, frozen=True):
-    """A tick at which the state changed, with the new one; open: an answer is awaited."""
+    """A tick at which the state changed, with the new state; open: a response is awaited."""
 
     tick: Count
     ns: Whole
@@ -342,7 +343,7 @@ class State(Record, frozen=True):
 
 
 class Answer(Record, frozen=True):
-    """The first answer to a trigger that waits for one, with the tick of that trigger."""
+    """The first answer to a trigger, with the tick of that trigger."""
 
     tick: Count
     ns: Whole
@@ -351,7 +352,7 @@ class Answer(Record, frozen=True):
 
 
 class PhaseStretch(Record, frozen=True):
-    """Phases that have one verdict."""
+    """An interval of phases with one verdict."""
 
     first_ns: Count
     last_ns: Count
@@ -359,9 +360,9 @@ class PhaseStretch(Record, frozen=True):
 
 
 class PhaseVerdicts(Record, frozen=True):
-    """The verdict for each beginning of the grid of ticks.
+    """The verdict for each phase of the ticks.
 
-    Of a requirement with a probability that of the run alone.
+    For a requirement with a probability, the verdict of the run alone.
     """
 
     period_ns: Annotated[Ordinal, about("of a tick")]
@@ -381,7 +382,7 @@ class PhaseVerdicts(Record, frozen=True):
 
 
 class Situations(Record, frozen=True):
-    """Which situations of its requirement a run came by, by their keys; all others it did not."""
+    """The situations of the requirement that a run showed, by their keys; it showed no others."""
 
     seen: Annotated[
         dict[str, Moment], about("the first tick at which each situation certainly occurred")
@@ -396,7 +397,7 @@ class Situations(Record, frozen=True):
 
 
 class Result(Record, frozen=True, kw_only=True):
-    """What the audit of one run says of one requirement."""
+    """The result of one requirement in one run."""
 
     run: Annotated[str, about("the log, as named on the command line")]
     requirement: Name
@@ -474,24 +475,24 @@ class Result(Record, frozen=True, kw_only=True):
 
     @property
     def hashes(self) -> Mapping[str, str]:
-        """Those that are known, by their names."""
+        """The known hashes by their names."""
         prints: Mapping[str, str] = plain(self.fingerprints)
         return prints
 
     @property
     def uncertain(self) -> frozenset[int]:
-        """Ticks of triggers whose answer, or whose open demand, depends on unknown values."""
+        """Ticks of triggers whose answer or open demand depends on unknown values."""
         return frozenset(self.uncertain_ticks or ())
 
     @property
     def trials(self) -> Trials | None:
-        """Of a requirement with a probability, where the log could be read."""
+        """The trials; None: no probability is required, or the log could not be read."""
         outcomes = self.outcomes
         return Trials(outcomes.answered, outcomes.failed, outcomes.open) if outcomes else None
 
     @property
     def content(self) -> str:
-        """What tells its log from another one: copies have the same."""
+        """Hash of the content of the log, to detect copies of it."""
         return self.fingerprints.log or self.fingerprints.log_summary or self.run
 
 
@@ -499,7 +500,7 @@ class Result(Record, frozen=True, kw_only=True):
 
 
 class Bindings(Record, frozen=True):
-    """The bindings that the logs were read by."""
+    """The bindings with which the logs were read."""
 
     file: str
     sha256: Annotated[
@@ -531,7 +532,7 @@ class Requirement(Record, frozen=True):
 
 
 class Selection(Record, frozen=True):
-    """Which of the logs that were named were audited."""
+    """The selection of the named logs that were audited."""
 
     named: Annotated[Count, about("logs")]
     since: Annotated[str | None, about("an instant in ISO 8601; null: no limit")]
@@ -545,7 +546,7 @@ class Selection(Record, frozen=True):
 
 
 class Document(Record, frozen=True):
-    """A whole file."""
+    """A whole evidence file."""
 
     schema: Literal["fretc-evidence-1"]
     fretc: Annotated[str, about("version of the tool")]

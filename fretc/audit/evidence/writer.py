@@ -52,7 +52,7 @@ U = TypeVar("U")
 
 @dataclass(frozen=True, slots=True)
 class RunResult:
-    """One run, one requirement."""
+    """The result of one requirement in one run."""
 
     run: str
     requirement: str
@@ -62,12 +62,13 @@ class RunResult:
     start_ns: int
     end_ns: int
     first_ns: int
-    """When the first tick is; the start of the run, where there is none."""
+    """The time of the first tick in nanoseconds; without ticks, the start of the run."""
     clock: str
     answers: tuple[tuple[Moment, Moment], ...]
-    """Trigger and answer, where a demand waits for one and it came."""
+    """Triggers with their answers, for demands that wait for one."""
     states: tuple[tuple[Moment, str], ...]
-    """When the state changed, and to what (`fretc.audit.measurements.states`)."""
+    """The ticks at which the state changed, with the new state
+    (`fretc.audit.measurements.states`)."""
     triggers: tuple[Moment, ...]
     violations: tuple[Broken, ...]
     open: tuple[Moment, ...]
@@ -75,9 +76,9 @@ class RunResult:
     latencies: tuple[float, ...]
     """Seconds from each trigger to its answer, in the order of the triggers."""
     propositions: Mapping[str, Tally]
-    """Of each proposition of the sentence how often it was true, false and unknown."""
+    """How often each proposition of the sentence was true, false and unknown."""
     margins: tuple[Margin, ...]
-    """How near the signals came to the thresholds of the propositions."""
+    """The distances of the signals to the thresholds of the propositions."""
     units: Mapping[str, str]
     """The base unit of each signal."""
     hashes: Mapping[str, str]
@@ -85,16 +86,16 @@ class RunResult:
     health: Health
     assumptions: tuple[str, ...]
     trials: Trials | None = None
-    """Of a requirement with a probability: what its triggers came to."""
+    """The outcomes of its triggers, for a requirement with a probability."""
     situations: Situations | None = None
-    """That the run came by; None: not measured."""
+    """The situations that the run showed; None: not measured."""
     phases: Phases | None = None
-    """The verdict at each phase of the ticks, of one with a probability that of the run alone; None
-    where the clock ticks by message."""
+    """The verdict at each phase of the ticks, of the run alone for a requirement with a
+    probability; None: the clock ticks by message."""
 
 
 def health(recording: Recording) -> Health:
-    """Whether the data of the run can be trusted, and why not."""
+    """The integrity of the data of the run, and its diagnostics."""
     checked = recording.checked
     return Health(
         intact=recording.intact,
@@ -135,7 +136,7 @@ def _topic(topic: Read) -> Topic:
 
 
 def text(document: Document) -> str:
-    """The evidence file: the same values give the same bytes."""
+    """The text of the evidence file: equal values give equal bytes."""
     return f"{to_json(plain(document))}\n"
 
 
@@ -184,7 +185,7 @@ def unread(run: str, requirement: str, diagnostic: Diagnostic, hashes: Mapping[s
 def unjudged(
     run: str, requirement: str, reason: str, hashes: Mapping[str, str], health: Health
 ) -> Result:
-    """The result of a run and a requirement that could not be compared with it."""
+    """The result of a requirement that no log can be judged by: no data."""
     return Result(
         run=run,
         requirement=requirement,
@@ -228,7 +229,7 @@ def _outcomes(trials: Trials) -> Outcomes:
 
 
 def phase_verdicts(phases: Phases) -> PhaseVerdicts:
-    """The verdict at each phase."""
+    """The verdict at each phase, as evidence records it."""
     return PhaseVerdicts(
         phases.period,
         phases.declared,
@@ -242,7 +243,7 @@ def phase_verdicts(phases: Phases) -> PhaseVerdicts:
 
 
 def phases_of(record: PhaseVerdicts) -> Phases:
-    """The verdict at each phase, of its record."""
+    """The verdict at each phase, from its record."""
     stretches = (Stretch(each.first_ns, each.last_ns, each.verdict) for each in record.stretches)
     return Phases(record.period_ns, record.declared_ns, tuple(stretches))
 
@@ -271,7 +272,7 @@ def _comparison(state: bool | str | None) -> Comparison | None:
 
 
 def _reading(value: float | None) -> Reading:
-    """A number that may be unknown (null) or infinite, for which JSON has no number."""
+    """A number that may be unknown (null) or infinite, in the form of JSON."""
     if value is None or isnan(value):
         return None
     if isinf(value):

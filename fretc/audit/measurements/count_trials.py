@@ -26,11 +26,11 @@ from monitors.kernel import Column
 
 @dataclass(frozen=True, slots=True)
 class Chance:
-    """With which probability each demand is to be met, and what that demand is."""
+    """The required probability, and the demand that it is about."""
 
     op: ComparisonOperator
     bound: str
-    """As it is written: `0.99`."""
+    """The probability as it is written: `0.99`."""
     obligation: Obligation
 
     @property
@@ -41,7 +41,7 @@ class Chance:
 
 @with_recursion_limit
 def chance(requirement: FormalizedRequirement) -> Chance | None:
-    """None where the sentence gives no probability."""
+    """The required probability; None: the sentence has none."""
     odds = requirement.sentence.probability
     if odds is None:
         return None
@@ -54,12 +54,12 @@ def chance(requirement: FormalizedRequirement) -> Chance | None:
 
 @with_recursion_limit
 def trials(obligation: Obligation, columns: Mapping[str, Column], ticks: int) -> Trials:
-    """What each trigger of one run came to.
+    """The outcome of each trigger of one run.
 
-    What follows the log is unknown, for more ticks than any deadline lies ahead.
+    Propositions after the end of the log are unknown, for more ticks than any deadline lies ahead.
 
     Args:
-        obligation: the demand of each trigger.
+        obligation: the formula that each trigger demands.
         columns: one for each proposition of the obligation.
         ticks: the length of the run.
     """
@@ -86,11 +86,12 @@ def trials(obligation: Obligation, columns: Mapping[str, Column], ticks: int) ->
 
 
 def _met(demand: Demand, end: Formula) -> Formula:
-    """The formula at a trigger; where the end of its interval is unknown, it still comes."""
+    """The formula at a trigger; an interval whose end is unknown still counts as open."""
     if Trait.LAST in TRAITS[demand.kind] and demand.response == FALSE:
         return FALSE
     return demanded_at(demand, end)
 
 
 _BEYOND = 3
-"""Ticks after the latest deadline: the last tick of all must not lie before any."""
+"""The number of ticks after the latest deadline, so that the last tick of all is not before any
+deadline."""

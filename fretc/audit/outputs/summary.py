@@ -1,4 +1,4 @@
-"""Questions to a table of runs, in SQL: how many of which verdict, the worst runs, slow answers.
+"""SQL queries on a table of runs: counts of verdicts, the worst runs, the longest latencies.
 
 The only module that imports duckdb.
 """
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 SCHEMA = "fretc-summary-1"
 MOST = 10
-"""Runs, and answers, that are listed."""
+"""The most runs, and the most latencies, that are listed."""
 
 COUNTED: Mapping[str, str] = {
     "satisfied": kernel.SATISFIED,
@@ -36,7 +36,7 @@ _COUNTS = ", ".join(
 )
 _NOT_SHOWN = f"verdict NOT IN ('{kernel.SATISFIED}', '{kernel.VIOLATED}')"
 _LOG = "coalesce('log ' || log_sha256, 'summary ' || log_summary_sha256, 'run ' || run)"
-"""What tells a log from another one: copies have the same; of one that was not read, its name."""
+"""The identity of a log, equal for copies; for a log that was not read, its name."""
 _WORST_FIRST = " ".join(
     f"WHEN '{verdict}' THEN {rank}"
     for rank, verdict in enumerate(
@@ -51,7 +51,7 @@ _COUNTED = f"""
         PARTITION BY log, requirement
         ORDER BY CASE verdict {_WORST_FIRST} END, violations DESC, place) = 1
     ORDER BY run, requirement"""
-"""Each log once for a requirement: the worst of what several audits say, under one name."""
+"""Each log once for a requirement, under one name: the worst result of several audits."""
 _WHOLE = """
     SELECT count(DISTINCT log) AS runs, count(DISTINCT requirement) AS requirements,
         (SELECT round(coalesce(sum(seconds), 0.0), 3) FROM (
@@ -87,7 +87,7 @@ _TORN = f"""
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a query gives."""
+    """The result of a query."""
 
     columns: tuple[str, ...]
     rows: tuple[tuple[Any, ...], ...]
@@ -100,7 +100,7 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """What a table says as a whole."""
+    """The summary of a table."""
 
     whole: Mapping[str, Any]
     requirements: Answer
@@ -108,7 +108,7 @@ class Summary:
     """Runs in which not every requirement is satisfied, the worst first."""
     slowest: Answer
     remarks: tuple[Diagnostic, ...]
-    """Requirements that were audited as different ones, and logs with several verdicts."""
+    """Requirements with several fingerprints, and logs with several verdicts."""
 
     @property
     def violated(self) -> bool:
@@ -150,7 +150,7 @@ def summarized(known: Known) -> Summary:
 
 
 def answered(known: Known, query: str) -> Answer | Diagnostic:
-    """The answer to a query of the user; it can read these tables, and nothing else."""
+    """The answer to a query of the user, which can read only these tables."""
     import duckdb
 
     with _asked(known) as ask:
@@ -170,7 +170,7 @@ def _answer(ask: duckdb.DuckDBPyConnection, query: str) -> Answer:
 
 @contextmanager
 def _asked(known: Known, *more: str) -> Iterator[duckdb.DuckDBPyConnection]:
-    """A connection with the tables, each result once; `more` are statements."""
+    """A connection with the tables, each result once; `more` are further statements."""
     import duckdb
 
     # A query reads no file, writes none, and fetches no extension from anywhere.

@@ -1,4 +1,4 @@
-"""Evidence as tables that questions are asked of: a row for each run and requirement."""
+"""Evidence as tables for queries, with a row for each run and requirement."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pyarrow import Table as Table
 
 SCHEMA, OLDER = "fretc-table-2", "fretc-table-1"
-"""The older one does not have the last column, and is read all the same."""
+"""The versions of the table that can be read; the older one lacks the last column."""
 _TYPES = {
     "run": "string",
     "requirement": "string",
@@ -56,7 +56,7 @@ _TYPES = {
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """What can be asked of: a row a result; of stores and evidence a row a violation and a run."""
+    """Tables for queries, of results; from stores and evidence also of violations and runs."""
 
     results: Table
     violations: Table
@@ -64,7 +64,7 @@ class Known:
 
 
 def parquet(results: Table) -> bytes:
-    """The content of a Parquet file: the same rows give the same bytes."""
+    """The content of a Parquet file: equal rows give equal bytes."""
     import pyarrow
     from pyarrow.parquet import write_table
 
@@ -79,10 +79,10 @@ def table(source: EvidenceSource) -> Table:
 
 
 def read(paths: Sequence[str]) -> Known | Diagnostic:
-    """The rows of all the files; a row that is in several comes once for each.
+    """The rows of all the files; a row that several files contain comes once for each.
 
     Args:
-        paths: stores, evidence in files, tables that `--parquet` wrote.
+        paths: stores, evidence files, and tables that `--parquet` wrote.
     """
     import pyarrow
 
@@ -140,7 +140,7 @@ def rows(results: Sequence[Result], fretc: str) -> Table:
 
     Args:
         results: records of evidence.
-        fretc: the version that made them.
+        fretc: the version of fretc that wrote the results.
     """
     from fretc.audit.store.tables import RESULTS, tabled
 

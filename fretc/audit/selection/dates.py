@@ -1,7 +1,7 @@
-"""When a log was recorded, and whether that is since a time.
+"""The date of a log, and whether it is before a given time.
 
-The date of a log is the start of its recording where its summary states it, else when it changed
-last. A clock that counts from its own zero states none.
+The date of a log is the start of its recording if its summary states it, else its last change. A
+clock that counts from its own zero states none.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from fretish.reading.limits import with_budget
 from fretish.units import nanoseconds
 
 _FIRST_DATE = 10**17
-"""Nanoseconds, in 1973: a clock that tells less is simulated."""
+"""Nanoseconds, in 1973: an earlier time is that of a simulated clock."""
 _DAYS = re.compile(r"\s*([0-9]{1,5})\s*d\s*")
 
 
 def since(text: str) -> datetime | Diagnostic:
-    """The time that a user means: `2026-11-22`, `2026-11-22T18:00+01:00`, `24 h`, `7 d` ago.
+    """The time that a user gives: `2026-11-22`, `2026-11-22T18:00+01:00`, `24 h`, `7 d` ago.
 
-    Without a zone it is UTC. Now is `SOURCE_DATE_EPOCH`, where that is set.
+    The default time zone is UTC. Now is `SOURCE_DATE_EPOCH`, if it is set.
     """
     days, length = _DAYS.fullmatch(text), nanoseconds(text)
     try:
@@ -50,7 +50,7 @@ def since(text: str) -> datetime | Diagnostic:
 
 
 def is_older(log: str, than: datetime) -> bool:
-    """Whether a log is known to be older: one without a date is not."""
+    """Whether a log is older than a time: a log without a date is not."""
     limit = int(than.timestamp()) * 10**9 + than.microsecond * 1000
     if is_store(log):
         change = changed(log)
@@ -61,7 +61,7 @@ def is_older(log: str, than: datetime) -> bool:
 
 
 def _recorded(log: str) -> int | None:
-    """The start of the recording in nanoseconds since 1970, where the log states a date."""
+    """The start of the recording in nanoseconds since 1970, if the log states a date."""
     try:
         start = _start_of_folder(log) if is_folder(log) else _start_of_file(log)
     except OSError:  # the reader of the log reports what is wrong with it
@@ -88,7 +88,7 @@ def _start_of_file(log: str) -> int | None:
 
 
 def _changed(log: str) -> int | None:
-    """When any of its files changed last."""
+    """The time of the last change of any file of the log."""
     if log == STDIN or is_url(log):
         return changed(log) if is_store(log) else None
     try:

@@ -1,7 +1,7 @@
-"""Whether the tables of a part agree on what is violated, without making its results of them.
+"""A quick check that the tables of a part agree on verdicts and violations.
 
-That is what a reader needs to know before it counts verdicts of many runs. Whether each column is
-the one that the results give takes all tables (`fretc.audit.store.reader.Store.check_tables`).
+A reader needs this before it counts the verdicts of many runs. The check of every column needs all
+tables (`fretc.audit.store.reader.Store.check_tables`).
 """
 
 from __future__ import annotations
@@ -39,17 +39,17 @@ COLUMNS: Mapping[TableName, Sequence[str]] = {
     SAMPLES: ("violation_row",),
     RUNS: ("run", "results"),
 }
-"""Those of each table that `check` reads."""
+"""The columns of each table that `check` reads."""
 
 
 def check(tables: Tables) -> None:
-    """Hold verdict, run, requirement and violations of each result against the other tables.
+    """Check verdict, run, requirement and violations of each result against the other tables.
 
     Args:
-        tables: of a part, with at least `COLUMNS`.
+        tables: the tables of a part, with at least `COLUMNS`.
 
     Raises:
-        SchemaError: they contradict each other.
+        SchemaError: the tables contradict each other.
     """
     main, broken = tables[RESULTS], tables[VIOLATIONS]
     _check_names(main, tables[EVENTS], "events")
@@ -80,7 +80,7 @@ def _same(column: Any, other: Any) -> bool:
 
 
 def _rows(column: Any, count: int) -> Any:
-    """Numbers of rows of a table that has so many."""
+    """The row numbers of a table with so many rows."""
     rows = column.to_numpy()
     if column.null_count or (len(rows) and not 0 <= rows[0] <= rows[-1] < count):
         raise SchemaError("a table names a row that another one does not have")
@@ -92,7 +92,7 @@ def _rows(column: Any, count: int) -> Any:
 def _expected(
     main: Taken, broken: Taken, events: Taken, counts: Sequence[int]
 ) -> Iterator[tuple[str, str, int, int]]:
-    """Verdict, judgement and number of violations of each result, and how many rows these have."""
+    """Verdict, fingerprint and number of violations of each result, and its number of rows."""
     spans = [[*ticks] for ticks in zip(*_lists(broken, "first_tick", "last_tick"), strict=True)]
     open_at = (_ticks(moments or ()) for moments in events["open"].to_pylist())
     rows = zip(*_lists(main, *_JUDGED, EXACT), _cut(spans, counts), open_at, strict=True)
@@ -106,7 +106,7 @@ def _expected(
 
 
 def _ticks(moments: Sequence[Mapping[str, int] | None]) -> list[int | None]:
-    """Those of moments; a moment that is missing has none, and no judgement is about that."""
+    """The ticks of moments; a missing moment has none."""
     return [None if each is None else each["tick"] for each in moments]
 
 
@@ -115,6 +115,6 @@ def _lists(table: Taken, *columns: str) -> Iterator[list[Any]]:
 
 
 def _cut(items: Sequence[Ticks], counts: Sequence[int]) -> Iterator[Sequence[Ticks]]:
-    """The items in pieces of these lengths."""
+    """The items in lists of these lengths."""
     for start, end in pairwise(accumulate(counts, initial=0)):
         yield items[start:end]

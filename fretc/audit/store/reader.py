@@ -41,15 +41,15 @@ from fretish.diagnostics.source import Source
 T = TypeVar("T")
 _BEGUN = "its audit was not finished"
 _BATCH = 512
-"""Results that are read at once."""
+"""The number of results that are read at once."""
 
 
 def opened(path: str, name: str = FILE) -> Store | Diagnostic:
-    """A store whose tables are those of its manifest.
+    """A store whose tables match its manifest.
 
     Args:
-        path: its folder.
-        name: of the manifest.
+        path: the folder of the store.
+        name: the file name of the manifest.
     """
     source = read_text(f"{path}/{name}")
     if isinstance(source, Diagnostic):
@@ -70,7 +70,7 @@ def opened(path: str, name: str = FILE) -> Store | Diagnostic:
 
 
 def manifest(folder: Path, name: str) -> Manifest | None:
-    """A manifest; None where there is none."""
+    """A manifest; None: the file does not exist."""
     source = read_text(str(folder / name))
     try:
         return None if isinstance(source, Diagnostic) else decoded(parsed(source.text), Manifest)
@@ -88,11 +88,11 @@ class Store(Headed):
 
     @property
     def head(self) -> Manifest:
-        """What it says of the audit as a whole."""
+        """The facts of the audit as a whole."""
         return self.manifest
 
     def check(self) -> None:
-        """Hold every table against the manifest: its bytes, and how many rows there are."""
+        """Check every table against the manifest: its bytes, and its number of rows."""
         for part in self.manifest.parts:
             if part.tables.keys() != TABLES.keys():
                 raise self._error("lists tables that fretc does not write")
@@ -105,7 +105,7 @@ class Store(Headed):
             self._content(REGISTER, self.manifest.register)
 
     def briefs(self) -> Iterator[tuple[int, Brief]]:
-        """Each result with its place, in order: the requirements of a run stand together."""
+        """The summary of each result with its index, in order; the results of a run adjoin."""
         for start, part in self._parts():
             yield from enumerate(self._read(part, RESULTS, tables.briefs), start)
 
@@ -115,7 +115,7 @@ class Store(Headed):
             yield from self._read(part, RUNS, tables.facts)
 
     def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
-        """The whole results at some places, in order."""
+        """The whole results at the given indices, in order."""
         wanted = sorted({*places})
         for start, part in self._parts():
             rows = [at - start for at in wanted if start <= at < start + part.results]
@@ -136,13 +136,13 @@ class Store(Headed):
             yield from zip((start + row for row in some), found, strict=True)
 
     def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
-        """Latencies in seconds of each result of some requirements, with its place, in order."""
+        """Latencies in seconds of each result of some requirements, with its index, in order."""
         yield from self._nested(requirements, "latencies_s")
 
     def thresholds(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Sequence[Threshold]]]:
-        """The thresholds of each result of some requirements, with its place, in order."""
+        """The thresholds of each result of some requirements, with its index, in order."""
         for at, value in self._nested(requirements, "thresholds"):
             try:
                 yield at, decoded(value, list[Threshold])
@@ -152,7 +152,7 @@ class Store(Headed):
     def situations(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Situations | UnsetType]]:
-        """Which situations each result of some requirements shows, with its place, in order."""
+        """The situations that each result of some requirements shows, with its index, in order."""
         for at, value in self._nested(requirements, "situations"):
             try:
                 yield at, UNSET if value is None else decoded(value, Situations)
@@ -190,15 +190,15 @@ class Store(Headed):
         return pa.concat_tables([tables.schema(name).empty_table(), *found])
 
     def counts(self) -> Iterator[int]:
-        """How many results each run has."""
+        """The number of results of each run."""
         for _, part in self._parts():
             yield from self._table(part, RUNS, ("results",))["results"].to_pylist()
 
     def check_verdicts(self) -> None:
-        """Hold what `results` says of violations against the tables that have them.
+        """Check the violations in `results` against the tables that list them.
 
         Raises:
-            StoreError: they contradict each other.
+            StoreError: the tables contradict each other.
         """
         for _, part in self._parts():
             some = {name: self._table(part, name, agreement.COLUMNS[name]) for name in TABLES}
@@ -208,16 +208,16 @@ class Store(Headed):
                 raise self._error(f"cannot be read: {error}") from None
 
     def check_tables(self) -> None:
-        """Hold each table against the one that the results give, a part after the other.
+        """Check each table against the one that the results give, part by part.
 
         Raises:
-            StoreError: what a table says of a result is not so.
+            StoreError: a table contradicts the results.
         """
         for _ in self.checked_results():
             pass
 
     def checked_results(self) -> Iterator[Result]:
-        """All results, in order, those of a part when its tables are what they give."""
+        """All results, in order; each part's tables are checked before its results."""
         for start, part in self._parts():
             results = [each for _, each in self.details(range(start, start + part.results))]
             expected = tables.tabled(results, self.manifest.fretc)
@@ -230,7 +230,7 @@ class Store(Headed):
             yield from results
 
     def register(self) -> list[Entry]:
-        """What each log was, in the order of the runs; empty where it is not known."""
+        """The register entry of each log, in the order of the runs; empty: unknown."""
         file = self.manifest.register
         if not file:
             return []
@@ -241,7 +241,7 @@ class Store(Headed):
             raise self._error(f"cannot be read: {error}") from None
 
     def _parts(self) -> Iterator[tuple[int, Part]]:
-        """Each part with the place of its first result."""
+        """Each part with the index of its first result."""
         parts = self.manifest.parts
         starts = accumulate((part.results for part in parts), initial=0)
         return zip(starts, parts, strict=False)
@@ -281,10 +281,10 @@ class Store(Headed):
 
 
 def evidence(store: Store) -> EvidenceFile:
-    """All of a store in memory.
+    """The whole store in memory.
 
     Raises:
-        StoreError: it cannot be read.
+        StoreError: the store cannot be read.
     """
     manifest = store.manifest
     results = tuple(store.checked_results())

@@ -1,7 +1,7 @@
-"""Results as tables: a row a result, a row a violation, a row a run; and results of them again.
+"""Results as tables of results, violations and runs, and results from these tables.
 
-What has no column of its own is nested, by the types of evidence. A result that a column cannot
-hold as it is (`fretc.audit.store.columns`) stands in `exact`, too, as JSON.
+Values without a column of their own are nested, by the types of evidence. A result that a column
+cannot hold exactly (`fretc.audit.store.columns`) is also in `exact`, as JSON.
 """
 
 from __future__ import annotations
@@ -47,17 +47,17 @@ Tables = Mapping[TableName, pa.Table]
 
 
 class Taken(Protocol):
-    """What is read of a table: one of Arrow, or one that stays encoded."""
+    """The interface of a table that is read: in Arrow's form, or still encoded."""
 
     @property
     def num_rows(self) -> int:
-        """How many."""
+        """The number of rows."""
 
     def __getitem__(self, column: str) -> Any:
         """One column of all rows."""
 
     def take(self, rows: pa.Array) -> pa.Table:
-        """Some rows, which rise."""
+        """Some rows, in rising order."""
 
 
 Source = Mapping[TableName, Taken]
@@ -68,7 +68,7 @@ Source = Mapping[TableName, Taken]
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """A result, at its place."""
+    """A result with its row numbers."""
 
     result: Result
     brief: Brief
@@ -78,12 +78,12 @@ class _Row:
 
     @property
     def gaps(self) -> int:
-        """How many."""
+        """The number of gaps."""
         return len(self.result.health.gaps)
 
     @property
     def findings(self) -> int:
-        """How many."""
+        """The number of diagnostics."""
         return len(self.result.health.findings)
 
 
@@ -92,7 +92,7 @@ class _Part:
     """A violation of a result, or the samples around a violation."""
 
     row: int
-    """Of the result, or of the violation."""
+    """The row of the result, or of the violation."""
     result: Result
     part: Violation | Surroundings
 
@@ -120,9 +120,9 @@ def _below(path: str, fields: Iterable[Field]) -> Iterator[Field]:
 
 
 _SHARED = ("health", "labels")
-"""What all results of a run share."""
+"""Fields that all results of a run share."""
 _COURSE = "course"
-"""What the first of them has."""
+"""Fields of the first result of a run."""
 _FLAT = "run requirement verdict finite reason clock ticks start_ns end_ns trials".split()
 _ELSEWHERE = ("violations", "hashes", *_SHARED, _COURSE, *_FLAT)
 _MAIN = tuple(each for each in fields_of(Result) if each.name in _FLAT)
@@ -180,11 +180,11 @@ def schema(table: TableName) -> pa.Schema:
 
 
 def tabled(results: Sequence[Result], fretc: str) -> Tables:
-    """The tables of some results, in their order.
+    """The tables of some results, in order.
 
     Args:
-        results: of whole runs.
-        fretc: the version that made them.
+        results: the results of whole runs.
+        fretc: the version of fretc that wrote the results.
     """
     try:
         return _tabled(results, fretc, {})
@@ -194,7 +194,7 @@ def tabled(results: Sequence[Result], fretc: str) -> Tables:
 
 
 def _is_held(result: Result) -> bool:
-    """Whether columns hold the result as it is."""
+    """Whether columns hold the result exactly."""
     try:
         _tabled([result], "", {})
     except InexactError:
@@ -238,9 +238,9 @@ def _table(fields: Sequence[Field], rows: Sequence[Any], *, exact: bool) -> pa.T
 
 
 def runs_of(results: Iterable[Result]) -> list[list[Result]]:
-    """The results of each run: those that stand together and share what a run has once.
+    """The results of each run: adjoining results that share the facts of a run.
 
-    One with a course is the first of its run.
+    A result with plot data is the first of its run.
     """
     runs: list[list[Result]] = []
     ids: set[str] = set()
@@ -265,11 +265,11 @@ def results(tables: Source, rows: Sequence[int] | None = None) -> list[Result]:
     """The results in some rows, or in all.
 
     Args:
-        tables: as `tabled` gives them, or encoded.
-        rows: in rising order.
+        tables: tables from `tabled`, or encoded ones.
+        rows: row numbers in rising order.
 
     Raises:
-        SchemaError: tables do not fit together, or hold what no evidence does.
+        SchemaError: the tables do not fit together, or have invalid values.
     """
     try:
         return _results(tables, rows)
@@ -291,7 +291,7 @@ def _results(tables: Source, rows: Sequence[int] | None) -> list[Result]:
 
 
 def _held(tables: Source, rows: Sequence[int]) -> list[Result]:
-    """The results in some rows that columns hold as they are."""
+    """The results in some rows that columns hold exactly."""
     main, events = (_taken(tables[name], rows) for name in (RESULTS, EVENTS))
     run_rows = main["run_row"].to_pylist()
     firsts = _firsts(tables[RESULTS]["run_row"], rows)
@@ -321,7 +321,7 @@ def _firsts(runs: pa.ChunkedArray, rows: Sequence[int]) -> list[bool]:
 
     Args:
         runs: the run of each row of the table.
-        rows: some of them.
+        rows: some rows of the table.
     """
     taken = _taken(runs, rows).to_pylist()
     before = _taken(runs, [max(0, row - 1) for row in rows]).to_pylist()
@@ -329,10 +329,10 @@ def _firsts(runs: pa.ChunkedArray, rows: Sequence[int]) -> list[bool]:
 
 
 _NO_HEALTH = plain(Health(False, None, None, (), (), {}))
-"""In place of that of the run, which is made once and not with each result."""
+"""A placeholder for the health of the run, which is built once for all results of a run."""
 _NO_HASHES = dict.fromkeys(("sentence", "bindings", "monitor"), "0" * 64)
 _BLANK = plain(unjudged("", "none", "", _NO_HASHES, decoded(_NO_HEALTH, Health)))
-"""A result of which only what the run has counts."""
+"""A result of which only the facts of the run are used."""
 
 
 def _objects(table: pa.Table, fields: Sequence[Field], suffix: str = "") -> list[Any]:
@@ -354,9 +354,9 @@ def _whole(table: pa.Table, name: str) -> pa.Array:
 def _of_runs(
     table: Taken, run_rows: Sequence[int], begun: Collection[int]
 ) -> dict[int, dict[str, Any]]:
-    """Run → what its results share, and the course of those that have begun.
+    """Run → the facts that its results share, and its plot data if its first result is included.
 
-    A course that its column does not hold is in `exact`, with the first result of its run.
+    Plot data that its column cannot hold is in `exact`, with the first result of its run.
     """
     known = sorted({row for row in run_rows if row is not None and 0 <= row < table.num_rows})
     if len(known) != len({*run_rows}):
@@ -396,7 +396,7 @@ def _windows(tables: Source, rows: Sequence[int]) -> Iterator[tuple[int, Any]]:
 
 
 def _chosen(table: Taken, key: str, rows: Sequence[int], count: int) -> list[int]:
-    """The rows that belong to these of another table, which has so many."""
+    """The rows that belong to the given rows of another table."""
     column = table[key]
     if column.null_count:
         raise SchemaError(f"a `{key}` is missing")
@@ -411,10 +411,10 @@ def _chosen(table: Taken, key: str, rows: Sequence[int], count: int) -> list[int
 
 
 def briefs(table: pa.Table) -> list[Brief]:
-    """The brief of each row of `results`.
+    """The summary of each row of `results`.
 
     Raises:
-        SchemaError: a row is none.
+        SchemaError: a row is invalid.
     """
     texts = table[EXACT].to_pylist()
     held = [n for n, text in enumerate(texts) if text is None]
@@ -438,7 +438,7 @@ def facts(table: pa.Table) -> list[RunFacts]:
     """The facts of each row of `runs`.
 
     Raises:
-        SchemaError: a row is none.
+        SchemaError: a row is invalid.
     """
     texts = table[EXACT].to_pylist()
     held = [n for n, text in enumerate(texts) if text is None]
@@ -459,8 +459,8 @@ def nested(tables: Tables, name: str, requirements: Collection[str]) -> list[tup
 
     Args:
         tables: `results` with `requirement` and `exact`, `events` with the column.
-        name: of the column.
-        requirements: whose rows.
+        name: the name of the column.
+        requirements: the requirements whose rows are wanted.
 
     Raises:
         SchemaError: a row cannot be read.
@@ -482,7 +482,7 @@ def nested(tables: Tables, name: str, requirements: Collection[str]) -> list[tup
 
 
 def joined(groups: Sequence[Tables]) -> Tables:
-    """The tables of several groups of runs as those of all of them, in their order."""
+    """The tables of several groups of runs, joined in order."""
     if len(groups) == 1:
         return groups[0]
     return {name: _joined(groups, name) for name in TABLES}
@@ -493,7 +493,7 @@ _KEYS: Mapping[TableName, tuple[str, TableName]] = {
     VIOLATIONS: ("result_row", RESULTS),
     SAMPLES: ("violation_row", VIOLATIONS),
 }
-"""Table → its column with rows of another table."""
+"""Table → its column with row numbers of another table."""
 
 
 def _joined(groups: Sequence[Tables], name: TableName) -> pa.Table:
@@ -516,7 +516,7 @@ def tallies(tables: Tables) -> list[dict[str, Tally]]:
         tables: `results` with `run_row`, `events` with `propositions`, `runs`.
 
     Raises:
-        SchemaError: they cannot be read.
+        SchemaError: the tables cannot be read.
     """
     (column,) = (each.column for each in _NESTED if each.name == "propositions")
     found: list[dict[str, Tally]] = [{} for _ in range(len(tables[RUNS]))]

@@ -1,4 +1,4 @@
-"""A store as it is written: part by part, each file complete or absent, the manifest last."""
+"""The writer of a store: part by part, each file complete or absent, the manifest last."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ def write_part(folder: Path, tables: Tables) -> Part | Diagnostic:
     """Write the tables of some runs.
 
     Args:
-        folder: of the store.
-        tables: of whole runs.
+        folder: the folder of the store.
+        tables: the tables of whole runs.
 
     Returns:
         What the manifest says of them; or why they cannot be written.
@@ -63,7 +63,7 @@ def _is_there(path: Path, file: Table) -> bool:
 
 
 def write_register(folder: Path, entries: Sequence[Entry]) -> Table | Diagnostic:
-    """Write what each log was."""
+    """Write the register of the logs."""
     data, file = encoded(register.table(entries))
     return write({folder / place(REGISTER, file): data}) or file
 
@@ -75,18 +75,18 @@ def write_manifest(folder: Path, manifest: Manifest, name: str = FILE) -> str | 
 
 
 def files(folder: Path) -> set[Path]:
-    """All tables in a folder, also those that no manifest names."""
+    """All table files in a folder, also those that no manifest lists."""
     own = (folder / table for table in (*TABLES, REGISTER) if not (folder / table).is_symlink())
     found = (path for table in own for path in table.glob("*"))
     return {path for path in found if _OURS.fullmatch(path.name)}
 
 
 def remove_others(folder: Path, *manifests: Manifest, kept: Collection[Path] = frozenset()) -> None:
-    """Remove the tables that none of the manifests names.
+    """Remove the tables that none of the manifests lists.
 
     Args:
-        folder: of the store.
-        manifests: whose tables stay.
+        folder: the folder of the store.
+        manifests: the manifests whose tables stay.
         kept: other files that stay.
     """
     named = {folder / path for manifest in manifests for path in _files(manifest)}
@@ -109,7 +109,7 @@ def _files(manifest: Manifest) -> Iterator[Path]:
 
 
 def is_store(folder: Path) -> bool:
-    """Whether fretc has written into a folder: nothing else of a user's is ever removed."""
+    """Whether fretc has written into a folder, which is a condition for removing files from it."""
     if any((folder / table).is_symlink() for table in (*TABLES, REGISTER)):
         return False  # what is there is not in this folder
     return any(_is_manifest(folder / name) for name in (FILE, UNFINISHED))
@@ -124,7 +124,7 @@ def _is_manifest(path: Path) -> bool:
 
 
 def remove(folder: Path) -> None:
-    """Remove a store, and its folder where nothing else is in it."""
+    """Remove a store, and its folder if it is empty then."""
     for name in (FILE, UNFINISHED, *REUSE.values()):
         (folder / name).unlink(missing_ok=True)
     remove_others(folder)

@@ -112,7 +112,7 @@ def test_late_messages_are_counted_with_the_lateness_that_would_do(tmp_path: Pat
     (finding,) = [each for each in found if each.code is Code.LATE_MESSAGES]
     assert "1 of 2 messages of `/y` came more than 2 ms after the tick" in finding.message
     assert "at most 25 ms" in finding.message
-    assert finding.help == '`lateness = "30 ms"` under `[clock]` would have waited for them'
+    assert finding.help == 'write `lateness = "30 ms"` under `[clock]` to wait for them'
     assert not finding.is_error
     timely = bindings('lateness = "25 ms"')
     of_all = examined(recorded(written(tmp_path, LATE), timely), timely, ["p", "q"])
