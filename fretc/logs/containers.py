@@ -1,4 +1,4 @@
-"""The containers of logs, by the bytes with which a file begins: MCAP, and the bags of ROS."""
+"""The container formats of logs, recognized by the first bytes of a file: MCAP and ROS bags."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ from fretish.reading.limits import extend_budget
 def part(
     log: Input, sink: Sink, integrity: Integrity, place: Span, wanted: Collection[str] = ()
 ) -> Part | Diagnostic:
-    """The messages of one file; or what keeps the whole file from being read.
+    """The messages of one file, or the diagnostic that says why the file cannot be read.
 
     Args:
         log: the file.
         sink: receives the messages.
-        integrity: what is looked at beyond them.
+        integrity: how thoroughly the file is checked beyond the messages.
         place: the file, as named on the command line.
-        wanted: what is asked for of its metadata records.
+        wanted: the keys of its metadata records that are wanted.
 
     Raises:
-        BrokenError: the file is not as its index says.
+        BrokenError: the file does not match its index.
     """
     extend_budget(log.size)
     found = _read(log, sink, integrity, place, wanted)
@@ -80,7 +80,7 @@ def _bag(
 
 
 def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None]]:
-    """What a bag has lost that was fixed by `rosbag reindex`."""
+    """The loss of a bag that was fixed by `rosbag reindex`."""
     backup = unclosed_backup(file)
     if backup is not None and span is not None:
         what = (
@@ -111,7 +111,7 @@ def _mcap(
 
 
 _BEGINNING = 16
-"""Bytes that tell what a file is; enough for each magic, and for saying what else it may be."""
+"""The first bytes of a file; enough to recognize every format."""
 Container = Callable[[Input, bytes, Sink, Integrity, Span, Collection[str]], Part | Diagnostic]
-"""What reads a file of one kind; it gets the first bytes, too."""
+"""The reader of one container format; its last argument is the first bytes of the file."""
 CONTAINERS: Mapping[bytes, Container] = {MAGIC: _mcap, bags.BAG: _bag, bags.DB3: _bag}

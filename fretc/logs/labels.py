@@ -1,8 +1,8 @@
-"""Labels of a run: what is known of it beside its messages, as `[run.label]` of the bindings says.
+"""Labels of a run, such as robot and version, from the sources in `[run.label]` of the bindings.
 
-The first source that says something counts; others that say something else are F552, and a label
-without a value is F553. `--label` of a command comes before all sources. Values are texts of
-untrusted sources: they are bounded here, and escaped wherever they are shown.
+The first source with a value counts; a source with another value is F552, and a label without a
+value is F553. `--label` of a command takes precedence over all sources. Values are texts of
+untrusted sources: their length is limited here, and they are escaped wherever they are shown.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.reading import name_patterns
 
 LONGEST = 200
-"""Characters of a value; a longer one is none, for half of it could be that of another run."""
+"""The most characters of a value; a longer one is ignored, because a cut one could be that of
+another run."""
 _SHOWN = 60
 """Characters of a value that a message shows."""
 NO_METADATA: Mapping[str, tuple[str, ...]] = MappingProxyType({})
@@ -29,12 +30,12 @@ def labels(
     run: str,
     described: Mapping[str, tuple[str, ...]] = NO_METADATA,
 ) -> tuple[Labels, tuple[Diagnostic, ...]]:
-    """The labels of a run, and what there is to say of them.
+    """The labels of a run, and diagnostics about them.
 
     Args:
         declared: each label with its sources.
         run: the path of its log, as named on the command line.
-        described: what the metadata of the log says: `build.version` → values.
+        described: the metadata of the log: `build.version` → values.
     """
     found: dict[str, str] = {}
     diagnostics: list[Diagnostic] = []
@@ -51,7 +52,7 @@ def labels(
 
 
 def of_path(name: str, sources: Sequence[LabelSource], run: str) -> tuple[str, ...]:
-    """What the path of a log says of one label."""
+    """The value of a label in the path of a log."""
     patterns = [source.text for source in sources if source.is_path]
     found = [name_patterns.match(pattern, run) for pattern in patterns]
     return tuple(each[name] for each in found if each is not None)
@@ -71,13 +72,13 @@ def _values(
 
 
 def over(before: Labels, given: Labels) -> tuple[Labels, tuple[Diagnostic, ...]]:
-    """Labels of a run with those of the command, which count, and where the two disagree."""
+    """The labels of a run with those of the command, and F552 for each that differs."""
     clashes = (_conflict(name) for name, value in given.items() if before.get(name, value) != value)
     return {**before, **given}, tuple(clashes)
 
 
 def given(texts: Sequence[str]) -> Labels | Diagnostic:
-    """The labels of a command: `version=2.1`."""
+    """The labels that a command gives: `version=2.1`."""
     found: dict[str, str] = {}
     for text in texts:
         name, equals, value = text.partition("=")
@@ -100,7 +101,7 @@ def given(texts: Sequence[str]) -> Labels | Diagnostic:
 
 
 def _conflict(name: str) -> Diagnostic:
-    """F552; the same for all logs, so that many of them are one warning."""
+    """F552, with equal text for all logs, so that many of them are one warning."""
     return Diagnostic(
         Code.LABEL_CONFLICT,
         f"sources of the label `{name}` give one run different values",

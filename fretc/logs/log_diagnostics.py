@@ -31,7 +31,7 @@ _MOST = 20
 
 
 def changed(place: Span) -> Diagnostic:
-    """F903: what was read and what was hashed may be different bytes."""
+    """F903: the bytes that were read and those that were hashed may differ."""
     return Diagnostic(
         Code.UNREADABLE,
         "the log was changed while it was read",
@@ -41,7 +41,7 @@ def changed(place: Span) -> Diagnostic:
 
 
 def empty(place: Span) -> Diagnostic:
-    """No bytes, or no messages."""
+    """A log without bytes, or without messages."""
     return Diagnostic(
         Code.EMPTY_LOG,
         "the log holds no message",
@@ -62,7 +62,7 @@ _PACKED = {
 
 
 def not_a_log(start: bytes, place: Span) -> Diagnostic:
-    """Another kind of file, by its first bytes."""
+    """A file of another kind, recognized by its first bytes."""
     for magic, (codec, command) in _PACKED.items():
         if start.startswith(magic):
             return Diagnostic(
@@ -80,7 +80,7 @@ def not_a_log(start: bytes, place: Span) -> Diagnostic:
 
 
 def truncated(cut: int, place: Span) -> Diagnostic:
-    """It has no end, and no whole message before byte `cut`."""
+    """A log without an end, and without a whole message before byte `cut`."""
     return Diagnostic(
         Code.TRUNCATED_LOG,
         f"the log breaks off after byte {cut}: no message in it is whole",
@@ -90,7 +90,7 @@ def truncated(cut: int, place: Span) -> Diagnostic:
 
 
 def nothing_whole(damage: Damage, place: Span) -> Diagnostic:
-    """There are messages, and none of them is whole."""
+    """A log with messages, none of which is whole."""
     return Diagnostic(
         Code.DAMAGED_CHUNK,
         f"no message of the log can be read: {damage.description}",
@@ -100,7 +100,7 @@ def nothing_whole(damage: Damage, place: Span) -> Diagnostic:
 
 
 def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
-    """So many ticks that a time must be wrong."""
+    """A log with so many ticks that a time must be wrong."""
     return Diagnostic(
         Code.UNREADABLE_LOG,
         f"the log lasts {duration(length / _SECOND)}, which is {ticks} ticks: "
@@ -114,7 +114,7 @@ def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
 
 
 def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagnostic:
-    """One damaged place; its gap is in seconds from `origin`."""
+    """One damaged part; its gap is in seconds from `origin`."""
     if damage.code in (Code.TRUNCATED_LOG, Code.REINDEXED) and gap is not None:
         description = (
             damage.description if damage.at < 0 else f"the log breaks off after byte {damage.at}"
@@ -142,7 +142,7 @@ def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagno
 
 
 def few(diagnostics: list[Diagnostic], place: Span) -> list[Diagnostic]:
-    """At most a page of diagnostics; the last one counts the rest."""
+    """At most a page of diagnostics; the last one counts the others."""
     if len(diagnostics) <= _MOST:
         return diagnostics
     more = f"the log is damaged in {len(diagnostics) - _MOST} more places"
@@ -156,7 +156,7 @@ def few(diagnostics: list[Diagnostic], place: Span) -> list[Diagnostic]:
 
 
 def no_message(topic: str, span: Span | None) -> Diagnostic:
-    """F405: the log knows the topic and holds nothing of it."""
+    """F405: the log declares the topic and has no message of it."""
     return Diagnostic(
         Code.NO_TOPIC,
         f"the log holds no message of `{topic}`",
@@ -166,7 +166,7 @@ def no_message(topic: str, span: Span | None) -> Diagnostic:
 
 
 def no_topic(topic: str, topics: Collection[str], span: Span | None) -> Diagnostic:
-    """F405, with the topics that the log does have."""
+    """F405, with the topics that are in the log."""
     near = suggestion(topic, topics)
     listed = ", ".join(sorted(topics)[:8]) + (", ..." if len(topics) > 8 else "")
     return Diagnostic(
@@ -178,12 +178,12 @@ def no_topic(topic: str, topics: Collection[str], span: Span | None) -> Diagnost
 
 
 def no_field(signal: Signal, error: FieldError) -> Diagnostic:
-    """The message does not hold the number that the signal asks for."""
+    """A message without the number that the signal reads."""
     return Diagnostic(Code.NO_FIELD, f"in `{signal.path.topic}` {error}", signal.span, error.fix)
 
 
 def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
-    """Every message leaves out the field of the signal, as their type allows."""
+    """A signal whose field every message leaves out, as their type allows."""
     name = ".".join(signal.path.fields)
     numbers = [path.removesuffix("[:]") for path in paths]
     what = "word" if signal.values else "number"
@@ -198,7 +198,7 @@ def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
 
 
 def no_constant(signal: Signal, known: Mapping[str, int]) -> Diagnostic:
-    """F340: the field holds numbers, and the definition of its messages does not name the words."""
+    """F340: the field holds numbers, and its definition has no constants for the values."""
     name = ".".join(signal.path.fields)
     missing = [word for word in signal.values if word not in known]
     if not missing:
@@ -221,14 +221,14 @@ def no_constant(signal: Signal, known: Mapping[str, int]) -> Diagnostic:
 
 
 def _constant(word: str, known: Mapping[str, int]) -> str | None:
-    """The constant that is most likely meant: in capitals, behind a prefix, or misspelt."""
+    """The constant that is most likely meant: in capitals, with a prefix, or misspelt."""
     low = word.lower()
     ends = [each for each in known if each.lower() == low or each.lower().endswith(f"_{low}")]
     return ends[0] if ends else suggestion(word, known)
 
 
 def foreign_value(signal: Signal, foreign: UnmappedSamples, count: int, after: int) -> Diagnostic:
-    """F423: some samples are none of the words; the first one came so long after the log began."""
+    """F423: some samples are not among the signal's values; the first comes at `after` seconds."""
     near = suggestion(foreign.text, signal.values)
     is_number = re.fullmatch(r"-?[\d.]+", foreign.text) is not None
     if is_number and not signal.numbers:
@@ -248,7 +248,7 @@ def foreign_value(signal: Signal, foreign: UnmappedSamples, count: int, after: i
 
 
 def no_truth(signal: Signal, foreign: UnmappedSamples, count: int, after: int) -> Diagnostic:
-    """F424: some samples of a signal that stands for a truth value are neither 0 nor 1."""
+    """F424: some samples of a signal that is read as a truth value are neither 0 nor 1."""
     return Diagnostic(
         Code.NO_TRUTH,
         f"`{signal.name}` stands for a truth value, and {foreign.count} of {count} samples are "
@@ -260,7 +260,7 @@ def no_truth(signal: Signal, foreign: UnmappedSamples, count: int, after: int) -
 
 
 def wrong_type(signal: Signal, actual: str) -> Diagnostic:
-    """The topic is of another type than the signal declares."""
+    """A topic with another type than the signal declares."""
     return Diagnostic(
         Code.WRONG_TYPE,
         f"`{signal.path.topic}` is of type `{short_type(actual)}` in the log, "
@@ -285,7 +285,7 @@ def several_types(signal: Signal, types: Sequence[str]) -> Diagnostic:
 
 
 def unknown_encoding(signal: Signal, why: str) -> Diagnostic:
-    """No message of the topic can be decoded; or only by a part of fretc that is not installed."""
+    """A topic whose messages cannot be decoded, or only with an extra that is not installed."""
     if isinstance(why, MissingExtra):
         return Diagnostic(
             Code.MISSING_EXTRA,
@@ -303,7 +303,7 @@ def unknown_encoding(signal: Signal, why: str) -> Diagnostic:
 
 
 def bad_messages(signal: Signal, bad: int, count: int) -> Diagnostic:
-    """Single messages of the topic cannot be decoded."""
+    """A topic with single messages that cannot be decoded."""
     return Diagnostic(
         Code.BAD_MESSAGE,
         f"{bad} of {count} messages of `{signal.path.topic}` cannot be decoded: their samples are "
@@ -314,7 +314,7 @@ def bad_messages(signal: Signal, bad: int, count: int) -> Diagnostic:
 
 
 def out_of_order(signal: Signal, late: int, count: int) -> Diagnostic:
-    """Messages of the topic are earlier than one before them."""
+    """A topic whose messages are out of order."""
     return Diagnostic(
         Code.OUT_OF_ORDER,
         f"{late} of {count} messages of `{signal.path.topic}` are out of order: they are sorted "
@@ -326,7 +326,7 @@ def out_of_order(signal: Signal, late: int, count: int) -> Diagnostic:
 
 
 def unstamped(signal: Signal, shift: int) -> Diagnostic:
-    """The topic has no stamps, and those of others are `shift` nanoseconds from log times."""
+    """A topic without stamps; the stamps of others differ by `shift` nanoseconds from log times."""
     message = f"the messages of `{signal.path.topic}` have no header.stamp: their log_time is used"
     if shift < _SECOND:
         return Diagnostic(Code.NO_FIELD, message, signal.span, severity=Severity.NOTE)
@@ -342,7 +342,7 @@ def unstamped(signal: Signal, shift: int) -> Diagnostic:
 def zero_stamps(
     topic: str, place: Span | None, zero: int, count: int, time: TimeSource
 ) -> Diagnostic:
-    """F416: the publisher, or the recorder, never set the time of some messages."""
+    """F416: the publisher or the recorder never set the time of some messages."""
     return Diagnostic(
         Code.ZERO_STAMP,
         f"{zero} of {count} messages of `{topic}` have the time 0: their samples are unknown",
@@ -373,7 +373,7 @@ def _other_time(time: TimeSource) -> str:
 
 
 def clock_jumps(signal: Signal, jumps: int, largest: int) -> Diagnostic:
-    """F417: the declared time and the log time part by more than a second between two messages."""
+    """F417: declared time minus log time changes by more than a second between messages."""
     times = "once" if jumps == 1 else f"{jumps} times, at most"
     return Diagnostic(
         Code.CLOCK_JUMP,
@@ -387,7 +387,7 @@ def clock_jumps(signal: Signal, jumps: int, largest: int) -> Diagnostic:
 
 
 def mixed_clocks(signal: Signal, other: str, apart: int) -> Diagnostic:
-    """F418: against log times, the stamps of two topics are more than a second apart."""
+    """F418: the stamps of two topics differ by more than a second, measured by log times."""
     return Diagnostic(
         Code.MIXED_CLOCKS,
         f"the stamps of `{signal.path.topic}` are {duration(abs(apart) / _SECOND)} "

@@ -1,4 +1,4 @@
-"""What the topics of a log are, and what is odd about their fields and clocks."""
+"""The topics of a log, with diagnostics about their fields and clocks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 def never_stated(
     samples: Mapping[str, Samples], examples: FirstMessages, wanted: Sequence[Signal]
 ) -> list[Diagnostic]:
-    """About signals that are unknown in all messages, in JSON that has no such field."""
+    """Warnings about JSON fields that no message has, which make their signals unknown."""
     found = []
     for signal in wanted:
         values = samples[signal.name].values
@@ -36,7 +36,7 @@ def never_stated(
 
 
 def clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
-    """What is odd about the clocks of the topics that the signals read."""
+    """Warnings about the clocks of the topics that the signals read."""
     found = list(_unmoved(columns))
     ahead: dict[str, int] = {}
     signals = {
@@ -58,7 +58,7 @@ def clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
 
 
 def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
-    """About clocks that were never set, or that stand still."""
+    """Warnings about clocks that were never set, or that stand still."""
     for topic, place in columns.readers().items():
         column, time = columns.topics[topic], columns.clock.time
         if zero := int(column.unset.sum()):
@@ -68,13 +68,13 @@ def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
 
 
 def _clock_offset(column: Column) -> ClockOffset | None:
-    """Of the messages, without those whose time was never set."""
+    """The offset of the clock, without messages whose time was never set."""
     known = ~column.unset
     return clock_offset(np.array(column.logs, np.int64)[known], column.stamps()[known])
 
 
 def topic(column: Column) -> Topic:
-    """What a log holds of a topic, and how its clock goes."""
+    """The statistics of a topic and its clock."""
     if column.stated:
         return _counted(column)
     times = np.sort(column.stamps())

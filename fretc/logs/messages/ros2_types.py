@@ -1,4 +1,4 @@
-"""The definitions of ROS 2's own types, as its releases have them."""
+"""The definitions of the standard ROS 2 types in its releases."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def definitions(name: str) -> Mapping[str, str]:
-    """Each definition that a type of ROS 2's own has in one of its releases, the oldest first.
+    """Each definition that a standard ROS 2 type has in one of its releases, the oldest first.
 
     Args:
         name: `sensor_msgs/msg/LaserScan`.
@@ -30,7 +30,7 @@ def definitions(name: str) -> Mapping[str, str]:
 
 
 def standard(name: str) -> str | None:
-    """The definition of a type of ROS 2's own, if it is the same in all its releases.
+    """The definition of a standard ROS 2 type, if it is equal in all releases.
 
     Raises:
         ModuleNotFoundError: rosbags is not installed.
@@ -40,7 +40,7 @@ def standard(name: str) -> str | None:
 
 
 def latest() -> Any:
-    """The types of the latest release as a `rosbags` typestore: it makes messages, and their CDR.
+    """The types of the latest release as a typestore of rosbags, which can encode messages.
 
     Raises:
         ModuleNotFoundError: rosbags is not installed.

@@ -1,4 +1,4 @@
-"""Places that logs may be opened from: evidence of somebody else names places of its logs."""
+"""Restrictions on the locations of logs: evidence from elsewhere names locations."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from fretc.logs.storage.log_names import is_url
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """The places that may be opened.
+    """The locations that may be opened.
 
-    Files below the current folder and below folders that the user names, `https`, and URLs below
-    one that the user names.
+    Allowed are files below the current folder and below folders that the user names, `https`, and
+    URLs below one that the user names.
     """
 
     allowed: Sequence[str] = ()
-    """Folders, and beginnings of URLs."""
+    """Folders, and prefixes of URLs."""
     offline: bool = False
-    """Whether nothing is asked of any server."""
+    """Whether no server is contacted."""
 
     def refusal(self, place: str) -> str:
-        """Why a place is not opened; empty: it may be."""
+        """The reason why a location may not be opened; empty: it may be."""
         return self._of_url(place) if is_url(place) else self._of_file(place)
 
     def _of_url(self, url: str) -> str:
@@ -52,7 +52,7 @@ class Places:
 
 
 def _begins(url: str, start: str) -> bool:
-    """Whether the URL lies below another one; a way up again, and another chain, do not."""
+    """Whether the URL is below another one, without `..` and without combined protocols."""
     if not url.startswith(start):
         return False
     rest = url[len(start) :]

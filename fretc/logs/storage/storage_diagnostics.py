@@ -14,7 +14,7 @@ from fretish.diagnostics.source import Source, Span
 
 
 def no_stdin(why: str) -> Diagnostic:
-    """Nothing can be read from standard input."""
+    """Standard input cannot be read."""
     return Diagnostic(
         Code.UNREADABLE,
         f"standard input cannot be read: {why}",
@@ -24,14 +24,14 @@ def no_stdin(why: str) -> Diagnostic:
 
 
 def no_package(url: str, error: ImportError, place: Span) -> Diagnostic:
-    """The package that the protocol of a URL needs is not installed, or that of all URLs."""
+    """The package for URLs, or for the protocol of a URL, is not installed."""
     if error.name == "fsspec":
         return no_fsspec(place)
     return no_protocol_package(url.partition("://")[0], str(error), place)
 
 
 def unlisted(error: OSError, place: Span) -> Diagnostic:
-    """A store does not say what is in it."""
+    """An object store cannot be listed."""
     return Diagnostic(
         Code.UNREADABLE,
         f"the folder cannot be listed: {error.strerror or error}",
@@ -41,7 +41,7 @@ def unlisted(error: OSError, place: Span) -> Diagnostic:
 
 
 def no_fsspec(place: Span) -> Diagnostic:
-    """URLs need an extra."""
+    """The extra for URLs is not installed."""
     return missing_extra("a URL cannot be read: that needs", ["fsspec"], "remote", place)
 
 
@@ -69,12 +69,12 @@ def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
 
 
 def no_rosbags(place: Span) -> Diagnostic:
-    """Bags need an extra."""
+    """The extra for bags is not installed."""
     return missing_extra("a bag cannot be read: that needs", ["rosbags"], "bags", place)
 
 
 def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
-    """The reader of bags cannot read it."""
+    """A bag cannot be read by rosbags."""
     return Diagnostic(
         Code.UNREADABLE_LOG,
         f"the bag cannot be read: {why}",
@@ -88,7 +88,7 @@ def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
 
 
 def bag_of_no_file(place: Span) -> Diagnostic:
-    """A bag comes from standard input or a URL."""
+    """A bag from standard input or a URL."""
     return Diagnostic(
         Code.NOT_A_LOG, "a bag can only be read from a file", place, "save it as a file first"
     )
@@ -126,7 +126,7 @@ def without_crc(place: Span) -> Diagnostic:
 
 
 def bad_metadata(place: Span) -> Diagnostic:
-    """The description of a run in several files is not as rosbag2 writes it."""
+    """The `metadata.yaml` of a run is invalid."""
     return Diagnostic(
         Code.SPLIT_LOG,
         "it does not list the files of the run",
@@ -147,7 +147,7 @@ def part_of_a_run(i: int, count: int, run: str, place: Span) -> Diagnostic:
 
 
 def compressed_folder(mode: str, place: Span) -> Diagnostic:
-    """rosbag2 has compressed whole files, or each message."""
+    """The files or messages of a run are compressed by rosbag2."""
     return Diagnostic(
         Code.NOT_A_LOG,
         f"rosbag2 has compressed each {mode} of the run",
@@ -168,7 +168,7 @@ def is_a_directory(place: Span) -> Diagnostic:
 
 
 def grown(size: int, place: Span) -> Diagnostic:
-    """F431: what was read is what there was when it was opened."""
+    """F431: the log grew while it was read; only its first bytes are used."""
     return Diagnostic(
         Code.GROWN,
         f"the log grew while it was read: the audit covers the first {size:,} bytes",
@@ -186,7 +186,7 @@ def not_a_file(place: Span) -> Diagnostic:
 
 
 def unreadable(error: OSError, place: Span) -> Diagnostic:
-    """The system, or the server, does not let it be read."""
+    """The system or the server refuses to read the file."""
     reason = error.strerror or str(error)
     fix = "check its permissions"
     if "://" in place.source.name:
