@@ -1,8 +1,8 @@
-"""From the verdicts of a requirement in one scenario, round by round, to what has become of it.
+"""The change of a requirement in one scenario, from its verdicts round by round.
 
-A round is violated where one of its runs is. It is shown where a run shows the requirement and no
-other leaves it open. Else it is open: nothing is known of it, and nothing has become better. What
-was violated and is open now is never called fixed.
+A round is violated if one of its runs is. It is shown if a run shows the requirement and no other
+leaves it open. Else it is open: nothing is known, and nothing has improved. A requirement that was
+violated and is open now is never called fixed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from monitors import kernel
 
 
 class Tone(StrEnum):
-    """What a round says."""
+    """The combined verdict of a round."""
 
     VIOLATED = "violated"
     SHOWN = "shown"
@@ -24,10 +24,10 @@ class Tone(StrEnum):
 
 
 class Change(StrEnum):
-    """What has become of a requirement in a scenario; the worst first."""
+    """The change of a requirement in a scenario; the worst first."""
 
     NEW = "new"
-    """Violated now, and not when something was known of it last."""
+    """Violated now, and not when it was last known."""
     FIRST_VIOLATED = "first seen, violated"
     STILL = "still violated"
     LOST = "lost"
@@ -35,7 +35,7 @@ class Change(StrEnum):
     GONE = "gone"
     """Judged before, and not in the newest round."""
     NOT_SELECTED = "not selected"
-    """Judged before, in runs that the audit of the newest round may have left out by its choice."""
+    """Judged before, in runs that the selection of the newest round may have left out."""
     FIRST = "first seen"
     FIXED = "fixed"
     NEVER_SHOWN = "never shown"
@@ -43,13 +43,13 @@ class Change(StrEnum):
 
 
 RED = (Change.NEW, Change.FIRST_VIOLATED)
-"""What is violated, and was not."""
+"""The changes to violated."""
 _NEUTRAL = (kernel.VACUOUS, "not exercised", "retired")
-"""Verdicts that say nothing beside others."""
+"""Verdicts that do not count beside others."""
 
 
 def tone(verdicts: Iterable[str]) -> Tone:
-    """What the verdicts of a round say, at least one."""
+    """The combined verdict of a round from its verdicts, at least one."""
     words = {*verdicts}
     if words & {*BROKEN}:
         return Tone.VIOLATED
@@ -58,11 +58,11 @@ def tone(verdicts: Iterable[str]) -> Tone:
 
 
 def change(rounds: Sequence[Sequence[str]]) -> Change:
-    """What has become of it.
+    """The change of a requirement.
 
     Args:
-        rounds: the verdicts of each round, the newest last; a round without one did not judge it.
-            There is a verdict in one of them.
+        rounds: the verdicts of each round, the newest last; empty for a round that did not judge
+            it. At least one round has a verdict.
     """
     *before, now = [tone(verdicts) if verdicts else None for verdicts in rounds]
     judged = [each for each in before if each is not None]
@@ -83,13 +83,13 @@ def change(rounds: Sequence[Sequence[str]]) -> Change:
 
 
 def last_known(rounds: Sequence[Sequence[str]]) -> int | None:
-    """The number of the last round before the newest that says something; None: none does."""
+    """The index of the last round before the newest with a known outcome; None: none."""
     known = [i for i, one in enumerate(rounds[:-1]) if one and tone(one) is not Tone.OPEN]
     return known[-1] if known else None
 
 
 def is_flaky(rounds: Sequence[Sequence[str]], of_software: Mapping[str, Sequence[str]]) -> bool:
-    """Whether it is violated now and then: more than one turn, or both at one state of software.
+    """Whether violations came and went repeatedly, or one commit has both verdicts.
 
     Args:
         rounds: the verdicts of each round, the newest last.

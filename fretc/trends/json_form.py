@@ -1,4 +1,4 @@
-"""Trends as JSON: everything, in the order of the text."""
+"""Trends as JSON: all items, in the order of the text."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SCHEMA = "fretc-trends-1"
 
 
 def text(trends: Trends) -> str:
-    """The whole file."""
+    """The text of the whole file."""
     return f"{to_json(_plain(trends))}\n"
 
 

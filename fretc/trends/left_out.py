@@ -1,7 +1,7 @@
-"""What the choice of logs may have left out of the newest round: it is neither gone nor fixed.
+"""Requirements that the selection of logs may have left out of the newest round.
 
-`fretc audit --since` and `--sample` choose among the logs that are named, and evidence says how
-many they left out, not which.
+`fretc audit --since` and `--sample` select among the named logs, and evidence states how many they
+left out, not which.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from fretc.trends.histories import Histories, Judged, Run
 def is_left_out(
     histories: Histories, requirement: str, judged: Sequence[Judged], change: Change
 ) -> bool:
-    """Whether it is the choice of logs that a requirement is not judged or not violated any more.
+    """Whether the selection of logs may be the reason for a change.
 
     Args:
-        histories: what was read.
+        histories: the histories of all evidence.
         requirement: its id.
-        judged: all that is said of it in one scenario.
-        change: what has become of it, as if all logs had been chosen.
+        judged: all results of the requirement in one scenario.
+        change: the change as if all logs had been selected.
     """
     newest = histories.rounds[-1]
     runs = histories.runs
@@ -54,13 +54,13 @@ def is_left_out(
 
 
 def _may_leave_out(selection: Selection, run: Run, *, by_date: bool = True) -> bool:
-    """Whether the choice may be why the log of a run was not audited.
+    """Whether the selection may be the reason why the log of a run was not audited.
 
     Args:
-        selection: of the newest round.
-        run: of an earlier one.
-        by_date: whether its date counts. A newer log of its scenario takes the place of an older
-            one; what a sample has left out may be as new as what it has.
+        selection: the selection of the newest round.
+        run: a run of an earlier round.
+        by_date: whether its date counts. A newer log of its scenario replaces an older one; a log
+            that a sample has left out may be as new as those in it.
     """
     if selection.sample_of is not None and selection.audited < selection.sample_of:
         return True

@@ -1,4 +1,4 @@
-"""Trends as one HTML file that works offline, in the style of the report and by its policy."""
+"""Trends as one HTML file that works offline, in the style of the report."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from fretish.diagnostics import signs
 from fretish.diagnostics.signs import Sign
 
 _MOST_RED, _MOST = 500, 150
-"""Rows of a list; those left out are counted, with their requirements."""
+"""The most rows of a list; the omitted ones are counted, with their requirements."""
 _MOST_CHARTS = 24
 
 
@@ -50,7 +50,7 @@ _LISTS = (
 
 
 def html(trends: Trends) -> str:
-    """The whole file."""
+    """The text of the whole file."""
     style = render("report/style.css.j2") + render("trends/style.css.j2")
     lists = [_listed(each, trends.of(*each.kinds)) for each in _LISTS]
     flaky = [item for item in trends.items if item.flaky]
@@ -98,7 +98,7 @@ def html(trends: Trends) -> str:
 
 
 def _mark(trends: Trends) -> dict[str, Any]:
-    """The sign of the whole, and its word."""
+    """The overall symbol and its word."""
     if trends.is_worse:
         return {**asdict(signs.BAD), "word": "worse"}
     if not trends.is_comparable:
@@ -158,7 +158,7 @@ def _listed(each: _List, items: Sequence[Item]) -> dict[str, Any]:
 
 
 def _left(items: Sequence[Item]) -> str:
-    """What is left out, in words; empty where nothing is."""
+    """The omitted items in words; empty: there are none."""
     if not items:
         return ""
     ids = phrases.some([*dict.fromkeys(item.requirement for item in items)], 20)
@@ -166,7 +166,7 @@ def _left(items: Sequence[Item]) -> str:
 
 
 def _groups(groups: Sequence[Group]) -> list[str]:
-    """Each in words; of very many the first ones, and how many more there are."""
+    """Each group in words; of very many the first ones, and the number of others."""
     more = len(groups) - _MOST_RED
     lines = [group.text for group in groups[:_MOST_RED]]
     return [*lines, f"{phrases.whole(more)} more: `--format json` has all"] if more > 0 else lines

@@ -1,4 +1,4 @@
-"""What `--format jsonl` prints: a line for each piece of news, an object each."""
+"""The output of `--format jsonl`: a line with a JSON object for each event."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _Time = Annotated[Whole | None, about("nanoseconds on the declared clock; null: 
 
 
 class RequirementLine(Record, frozen=True, tag="requirement", tag_field="type"):
-    """A requirement of which something is otherwise than before."""
+    """A requirement whose state has changed."""
 
     requirement: Name
     verdict: Annotated[str, about("the verdict of an audit if the run ended now")]
@@ -40,14 +40,14 @@ class RequirementLine(Record, frozen=True, tag="requirement", tag_field="type"):
 
 
 class LateLine(Record, frozen=True, tag="late", tag_field="type"):
-    """Ticks that were judged have become unknown."""
+    """Judged ticks have become unknown."""
 
     ticks: Annotated[Count, about("the total in this run so far")]
     messages: Annotated[dict[Name, Count], about("the total of each topic in this run so far")]
 
 
 class MessageLine(Record, frozen=True, tag="message", tag_field="type"):
-    """What a user should know."""
+    """A diagnostic for the user."""
 
     code: Name
     severity: Annotated[str, about("error, warning or note")]
@@ -56,13 +56,13 @@ class MessageLine(Record, frozen=True, tag="message", tag_field="type"):
 
 
 class OpenedLine(Record, frozen=True, tag="opened", tag_field="type"):
-    """The source is there."""
+    """The source is connected."""
 
     source: str
 
 
 class InterruptedLine(Record, frozen=True, tag="interrupted", tag_field="type"):
-    """The source is gone, and is sought again."""
+    """The connection to the source is lost; fretc tries to connect again."""
 
     since_ns: Annotated[Whole, about("receive time")]
     code: Name
@@ -96,7 +96,7 @@ SCHEMA = "fretc-watch-1"
 
 
 class _Lines(Record, frozen=True):
-    """All of them."""
+    """All kinds of lines."""
 
     lines: list[Line]
 
@@ -118,7 +118,7 @@ _HEAD = ("title", "description")
 
 
 def line(news: News) -> dict[str, Any]:
-    """The object of one piece of news."""
+    """The JSON object of one event."""
     found: dict[str, Any] = plain(_line(news))
     return found
 

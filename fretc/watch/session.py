@@ -1,8 +1,7 @@
-"""One run, watched: arrivals in, ticks, standings and findings out.
+"""The session of one run: arrivals in, ticks, states and diagnostics out.
 
-Nothing here waits, prints, or looks at a clock: who calls it says what has arrived, and up to which
-receive time everything has. Times are nanoseconds; what is meant by them, `monitors/ticking.py`
-says.
+The session never waits, prints, or reads a clock: the caller passes arrivals, and the receive time
+up to which they are complete. Times are nanoseconds, with the meaning in `monitors/ticking.py`.
 """
 
 from __future__ import annotations
@@ -39,27 +38,27 @@ class Jump:
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """A run that has ended, as an audit of its recording judges it."""
+    """A run that has ended, with the verdicts of an audit of its recording."""
 
     verdicts: Mapping[str, str]
     until: int
-    """Up to when it was watched, on the declared clock."""
+    """The end of the watch, on the declared clock."""
 
 
 @dataclass(slots=True)
 class Topic:
-    """What has come of a topic."""
+    """The messages of a topic that have arrived."""
 
     count: int = 0
     first: int | None = None
     last: int | None = None
     """Receive times."""
     recent: list[int] = field(default_factory=list)
-    """The last receive times, for its rate."""
+    """The last receive times, for the rate."""
 
     @property
     def rate(self) -> float | None:
-        """Messages a second, of the last ones."""
+        """Messages per second, from the last ones."""
         if len(self.recent) < 2 or self.recent[-1] == self.recent[0]:
             return None
         return (len(self.recent) - 1) * 1e9 / (self.recent[-1] - self.recent[0])
@@ -69,10 +68,10 @@ _RECENT = 20
 
 
 class Session:
-    """Watches one run of a robot by all requirements of a plan."""
+    """A session of one run of a robot, with all requirements of a plan."""
 
     def __init__(self, plan: Plan) -> None:
-        """Nothing has come yet; the clock of the plan declares a lateness, where it needs one."""
+        """An empty session; the clock of the plan declares a lateness, if it needs one."""
         self._plan = plan
         self._clock = plan.declarations.clock
         patience = self._clock.patience
@@ -83,14 +82,14 @@ class Session:
         self._decoder = Decoder(plan.declarations)
         self._latest: dict[str, int] = {}
         self._now = 0
-        """On the declared clock: the latest time of all messages."""
+        """The latest time of all messages, on the declared clock."""
         self._received = 0
         self.disordered = 0
-        """Messages behind later ones, by receive time, that came after their ticks were judged: a
-        log that is followed can have some."""
+        """Messages that arrived after later ones whose ticks had been judged, in a log that is
+        followed."""
         self._missed: list[Gap] = []
         self._gap_from: int | None = None
-        """The latest time before messages were missed, until another one comes."""
+        """The latest time before messages were missed, until another one arrives."""
         self.interrupted = False
         """Whether the source is not connected."""
         self._ahead: tuple[Truth, ...] | None = None
@@ -98,11 +97,11 @@ class Session:
         """The verdicts of a run that has ended."""
         self.topics = {name: Topic() for name in sorted(self._decoder.topics)}
         self.problems: list[Diagnostic] = []
-        """What is wrong with the messages of a topic, each once."""
+        """Diagnostics of the messages of topics, each once."""
 
     @cached_property
     def reads(self) -> Mapping[str, tuple[str, ...]]:
-        """Of each requirement the topics on which it depends."""
+        """For each requirement, the topics on which it depends."""
         of, found = self._plan.declarations, {}
         for monitor in self._judges.monitors:
             names = {n for each in monitor.PROPOSITIONS for n in of.propositions[each].signals}
@@ -112,17 +111,17 @@ class Session:
 
     @property
     def missed(self) -> tuple[Gap, ...]:
-        """When messages were missed, by receive time."""
+        """The intervals of missed messages, by receive time."""
         return tuple(self._missed)
 
     @property
     def received(self) -> int:
-        """The receive time up to which everything that has come was given; 0 before the first."""
+        """The receive time up to which arrivals are complete; 0 before the first."""
         return self._received
 
     @property
     def origin(self) -> int | None:
-        """Where the grid of ticks begins, once it is placed; None, too, where there is no grid."""
+        """The start of the grid of ticks, once it is placed; None also if there is no grid."""
         return self._stream.origin
 
     @property
@@ -132,22 +131,22 @@ class Session:
 
     @property
     def ticks(self) -> int:
-        """How many were judged."""
+        """The number of judged ticks."""
         return self._judges.count
 
     @property
     def ledger(self) -> Ledger:
-        """The ticks that were judged."""
+        """The judged ticks."""
         return self._judges.ledger
 
     @property
     def late(self) -> Mapping[str, int]:
-        """Of each topic how many messages were late for a tick."""
+        """For each topic, the number of late messages."""
         return self._stream.late
 
     @property
     def late_ticks(self) -> int:
-        """How many of them became unknown because a message was late."""
+        """The number of ticks that became unknown because a message was late."""
         return self._judges.ledger.late
 
     @property
@@ -157,13 +156,13 @@ class Session:
 
     @property
     def waiting(self) -> tuple[str, ...]:
-        """The topics that have to begin before the first tick can be placed."""
+        """The topics without a message yet, before which the first tick cannot be placed."""
         return self._stream.waiting
 
     # What comes
 
     def arrive(self, arrival: Arrival) -> Jump | Diagnostic | None:
-        """One message.
+        """Add one message.
 
         Returns:
             A jump, and nothing was taken: the message belongs to another run. Or what keeps time
@@ -192,7 +191,7 @@ class Session:
         return None
 
     def _take(self, message: Timed) -> bool:
-        """Whether a tick that needed it was judged already."""
+        """Add a message; whether a tick that it affects was already judged."""
         self._latest[message.topic] = max(message.time, self._latest.get(message.topic, 0))
         self._now = max(self._now, message.time)
         if self._gap_from is not None and not self.interrupted:
@@ -208,14 +207,14 @@ class Session:
             self._judges.withdraw(late)
 
     def interrupt(self) -> None:
-        """The source is gone: no tick is judged until `miss` says what was lost."""
+        """Record that the connection is lost: no tick is judged until `miss` is called."""
         self.interrupted = True
         self._gap_from = self._gap_from or self._now or None
 
     def miss(self, since: int, until: int) -> None:
-        """Messages received from `since` to `until` were lost.
+        """Record that messages received from `since` to `until` were lost.
 
-        By stamps, the messages around them tell which times that are.
+        With stamps, the neighbouring messages determine the lost times.
         """
         self.interrupted, self._ahead = False, None
         if self._missed and since <= self._missed[-1][1]:
@@ -229,7 +228,7 @@ class Session:
             self._gap_from = self._gap_from or self._now or None
 
     def idle(self, now: int) -> Diagnostic | None:
-        """Everything that was received before `now` has been given."""
+        """Record that all messages received before `now` have been added."""
         self._received = max(self._received, now)
         return self._pass(self._received - self._patience) if self._now else None
 
@@ -248,10 +247,10 @@ class Session:
     # What is known
 
     def states(self, *, ahead: bool = True) -> tuple[State, ...]:
-        """Of each requirement what is known now.
+        """The present state of each requirement.
 
         Args:
-            ahead: whether what has come since the last tick counts for what is owed.
+            ahead: whether messages since the last tick count for `owed`.
         """
         judges = self._judges
         if ahead and self._ahead is None:
@@ -280,14 +279,14 @@ class Session:
         return self._received - self._patience
 
     def _verdict(self, standing: Standing) -> str:
-        """That of the run, where it has ended; one with missed messages satisfies nothing."""
+        """The verdict of a run that has ended; a run with missed messages satisfies nothing."""
         if standing.requirement in self._final:
             return self._final[standing.requirement]
         verdict = self._judges.said(standing.requirement, str(standing.verdict))
         return "no data" if self._missed and verdict in ("satisfied", "vacuous") else verdict
 
     def _tick_time(self, tick: int | None) -> int | None:
-        """When a tick is, perhaps one to come."""
+        """The time of a tick, also of a future one."""
         if tick is None:
             return None
         known = self._judges.ledger.time(tick)
@@ -297,7 +296,7 @@ class Session:
         return origin + self._clock.phase + tick * period
 
     def end(self) -> Ended | Diagnostic:
-        """The run ends here."""
+        """End the run."""
         if self._gap_from is not None:
             self._withdraw(self._stream.miss(self._gap_from, self._now))
         found = self._stream.end()
@@ -309,7 +308,7 @@ class Session:
         return Ended(self._final, found.until)
 
     def judge_again(self, log: str) -> Mapping[str, str] | Diagnostic:
-        """Judge the run that has ended by a log of it, as an audit does: in the order of times.
+        """Judge the ended run by a log of it, as an audit does: in the order of times.
 
         Returns:
             The verdicts, which `states` has, too; or why the log cannot be read.

@@ -1,4 +1,4 @@
-"""What a watch shows a person: a row for each requirement, or a line for each piece of news."""
+"""The text output of a watch: a row for each requirement, or a line for each event."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from monitors.kernel.verdicts import Truth
 _S = 10**9
 _OWED: Mapping[Truth, str] = {True: "owed", None: "may be owed", False: ""}
 _NAME = 40
-"""Columns of a requirement's name, at most."""
+"""The widest name of a requirement, in columns."""
 
 
 def rows(session: Session, titles: Mapping[str, str], screen: Screen) -> Iterator[list[Piece]]:
-    """The screen: requirements, then topics."""
+    """The rows of the screen: requirements, then topics."""
     states = session.states()
     ids = [state.requirement for state in states]
     most = min(_NAME, screen.width // 2)
@@ -76,11 +76,11 @@ def _ago(time: int, now: int) -> str:
 
 
 def line(news: News, start: int | None) -> str | None:
-    """A line of news; None where it says nothing that a diagnostic does not say.
+    """The line of an event; None: a diagnostic says the same.
 
     Args:
-        news: what has happened.
-        start: the first tick, from which seconds count; None: there is none yet.
+        news: the event.
+        start: the time of the first tick, from which seconds count; None: there is none yet.
     """
     match news:
         case Changed(state, before, time):
@@ -109,7 +109,7 @@ def line(news: News, start: int | None) -> str | None:
 
 
 def _changed(state: State, before: State | None, time: int, start: int | None) -> str | None:
-    """Only what a reader of a log of lines would act on: a verdict, a demand that opens or ends."""
+    """The line of a changed verdict, or of an obligation that opens or ends, else None."""
     told = None if before is None else (before.verdict, before.owed)
     if told == (state.verdict, state.owed):
         return None

@@ -1,4 +1,4 @@
-"""What a source gives → sessions, recordings and news; each run has a session and a recording."""
+"""Sessions, recordings and events from a source; each run has a session and a recording."""
 
 from __future__ import annotations
 
@@ -24,51 +24,51 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from monitors.guard import State
 
 MOST_RUNS = 100
-"""After so many a clock that is set back again and again is two clocks."""
+"""The number of runs after which a clock that is set back repeatedly is taken for two clocks."""
 LOOK = 50 * 10**6
-"""Nanoseconds of receive time after which it is looked again what is owed, if not even a tick was
-judged: to look costs as much as a tick."""
+"""Nanoseconds of receive time after which the open obligations are updated, even if no tick was
+judged: an update costs as much as a tick."""
 SILENCE = 5 * 10**9
-"""Nanoseconds after which a topic that has not begun is reported."""
+"""Nanoseconds after which a topic without messages is reported."""
 
 
 class Watch:
-    """One watch, of one run or, where a clock is set back, of several."""
+    """A watch of one run or, if a clock is set back, of several."""
 
     def __init__(self, plan: Plan, record: Path | None = None, log: str | None = None) -> None:
-        """Nothing has come yet.
+        """A watch without messages yet.
 
         Args:
-            plan: its clock has a lateness, where it needs one.
-            record: the file that is written; of a second run with `-2` before its ending.
-            log: the log that is watched; None: no log is.
+            plan: the plan; its clock has a lateness, if it needs one.
+            record: the file to write; for a second run, with `-2` before its suffix.
+            log: the log that is watched; None: the source is not a log.
 
         Raises:
-            OSError: the file is there, or cannot be written.
+            OSError: the file exists already, or cannot be written.
         """
         self._plan, self._record, self._log = plan, record, log
         self.session = Session(plan)
         self.runs: list[RunEnded] = []
         self.failed = False
-        """Whether something has gone wrong that leaves a run, or its recording, unfinished."""
+        """Whether an error leaves a run, or its recording, unfinished."""
         self.ended = False
         """Whether nothing more can be watched."""
         self._states: dict[str, State] = {}
         self._late = 0
         self._began: int | None = None
         self._looked = 0
-        """The receive time at which it was last looked what is owed."""
+        """The receive time of the last update of open obligations."""
         self._judged = 0, 0
-        """The ticks of the run that were judged then, and those that had become unknown."""
+        """The number of ticks judged by then, and of those that had become unknown."""
         self._silent: set[str] = set()
         self._lost_since: int | None = None
         self._has_begun = False
-        """Whether the source was ever there."""
+        """Whether the source was ever connected."""
         self._recorder = self._new_recorder()
 
     @property
     def topics(self) -> list[str]:
-        """All that are read."""
+        """All topics that are read."""
         return sorted(self.session.topics)
 
     @property
@@ -87,7 +87,7 @@ class Watch:
     # What comes
 
     def take(self, item: Arrival | Event | Idle) -> Iterator[News]:
-        """One thing that a source gives, and what there is to tell of it."""
+        """Process one message or event of a source, and return the events to report."""
         match item:
             case Arrival():
                 yield from self._arrive(item)
@@ -134,7 +134,7 @@ class Watch:
             yield from self._silences(arrival.log_time)
 
     def _is_due(self, now: int) -> bool:
-        """Whether there can be news: a tick more, or another look after some time."""
+        """Whether there can be new events: after one more tick, or after some time."""
         judged = self.session.ticks, self.session.late_ticks
         if judged == self._judged and now - self._looked < LOOK:
             return False
@@ -167,7 +167,7 @@ class Watch:
                 yield Found(_silent(name))
 
     def _begin_anew(self, jump: Jump, arrival: Arrival) -> Iterator[News]:
-        """A clock was set back: this run ends, and another one begins."""
+        """End this run and begin another one, because a clock was set back."""
         yield Found(_set_back(jump))
         yield from self.finish(begins_anew=True)
         if len(self.runs) >= MOST_RUNS:
@@ -206,9 +206,9 @@ class Watch:
         yield Found(_not_recorded(str(path), error.strerror or str(error)))
 
     def finish(self, *, begins_anew: bool = False) -> Iterator[News]:
-        """The present run ends: its verdicts are those of an audit of its recording.
+        """End the present run: its verdicts are those of an audit of its recording.
 
-        Where the source was never there, there is neither.
+        If the source was never connected, there is neither a run nor a recording.
 
         Args:
             begins_anew: whether another run of the same source follows.

@@ -1,4 +1,4 @@
-"""The words of `--publish` → where verdicts go."""
+"""The publishers that the words of `--publish` name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SERVER = re.compile(r"foxglove(?::(?:(?P<host>[\w.-]+|\[[\da-fA-F:.]+\]):)?(?P<
 
 
 def chosen(words: Sequence[str], source: Source) -> Sequence[Publisher] | Diagnostic:
-    """One for each word, open; or what is wrong, and none is open."""
+    """An open publisher for each word; or a diagnostic, and none is open."""
     publishers: list[Publisher] = []
     with ExitStack() as stack:
         for word in dict.fromkeys(words):
@@ -50,7 +50,7 @@ def _publisher(word: str, source: Source) -> Publisher | Diagnostic:
 
 
 def addresses(publishers: Sequence[Publisher]) -> list[str]:
-    """Where people find the servers among them."""
+    """The addresses of the servers among the publishers."""
     return [
         f"ws://{each.host}:{each.port}" for each in publishers if isinstance(each, FoxgloveServer)
     ]

@@ -1,8 +1,8 @@
-"""ROS 2's messages as a source, from its wire: DDS, without any ROS.
+"""Messages of ROS 2 as a source, read from DDS without ROS.
 
-Nobody is at the head of a domain of DDS: publishers come and go. Each kind of publisher of a topic
-(its type, and what it offers) has a reader of its own, which takes what publishers of this kind
-send. Times of arrival are when the message has reached this thread.
+A DDS domain has no master: publishers appear and disappear. Each kind of publisher of a topic (by
+its type and offer) has a reader of its own, which receives the messages of these publishers. The
+arrival time of a message is the time at which this thread gets it.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from monitors.guard import Status
 
 MOST_KINDS = 20
-"""Kinds of publishers of a topic; who makes more of them is not read."""
+"""The most kinds of publishers of a topic; further kinds are not read."""
 _MOST_PUBLISHERS = 10_000
-"""So many that are gone are remembered."""
+"""The most publishers that are kept after they disappeared."""
 _SOON = 3 * 10**9
-"""Nanoseconds in which a reader and a publisher find together."""
+"""Nanoseconds in which a reader and a publisher normally match."""
 _CLOCK = "/clock"
 _PERIOD = 0.5
-"""Seconds from one publication of what is known to the next."""
+"""Seconds between two publications of states."""
 _ARRAY = "diagnostic_msgs/msg/DiagnosticArray"
 _PARTS = {
     _ARRAY,
@@ -41,19 +41,19 @@ _PARTS = {
 
 
 class Dds(Middleware):
-    """The domain that `ROS_DOMAIN_ID` names."""
+    """The domain in `ROS_DOMAIN_ID`."""
 
     def __init__(self) -> None:
-        """Nothing is opened yet."""
+        """A source that is not yet open."""
         super().__init__("dds")
         self._statuses: Sequence[Status] = ()
 
     def diagnose(self, statuses: Sequence[Status]) -> None:
-        """The thread publishes them, twice a second."""
+        """Set the statuses that the thread publishes, twice a second."""
         self._statuses = statuses
 
     def _listen(self, topics: list[str]) -> bool:
-        """What comes of the topics; one that begins with no slash is a topic of DDS."""
+        """Receive messages of the topics; the name of a DDS topic has no leading slash."""
         domain = join()
         if isinstance(domain, Diagnostic):
             self._lost(domain)
@@ -75,44 +75,45 @@ class Dds(Middleware):
 
 @dataclass(slots=True)
 class _Kind:
-    """Publishers of one topic that offer the same."""
+    """Publishers of one topic with the same offer."""
 
     reader: Reader | None
-    """None: they cannot be read."""
+    """None: their messages cannot be read."""
     channel: Channel
 
 
 @dataclass(slots=True)
 class _Peer:
-    """A publisher, there or gone."""
+    """A publisher, present or gone."""
 
     id: str
     topic: str
     offer: Offer
     last: int
-    """When something has come of it."""
+    """The time of its last message."""
     there: bool = True
     early: set[tuple[int | None, int]] = field(default_factory=set)
-    """What came through any reader before its own had found it: when it was sent, and its hash."""
+    """Messages that arrived through any reader before its own one matched: send time and hash."""
 
 
 class _Listening:
-    """Who publishes the topics, and what they send."""
+    """The publishers of the topics, and their messages."""
 
     def __init__(self, domain: Domain, topics: frozenset[str], mailbox: Mailbox) -> None:
         self._domain, self._topics, self._mailbox = domain, topics, mailbox
         self._kinds: dict[tuple[str, Offer], _Kind] = {}
         self._peers: dict[int, _Peer] = {}
-        """By handles; those that are gone, too: their last messages may still come."""
+        """Publishers by handle, also those that are gone, because their last messages may still
+        arrive."""
         self._lost: dict[str, int] = {}
-        """Publishers that are gone, by their ids: when something has last come of them."""
+        """Publishers that are gone, by id: the time of their last message."""
         self._unmatched: dict[int, int] = {}
-        """Publishers that their own reader has not found yet: since when."""
+        """Publishers that do not match their own reader yet: since when."""
         self._known: set[tuple[Code, str]] = set()
-        """What has been told of which topic."""
+        """The diagnostics that were reported for a topic."""
 
     def look(self) -> None:
-        """Hand on what has come since the last look."""
+        """Pass on the messages since the last call."""
         matched = self._matched()
         for kind in tuple(self._kinds.values()):
             if kind.reader is not None:
@@ -179,7 +180,7 @@ class _Listening:
             self._mailbox.tell(Problem(_no_publisher(peer.topic)))
 
     def _open(self, topic: str, offer: Offer) -> None:
-        """A reader for publishers of a kind that is new."""
+        """Open a reader for a new kind of publishers."""
         definition = _definition(offer)
         channel = Channel(topic, "cdr", offer.type, "", b"")
         if definition is not None:
@@ -201,7 +202,7 @@ class _Listening:
             self._tell_once(topic, _not_read(topic, str(error)))
 
     def _matched(self) -> list[int]:
-        """Publishers that their readers have found, or do not agree with: of the type, say."""
+        """Publishers that match their readers, or never will, for example because of their type."""
         found = []
         for handle, since in self._unmatched.items():
             peer = self._peers.get(handle)
@@ -221,7 +222,7 @@ class _Listening:
 
 
 class _Diagnosing:
-    """`diagnostic_msgs/DiagnosticArray` on `/diagnostics`, as a node of ROS 2 sends it."""
+    """`diagnostic_msgs/DiagnosticArray` on `/diagnostics`, as a ROS 2 node publishes it."""
 
     def __init__(self, domain: Domain) -> None:
         self._domain = domain
@@ -229,7 +230,7 @@ class _Diagnosing:
         self._last = float("-inf")
 
     def publish(self, statuses: Sequence[Status]) -> None:
-        """Twice a second, where there are any."""
+        """Publish the statuses, twice a second, if there are any."""
         if not statuses or time.monotonic() - self._last < _PERIOD:
             return
         self._last = time.monotonic()
@@ -242,7 +243,7 @@ class _Diagnosing:
 
 
 def _array(statuses: Sequence[Status], now: int) -> bytes:
-    """As CDR."""
+    """The statuses as CDR."""
     store = ros2_types.latest()
     own = {name.rpartition("/")[2]: type_ for name, type_ in store.types.items() if name in _PARTS}
 
@@ -265,7 +266,7 @@ def _array(statuses: Sequence[Status], now: int) -> bytes:
 
 
 def _definition(offer: Offer) -> str | None:
-    """That of its hash; where it tells none, the only one that there is."""
+    """The definition with the publisher's hash; without a hash the only one, or None."""
     found = ros2_types.definitions(offer.type)
     if offer.hash is not None:
         return found.get(offer.hash)
