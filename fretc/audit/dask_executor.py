@@ -93,13 +93,13 @@ def _own_cluster(jobs: int) -> Iterator[Client]:
     shield()
     _be_quiet()
     with contextlib.ExitStack() as stack:
-        # One death may be chance; what has died twice is tried once more, alone.
+        # One death may be random; a log whose worker died twice is tried once more, alone.
         stack.enter_context(config.set({"distributed.scheduler.allowed-failures": 1, **_NO_PAGES}))
         with _deaf():
             cluster = LocalCluster(
                 n_workers=jobs,
                 threads_per_worker=1,
-                memory_limit=0,  # the machine decides, as it does without Dask
+                memory_limit=0,  # the machine sets the limit, as without Dask
                 dashboard_address="127.0.0.1:0",
                 silence_logs=logging.CRITICAL,
                 security=Security.temporary(),
@@ -170,7 +170,7 @@ def _deaf_worker() -> WorkerPlugin:
 
 def _tasks(client: Client, plan: Plan, logs: Sequence[str]) -> LogAudits:
     """Run each log as a task; if its workers died, run it once more, alone."""
-    # A task, not scattered data: Dask makes it anew when all who have it are dead.
+    # A task, not scattered data: Dask computes it again when all workers that have it are dead.
     remote_plan = client.submit(bytes, packed(plan), key=f"fretc-plan-{secrets.token_hex(8)}")
     again: list[str] = []
     with contextlib.closing(_results(client, remote_plan, logs)) as done:
@@ -195,7 +195,7 @@ def _results(
     """
     from distributed import as_completed
 
-    batch = f"fretc-audit-{secrets.token_hex(8)}"  # results of another audit are not for us
+    batch = f"fretc-audit-{secrets.token_hex(8)}"  # not shared with another audit
     waiting = {
         client.submit(_work, plan, log, os.getcwd(), build_id(), key=f"{batch}-{number}"): log
         for number, log in enumerate(logs)
@@ -255,7 +255,7 @@ def _in(folder: str) -> Iterator[None]:
     """Change to the caller's folder, if it exists on this machine, so that log names stay valid."""
     try:
         before = os.getcwd()
-    except OSError:  # the worker began in a folder that is no more
+    except OSError:  # the worker's folder was deleted
         before = "/"
     with contextlib.suppress(OSError):
         os.chdir(folder)

@@ -33,6 +33,6 @@ def demand(requirement: FormalizedRequirement) -> Demand:
         case s.Immediately() | s.Next() | s.Within():
             return Demand(response, requirement.watch.horizon)
         case s.Finally() | s.Eventually() | s.Always() | s.For():
-            return Demand(response)  # what must hold all the time has no latest tick
+            return Demand(response)  # a response that must always hold has no deadline
         case _:
             assert_never(sentence.timing)

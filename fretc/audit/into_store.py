@@ -75,7 +75,7 @@ class StoredAudit:
     estimates: tuple[Estimated, ...]
 
 
-# What is known -----------------------------------------------------------------------------------
+# Reusable results --------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,7 +222,7 @@ def _results(plan: Plan, known: _Known) -> tuple[Result, ...]:
     return labelled(plan, LogResult(tuple(results), (), read=True)).results
 
 
-# What is written ---------------------------------------------------------------------------------
+# The writer ------------------------------------------------------------------------------------
 
 
 @dataclass(slots=True)
@@ -310,7 +310,7 @@ class StoreWriter:
             if not any(each is None or each.parts for each in found):
                 remove(self.folder)
                 if self._new_folder is not None:
-                    with suppress(OSError):  # something else is in it by now
+                    with suppress(OSError):  # the folder is not empty
                         self._new_folder.rmdir()
             else:
                 others = set() if self._is_finished else self._before
@@ -326,7 +326,7 @@ class StoreWriter:
             tell: is called with each log that was audited.
         """
         try:
-            if not is_store(self.folder):  # marked, so that what is in it is known to be ours
+            if not is_store(self.folder):  # a marker, so that only files of fretc are removed
                 self._write(self._manifest([], UNFINISHED), UNFINISHED)
             self._take_over()
             with closing(engine(self._plan, self.new)) as items:

@@ -133,8 +133,8 @@ def local_executor(
         return audited(plan, log, known(log), kept)
 
     def engine(plan: Plan, logs: Sequence[str]) -> LogAudits:
-        monitored_requirements(plan)  # before the processes are born: they inherit it
-        if STDIN in logs:  # another process does not have it
+        monitored_requirements(plan)  # loaded before the fork, so that processes inherit it
+        if STDIN in logs:  # only this process can read standard input
             yield STDIN, audited(plan, STDIN)
         files = [log for log in logs if log != STDIN]
         with closing(each(partial(judged, plan), files, jobs, limits)) as done:

@@ -185,7 +185,7 @@ def _shared(
                 crew.hire(waiting.popleft())
             done = list(crew.done())
             while waiting and len(crew.busy) < jobs and not clock.is_over:
-                crew.hire(waiting.popleft())  # they work while this process takes what is done
+                crew.hire(waiting.popleft())  # workers continue while this process takes results
             yield from done
     finally:
         crew.dismiss()
@@ -210,7 +210,7 @@ class _WorkerPool:
     def hire(self, place: int) -> None:
         """Let an idle process, or a new one, work on an item."""
         connection, process = self._idle.pop() if self._idle else self._born()
-        with suppress(OSError):  # it has died meanwhile: `done` will tell
+        with suppress(OSError):  # the process has died, which `done` reports
             connection.send(place)
         self.busy[connection] = process, place, time.monotonic()
 
@@ -246,10 +246,10 @@ class _WorkerPool:
             _end(connection, process)
 
     def _born(self) -> tuple[Connection, ForkProcess]:
-        # Forked: the function may be what cannot be sent, and what is loaded need not be again.
+        # Forked, because some functions cannot be pickled, and loaded modules are inherited.
         context = multiprocessing.get_context("fork")
         ours, theirs = context.Pipe()
-        # A pipe ends when all its ends are closed: a child must not keep those of the others.
+        # A pipe ends when all its ends are closed: a child must close those of other children.
         inherited = [ours, *self.busy, *(connection for connection, _ in self._idle)]
         arguments = (self._function, self._things, theirs, inherited)
         process = context.Process(target=_serve, args=arguments, daemon=True)

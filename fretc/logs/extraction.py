@@ -159,7 +159,9 @@ class Extraction:
             return extract
         slow: Sequence[int] = range(len(payloads))
         if self._shape is not None and payloads.sizes.sum() >= _FEW:
-            if not self._placed(self._shape):  # one message shows which signals have no place
+            if not self._placed(
+                self._shape
+            ):  # one message shows which signals have no fixed position
                 self._one_by_one(0, bytes(payloads.payload(0)), extract)
                 slow = slow[1:]
             if self._placed(self._shape):
@@ -220,7 +222,7 @@ class Extraction:
         except Exception:  # the decoder trusts each byte, and each may be wrong
             return None
 
-    # By places
+    # By positions
 
     def _placed(self, shape: Shape) -> bool:
         """Whether every wanted field has a position; if not, each message must be decoded."""

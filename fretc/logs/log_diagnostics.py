@@ -110,7 +110,7 @@ def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
     )
 
 
-# Damaged places
+# Damaged parts
 
 
 def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagnostic:

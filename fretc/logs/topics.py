@@ -79,7 +79,7 @@ def topic(column: Column) -> Topic:
         return _counted(column)
     times = np.sort(column.stamps())
     steps = np.diff(times)
-    offset = _clock_offset(column) if column.bound else None  # others have log times alone
+    offset = _clock_offset(column) if column.bound else None  # other topics have only log times
     return Topic(
         name=column.name,
         type=column.type,

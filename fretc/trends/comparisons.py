@@ -185,7 +185,7 @@ def _tested(
     """The test, and its numbers: each log once, the newest ones first."""
     strata: dict[Scenario, tuple[list[float], list[float]]] = defaultdict(lambda: ([], []))
     passed: set[str] = set()
-    for one in values:  # from the oldest round on: a copy in a later one is nothing new
+    for one in values:  # from the oldest round on, so that copies in later rounds are skipped
         run = runs[one.run]
         is_after = held.is_after(run)
         if run.content in passed or not (is_after or held.is_before(run)):
@@ -223,7 +223,7 @@ def _comparison(
     )
 
 
-# What is measured -------------------------------------------------------------------------------
+# Measures ---------------------------------------------------------------------------------------
 
 
 def _measures(

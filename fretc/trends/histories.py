@@ -143,7 +143,7 @@ _LATEST = 4102444800 * 10**9
 
 
 def _time(text: str) -> int | None:
-    """The time of `2026-11-20`, `2026-11-20T21:00:00+01:00`, `2026_11_20-21_00_00`; by default UTC."""
+    """The time of `2026-11-20`, `2026-11-20T21:00:00+01:00`, `2026_11_20-21_00_00`; or None."""
     rosbag = _ROSBAG.fullmatch(text)
     try:
         form = "{}-{}-{}T{}:{}:{}".format(*rosbag.groups()) if rosbag else text

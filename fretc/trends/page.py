@@ -36,16 +36,20 @@ class _List:
 
 
 _LISTS = (
-    _List("new", "Newly violated", "Violated now, and not when known last.", (Change.NEW,),
+    _List("new", "Newly violated",
+          "Violated now, but not in the last round with a known outcome.", (Change.NEW,),
           signs.BAD),
     _List("first-violated", "Violated, and never judged before",
           "The newest round is the first that judges them.", (Change.FIRST_VIOLATED,), signs.BAD),
-    _List("still", "Still violated", "Violated now, and when known last.", (Change.STILL,),
+    _List("still", "Still violated",
+          "Violated now, and in the last round with a known outcome.", (Change.STILL,),
           signs.BAD),
     _List("lost", "Known before, open now",
           "Violated or shown before; the newest round leaves it open, so nothing is fixed.",
           (Change.LOST,), signs.UNKNOWN),
-    _List("fixed", "Fixed", "Violated when known last, shown now.", (Change.FIXED,), signs.GOOD),
+    _List("fixed", "Fixed",
+          "Violated in the last round with a known outcome, shown now.", (Change.FIXED,),
+          signs.GOOD),
 )  # fmt: skip
 
 

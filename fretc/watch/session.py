@@ -159,7 +159,7 @@ class Session:
         """The topics without a message yet, before which the first tick cannot be placed."""
         return self._stream.waiting
 
-    # What comes
+    # Arrivals
 
     def arrive(self, arrival: Arrival) -> Jump | Diagnostic | None:
         """Add one message.
@@ -244,7 +244,7 @@ class Session:
             self._ahead = None
         return None
 
-    # What is known
+    # The state
 
     def states(self, *, ahead: bool = True) -> tuple[State, ...]:
         """The present state of each requirement.

@@ -84,7 +84,7 @@ class Watch:
             path = path.with_name(f"{path.stem}-{len(self.runs) + 1}{path.suffix}")
         return Recorder(path, self._plan.declarations.clock)
 
-    # What comes
+    # Arrivals
 
     def take(self, item: Arrival | Event | Idle) -> Iterator[News]:
         """Process one message or event of a source, and return the events to report."""

@@ -93,7 +93,7 @@ def outdated(recorded: Mapping[str, object], now: Basis) -> tuple[str, ...]:
     follows = set()
     if changed & {FRETC, SENTENCE, CLOCK}:
         follows.add(MONITOR)
-    if now.get(CLOCK) == "":  # there are no bindings at all
+    if now.get(CLOCK) == "":  # there are no bindings
         follows |= {CLOCK, TOPICS}
     return tuple(kind for kind in kinds if kind in changed - follows)
 

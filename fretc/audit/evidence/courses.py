@@ -55,7 +55,7 @@ def no_way(recording: Recording, declarations: Declarations) -> Iterator[Diagnos
             return
 
 
-# Words -----------------------------------------------------------------------------------------
+# Enumerations ----------------------------------------------------------------------------------
 
 
 def _words(signal: Signal, recording: Recording) -> Words:
@@ -74,7 +74,7 @@ def _words(signal: Signal, recording: Recording) -> Words:
     )
 
 
-# The way ---------------------------------------------------------------------------------------
+# The path --------------------------------------------------------------------------------------
 
 
 def _way(drawn: Map, recording: Recording) -> Way | None:

@@ -103,7 +103,7 @@ def _trials(result: Brief) -> Trials:
     return result.trials or NO_TRIALS
 
 
-# In words --------------------------------------------------------------------------------------
+# Texts -----------------------------------------------------------------------------------------
 
 
 def _reason(estimate: odds.Estimate, answer: str, text: str) -> str:

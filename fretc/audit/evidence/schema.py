@@ -269,7 +269,7 @@ class Hashes(Record, frozen=True, kw_only=True):
     ] = UNSET
 
 
-# The course of a run ---------------------------------------------------------------------------
+# Plot data of a run ----------------------------------------------------------------------------
 
 
 MOST_POINTS, MOST_WORDS = 300, 300

@@ -147,7 +147,7 @@ def _least(runs: Tally, confidence: float) -> float:
 def _worths(table: Table, share: float) -> NDArray[np.float64]:
     """The logarithm of the capital of each bet against the share."""
     good, count, times = table
-    with np.errstate(divide="ignore"):  # who bets everything may lose everything
+    with np.errstate(divide="ignore"):  # a bet of the whole capital may lose all of it
         return np.asarray(np.log1p(np.outer(_BETS, good / share - count)) @ times)
 
 

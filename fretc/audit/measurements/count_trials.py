@@ -66,7 +66,7 @@ def trials(obligation: Obligation, columns: Mapping[str, Column], ticks: int) ->
     if not ticks:
         return Trials(0, 0, 0)
     triggers = evaluate_unknown(scope_formulas(obligation).trigger, columns, ticks)
-    # A deadline that no trigger of the run can reach is as far as any other one.
+    # All deadlines after the end of the run are equivalent.
     demand = replace(obligation.demand, ticks=min(obligation.demand.ticks, ticks))
     met = _met(demand, end_marker(obligation.scope, obligation.mode))
     longer = ticks + demand.ticks + _BEYOND

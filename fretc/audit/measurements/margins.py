@@ -107,7 +107,7 @@ def _margin(threshold: Threshold, history: History, audited: slice) -> Margin:
         return Margin(threshold, CROSSED, least, greatest, None, changed)
     distances = Measure(np.abs(measured - bound), scale).base
     at = int(np.argmin(distances))
-    if not np.isfinite(distances[at]):  # it never came out of infinity
+    if not np.isfinite(distances[at]):  # all its values are infinite
         return Margin(threshold, bool(truths[0]), least, greatest, None, None)
     nearest, distance = int(times[at]), float(distances[at])
     return Margin(threshold, bool(truths[0]), least, greatest, distance, nearest)

@@ -71,7 +71,7 @@ def encounters(
             formula = f.And((formula, f.Atom(_THERE)))
             true, may = true & there.true, may & (there.true | there.unknown)
         seen, perhaps = _first(true), _first(may)
-        if seen != perhaps:  # something is unknown, and the evaluation knows too little of it
+        if seen != perhaps:  # unknown values leave the bounds apart
             seen, perhaps = _exact(formula, known, ticks, counted, (seen, perhaps))
         yield Encounter(situation.key, seen, perhaps if seen is None else None)
 

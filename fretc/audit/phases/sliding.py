@@ -47,7 +47,9 @@ class Slide:
         """The values at the first ticks for phases `low` to `high`; unknown where they change."""
         done, more = np.searchsorted(self.phases, [low, high], "right").tolist()
         states = self.base.copy()
-        states[self.ticks[:done]] = self.states[:done]  # of several changes the last one stays
+        states[self.ticks[:done]] = self.states[
+            :done
+        ]  # of several changes of a tick the last one counts
         states[self.ticks[done:more]] = UNKNOWN
         return packed(states[:ticks])
 
@@ -170,7 +172,7 @@ def _joined(
     states = np.concatenate([states for _, states in changes])
     ticks, phases = np.divmod(times - start, period)
     order = np.argsort(phases, kind="stable")
-    order = order[phases[order] > 0]  # at phase 0 it is the base
+    order = order[phases[order] > 0]  # changes at phase 0 are in `base`
     return Slide(np.concatenate(base), phases[order], ticks[order], states[order], *cut)
 
 

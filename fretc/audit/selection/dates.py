@@ -55,7 +55,7 @@ def is_older(log: str, than: datetime) -> bool:
     if is_store(log):
         change = changed(log)
         if change is not None and change < limit:
-            return True  # a store has its own clock: what came before was recorded before
+            return True  # an object store has its own clock, but it is later than the recording
     date = _recorded(log) or _changed(log)
     return date is not None and date < limit
 

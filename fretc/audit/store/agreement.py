@@ -75,7 +75,7 @@ def _check_names(main: Taken, other: Taken, name: str) -> None:
 
 
 def _same(column: Any, other: Any) -> bool:
-    is_same: bool = column.equals(other)  # however they are cut into pieces
+    is_same: bool = column.equals(other)  # independent of chunks
     return is_same
 
 

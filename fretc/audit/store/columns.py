@@ -150,7 +150,7 @@ class Real:
         return found  # type: ignore[no-any-return]
 
 
-# What is made of others -------------------------------------------------------------------------
+# Composite values -------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -346,7 +346,7 @@ class NumberOrWord:
         return [number if word is None else word for number, word in pairs]
 
 
-# Of types ---------------------------------------------------------------------------------------
+# Columns of types -------------------------------------------------------------------------------
 
 
 @cache

@@ -29,7 +29,7 @@ MOST_VALUES = 2**27
 def encoded(table: pa.Table) -> tuple[bytes, Table]:
     """The file of a table, and its entry in a manifest."""
     stream = pa.BufferOutputStream()
-    whole = table.combine_chunks()  # how it was put together must not show
+    whole = table.combine_chunks()  # the bytes must not depend on its chunks
     write_table(whole, stream, compression="zstd", row_group_size=ROWS)
     data = stream.getvalue().to_pybytes()
     return data, Table(hashlib.sha256(data).hexdigest(), len(data), len(whole))

@@ -61,7 +61,7 @@ def opened(path: str, name: str = FILE) -> Store | Diagnostic:
         found = decoded(parsed(source.text), Manifest)
     except SchemaError as error:
         return _wrong(path, f"has a manifest that fretc did not write: {error}")
-    store = Store(str(Path(path)), sha256(source.text), found)  # signatures stand beside it
+    store = Store(str(Path(path)), sha256(source.text), found)  # signatures are beside the manifest
     try:
         store.check()
     except StoreError as error:

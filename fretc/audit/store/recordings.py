@@ -249,7 +249,7 @@ def _recording(
     )
 
 
-# Findings ----------------------------------------------------------------------------------------
+# Diagnostics -------------------------------------------------------------------------------------
 
 
 def _plain(finding: Diagnostic, declarations: Declarations) -> dict[str, Any] | None:

@@ -103,7 +103,7 @@ def entries(found: pa.Table) -> list[Entry]:
     return decoded(objects(fields, arrays), list[Entry]) if arrays else []
 
 
-# Who vouches -------------------------------------------------------------------------------------
+# Authentication ----------------------------------------------------------------------------------
 
 
 def vouched(

@@ -176,7 +176,7 @@ def schema(table: TableName) -> pa.Schema:
     return pa.schema([pa.field(each.name, each.column.type) for each in TABLES[table]])
 
 
-# Written -----------------------------------------------------------------------------------------
+# To tables ---------------------------------------------------------------------------------------
 
 
 def tabled(results: Sequence[Result], fretc: str) -> Tables:
@@ -258,7 +258,7 @@ def _shared(result: Result) -> tuple[object, ...]:
     return (result.run, *(getattr(result, name) for name in _SHARED))
 
 
-# Read --------------------------------------------------------------------------------------------
+# From tables -------------------------------------------------------------------------------------
 
 
 def results(tables: Source, rows: Sequence[int] | None = None) -> list[Result]:
@@ -407,7 +407,7 @@ def _chosen(table: Taken, key: str, rows: Sequence[int], count: int) -> list[int
     return found
 
 
-# Briefs ------------------------------------------------------------------------------------------
+# Summaries ---------------------------------------------------------------------------------------
 
 
 def briefs(table: pa.Table) -> list[Brief]:

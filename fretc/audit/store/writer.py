@@ -93,7 +93,7 @@ def remove_others(folder: Path, *manifests: Manifest, kept: Collection[Path] = f
     for path in files(folder) - named - {*kept}:
         path.unlink(missing_ok=True)
     for table in (*TABLES, REGISTER):
-        with suppress(OSError):  # it is in use, or something else is in it
+        with suppress(OSError):  # the folder is in use, or not empty
             (folder / table).rmdir()
 
 
@@ -111,7 +111,7 @@ def _files(manifest: Manifest) -> Iterator[Path]:
 def is_store(folder: Path) -> bool:
     """Whether fretc has written into a folder, which is a condition for removing files from it."""
     if any((folder / table).is_symlink() for table in (*TABLES, REGISTER)):
-        return False  # what is there is not in this folder
+        return False  # a link leads out of this folder
     return any(_is_manifest(folder / name) for name in (FILE, UNFINISHED))
 
 

@@ -20,9 +20,9 @@ from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, ChunkIndex, Schema, Statistics
 
-try:  # more than ten times as fast as that of `zlib`
+try:  # more than ten times as fast as `zlib`
     from zlib_ng.zlib_ng import crc32 as crc32
-except ImportError:  # an environment that is older than this dependency
+except ImportError:  # an older environment without this dependency
     from zlib import crc32 as crc32
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ def unpacked(chunk: Chunk) -> bytes:
         raise BrokenError(f"a chunk is compressed with the unknown codec `{chunk.compression}`")
     try:
         data = _CODECS[chunk.compression](chunk.data, size + 1)
-    except Exception as error:  # each codec has its own
+    except Exception as error:  # each codec raises its own exceptions
         raise BrokenError("a chunk does not decompress") from error
     if len(data) != size:
         raise BrokenError("the size of a chunk differs from the size that it states")
@@ -201,7 +201,7 @@ def unpack_into(compression: str, packed: memoryview, target: memoryview, *, who
         if compression == "zstd":
             return _zstd_into(packed, target, whole=whole)
         data = unpacked_lz4(packed, len(target) + whole)
-    except Exception as error:  # each codec has its own
+    except Exception as error:  # each codec raises its own exceptions
         raise BrokenError("a chunk does not decompress") from error
     size = min(len(data), len(target))
     target[:size] = data[:size]

@@ -113,7 +113,7 @@ class Damages:
                 damage.certain = True
                 self.certain.append(damage)
 
-    # Their cost
+    # Lost times
 
     def settled(
         self, summary: Summary, complete: Collection[int], counts: Counter[int], size: int
@@ -173,7 +173,7 @@ class Damages:
             spans.append((statistics.message_start_time, statistics.message_end_time))
         chunks = summary.chunks.values()
         spans += [(chunk.message_start_time, chunk.message_end_time) for chunk in chunks]
-        if len(spans) == 1:  # only the damaged places themselves can tell
+        if len(spans) == 1:  # then only the damaged parts have times
             near = (self.span[0] - _HOUR, self.span[1] + _HOUR)
             gaps = [gap for damage in self.certain for gap in damage.spans]
             spans += [gap for gap in gaps if near[0] <= gap[0] <= gap[1] <= near[1]]

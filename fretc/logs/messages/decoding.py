@@ -152,7 +152,7 @@ def _shape(encoding: str, name: str, data: bytes) -> Shape | None:
             definitions = idl.types(name, definition)
         else:
             definitions = types(name, definition, ros1=ros1)
-    except Exception:  # no UTF-8, nothing that is laid out, or a parser that trusts it
+    except Exception:  # not UTF-8, unsupported, or an error of the parser
         return None
     return Shape(short_type(name), definitions, cdr=not ros1)
 
@@ -273,7 +273,10 @@ def _fields_only(definition: str) -> str:
         elif _FIELD.fullmatch(bare):
             lines.append(bare)
         elif _NEXT_TYPE.fullmatch(bare):
-            lines += [bare, ""]  # without a line after it, the name of an empty type is cut off
+            lines += [
+                bare,
+                "",
+            ]  # the parser cuts off the name of an empty type without a line after it
         elif bare and not _CONSTANT.match(bare):
             raise ValueError(f"`{bare}` is no field")
     return "\n".join(lines)

@@ -244,6 +244,6 @@ def _resolved(name: str, package: str, *, many: bool, ros1: bool) -> str:
         return name
     if ros1 and name in _TIMES:
         return name
-    if ros1 and name == "Header" and not many:  # an array is of the package's own
+    if ros1 and name == "Header" and not many:  # an array has the type of the package
         return "std_msgs/Header"
     return f"{package}/{name}"

@@ -131,7 +131,7 @@ def _some(leaves: Iterator[tuple[str, Kind]]) -> dict[str, Leaf]:
 
 def _of_schema(
     root: Any,
-) -> Iterator[tuple[str, Kind]]:  # a schema is whatever its writer made of it
+) -> Iterator[tuple[str, Kind]]:  # a schema may be any JSON value
     """The fields in a schema, the nearest ones first."""
     queue: list[tuple[Any, str, tuple[int, ...]]] = [(root, "", ())]
     for schema, path, within in queue:

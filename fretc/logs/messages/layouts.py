@@ -175,7 +175,7 @@ class _Walk:
             self.at += 1
         for field in self._types[name]:
             self._field(field, (*where, field.name))
-        if self.at > len(self._payload):  # raised here, or an array of them would go on
+        if self.at > len(self._payload):  # raised here, to end arrays of empty elements
             raise LayoutError("the payload is cut off")
 
     def _field(self, field: Field, where: Where) -> None:
@@ -189,18 +189,18 @@ class _Walk:
             self.message(field.type, where)
         elif self._cdr or self._types[field.type]:  # ROS 1 writes nothing for an empty type
             for _ in range(self._bounded(count)):
-                self.message(field.type, ("[]",))  # no wanted field is below
+                self.message(field.type, ("[]",))  # it contains no wanted field
 
     def _numbers(self, dtype: str, count: int | None, where: Where) -> None:
         size = np.dtype(dtype).itemsize
-        if self._cdr and count != 0:  # what is not there needs no alignment
+        if self._cdr and count != 0:  # empty arrays are not aligned
             self.at += -(self.at - 4) % size
         if where in self._wanted:
             self.locations[where] = Location(self.at, dtype, count)
         self.at += size if count is None else size * count
 
     def _text(self, length: int) -> None:
-        if self._cdr and length > 1:  # the last byte ends it
+        if self._cdr and length > 1:  # the last byte is a terminator
             self.texts.append((self.at, length - 1))
         self.at += length
 

@@ -45,7 +45,7 @@ def _same(shape: Shape, decode: Decode, payload: bytes) -> bool:
         layout = shape.layout(memoryview(payload), wanted)
         message = decode(payload)
         official = [_numbers(reduce(getattr, where, message)) for where in wanted]
-    except Exception:  # whatever the decoder raises: it cannot read the message
+    except Exception:  # any exception: the decoder cannot read the message
         return False
     ours = [_at(payload, layout.locations[where]) for where in wanted]
     return all(

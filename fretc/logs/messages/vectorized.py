@@ -52,7 +52,7 @@ def samples(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers
     if not values.shape[1]:
         return np.full(len(values), np.nan)
     result = np.empty(len(values), EXACT if values.dtype == EXACT else np.float64)
-    with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
+    with np.errstate(all="ignore"):  # too large numbers become infinite, and a NaN may signal
         if signal.reduce is None and signal.valid is None and np.isfinite(values).all():
             return values[:, 0]
         plain = _plain(signal, values, sibling_values, result)
@@ -94,7 +94,7 @@ def _ends(reduce: Reduce, values: Values, limits: _Limits) -> tuple[Values, Trut
     least, band = reduce is Reduce.MIN, limits.band()
     if band is not None and values.dtype == np.float32:
         return _ends_within(band, values.view(np.uint32), least=least)
-    # Where the least of all numbers is a measurement, no other element has to be looked at.
+    # If the least of all numbers is a measurement, the other elements do not matter.
     ends = (np.fmin if least else np.fmax).reduce(values, axis=1)
     measured = limits.hold(ends[:, None])[:, 0]
     rows = np.flatnonzero(~measured)

@@ -180,7 +180,7 @@ def _in_unit(constant: Fraction, scale: Fraction, kind: np.dtype[Any], op: str) 
     if not op or not is_between or kind == np.float32:
         return _nearest(exact, kind)
     if exact.denominator != 1 and op in ("=", "!="):
-        return np.nextafter(np.zeros(1, EXACT), 1)  # nothing that is recorded is equal to it
+        return np.nextafter(np.zeros(1, EXACT), 1)  # no recorded number is equal to it
     return np.array([ceil(exact) if op in ("<", ">=") else floor(exact)], EXACT)
 
 

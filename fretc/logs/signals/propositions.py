@@ -80,7 +80,7 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     count = int(np.searchsorted(steps.times, last, "right"))
     steps = Steps(steps.times[:count], steps.states[:count])
     if len(steps.times) <= _KEPT:
-        recording.derived[key] = proposition, steps  # what is kept keeps its identity
+        recording.derived[key] = proposition, steps  # the reference keeps the id of the key valid
     return steps
 
 
@@ -139,7 +139,7 @@ def _flag(id: str, scope: Scope) -> States:
 def _compared(op: str, left: Term, right: Term, length: int) -> States:
     true, unknown = compared(op, left, right)
     states = true.astype(np.int8)
-    states *= TRUE  # and what is not true is FALSE, which is 0
+    states *= TRUE  # all others become FALSE, which is 0
     if unknown.any():
         states[unknown] = UNKNOWN
     return states if len(states) == length else np.repeat(states, length)
@@ -351,7 +351,7 @@ def _persistence(arg: Steps, duration: int) -> Steps:
     before the log), else true. Only changes are steps.
     """
     ends = np.append(arg.times[1:], _FOREVER)
-    begins = np.append(arg.times[:1], ends[:-1])  # where it can begin to be true
+    begins = np.append(arg.times[:1], ends[:-1])  # the earliest times at which it can become true
     times = distinct(np.concatenate([arg.times, begins + duration]))
     states = np.full(len(times), TRUE, np.int8)
     states[times < arg.times[0] + duration] = UNKNOWN

@@ -48,7 +48,7 @@ def distinct(values: NDArray[_Whole]) -> NDArray[_Whole]:
 
 def scaled(value: _Number, scale: Fraction) -> _Number:
     """`value * scale`, rounded once if a division or a multiplication alone does it."""
-    with np.errstate(over="ignore", invalid="ignore"):  # what is too large is infinite
+    with np.errstate(over="ignore", invalid="ignore"):  # too large numbers become infinite
         if scale.numerator == 1:
             return value / _float(scale.denominator)
         return value * _float(scale.numerator) / _float(scale.denominator)

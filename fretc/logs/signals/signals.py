@@ -101,9 +101,9 @@ def sample(signal: Signal, message: object, *, single: bool = False) -> float:
     try:
         value = _field(signal, message)
         if isinstance(value, float | int) and signal.valid is None and isfinite(value):
-            return value  # most signals are so, and most of the time is spent on them
+            return value  # a fast path for most signals
         values = np.array([value], _kind(value)) if isinstance(value, float | int) else value
-        with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
+        with np.errstate(all="ignore"):  # too large numbers become infinite, and a NaN may signal
             return _sample(signal, message, values.astype(np.float32) if single else values)
     except UnstatedError:
         return float("nan")
@@ -151,7 +151,7 @@ def _field(signal: Signal, message: object) -> float | Values:
     if not path.each and path.index is None:
         return _number(value, name)
     if path.index is not None and isinstance(value, list):
-        value = value[path.index : path.index + 1]  # whatever else is in it
+        value = value[path.index : path.index + 1]  # its other elements may be of any kind
         return _array(value, name)
     values = _array(value, name)
     if path.index is None:

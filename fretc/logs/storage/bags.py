@@ -160,7 +160,7 @@ def _limited(size: int) -> Iterator[None]:
 def _db3(file: str) -> Any:
     from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader
 
-    return Sqlite3Reader(Path(quote(file)))  # it puts the path into a URI as it is
+    return Sqlite3Reader(Path(quote(file)))  # the reader puts the path into a URI without quoting
 
 
 def _reason(error: Exception) -> str:

@@ -156,7 +156,7 @@ class _Digest:
 
     def begin(self) -> None:
         if self._thread is None:
-            own = os.dup(self._descriptor)  # the reader may be gone before this is done
+            own = os.dup(self._descriptor)  # the reader may be closed before the hash is complete
             self._thread = threading.Thread(target=self._run, args=(own,), daemon=True)
             self._thread.start()
 
@@ -290,7 +290,7 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         file = stack.enter_context(system.open(path, "rb", block_size=_SMALL_BLOCK))
     except ImportError as error:
         return storage_diagnostics.no_package(url, error, place)
-    except Exception as error:  # each protocol has its own
+    except Exception as error:  # each protocol raises its own exceptions
         raise as_os_error(error) from error
     hashed = _Hashed(file, size)
     stream = stack.enter_context(io.BufferedReader(hashed, _SMALL_BLOCK))
@@ -316,7 +316,7 @@ class _Paced:
             if start is not None:
                 self._file.seek(start)
             data = bytes(self._file.read(length))
-        except Exception as error:  # each protocol has its own
+        except Exception as error:  # each protocol raises its own exceptions
             raise as_os_error(error) from error
         self._spent += time.monotonic() - since
         self._due += max(self._least, len(data))

@@ -56,7 +56,7 @@ def changed(url: str) -> int | None:
     try:
         system, path = _opened(url)
         moment = system.modified(path)
-    except Exception:  # each protocol has its own; the reader of the file reports it
+    except Exception:  # each protocol raises its own; the reader of the file reports the error
         return None
     if not isinstance(moment, datetime):
         return None
@@ -90,7 +90,7 @@ def _listed(url: str, is_log: Callable[[str], bool]) -> Sequence[str] | None:
             names = list(_matched(system, path, is_log))
     except ImportError:
         raise
-    except Exception as error:  # each protocol has its own
+    except Exception as error:  # each protocol raises its own exceptions
         raise as_os_error(error) from error
     return [f"{start}{name}" for name in sorted({*names})]
 

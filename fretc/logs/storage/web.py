@@ -73,7 +73,7 @@ class Stream:
         self._loop.call_soon_threadsafe(self._answer.close)
 
     def _wait(self, ask: Any, *arguments: object) -> Any:
-        import asyncio  # where there is a server: most logs are files
+        import asyncio  # imported late, because most logs are files
 
         future = asyncio.run_coroutine_threadsafe(ask(*arguments), self._loop)
         try:

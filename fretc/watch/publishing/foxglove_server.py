@@ -54,7 +54,9 @@ class FoxgloveServer:
         """
         import foxglove
 
-        logging.getLogger("foxglove").addHandler(logging.NullHandler())  # else on the terminal
+        logging.getLogger("foxglove").addHandler(
+            logging.NullHandler()
+        )  # otherwise printed on the terminal
         self._context = foxglove.Context()
         self._server = foxglove.start_server(
             name="fretc watch", host=host, port=port, context=self._context

@@ -66,7 +66,7 @@ class Dds(Middleware):
                 domain.wait(WAIT)
                 listening.look()
                 diagnosing.publish(self._statuses)
-        except Exception as error:  # what Cyclone DDS raises of what others send, it may be
+        except Exception as error:  # Cyclone DDS may raise any exception for data of others
             self._lost(_broken(error))
         finally:
             domain.close()
@@ -120,7 +120,7 @@ class _Listening:
                 self._read(kind, kind.reader)
         for handle in matched:
             self._unmatched.pop(handle, None)
-        self._meet()  # who has gone has said his last before
+        self._meet()  # the last messages of a publisher come before its end
 
     def _read(self, kind: _Kind, reader: Reader) -> None:
         for sample in reader.samples():
@@ -130,15 +130,15 @@ class _Listening:
             if peer is not None:
                 own, key = self._kinds[peer.topic, peer.offer], (sample.sent, hash(sample.payload))
                 if key in peer.early and sample.sent is not None:
-                    continue  # it came through another reader, too
+                    continue  # the message came through another reader, too
                 if sample.publisher in self._unmatched:
                     peer.early.add(key)
                 elif own is not kind:
-                    continue  # its own reader takes it
+                    continue  # the publisher's own reader receives it
                 channel, peer.last = own.channel, self._mailbox.now
             self._mailbox.put(channel, sample.payload, sample.sent)
 
-    # Who is there
+    # Publishers
 
     def _meet(self) -> None:
         for publisher in self._domain.publishers():
@@ -238,7 +238,7 @@ class _Diagnosing:
             digest, definition = [*ros2_types.definitions(_ARRAY).items()][-1]
             offer = Offer(_ARRAY, digest, reliable=True)
             self._writer = self._domain.writer("/diagnostics", offer, definition)
-        with suppress(UnreadableError):  # who reads it is too slow; there will be another one
+        with suppress(UnreadableError):  # a reader is too slow; the next statuses follow soon
             self._writer.write(_array(statuses, time.time_ns()))
 
 

@@ -74,7 +74,7 @@ def join() -> Domain | Diagnostic:
         import cyclonedds.domain  # noqa: F401
 
         definitions("std_msgs/msg/Header")
-    except Exception as error:  # beside the absent package, its C library may not be found
+    except Exception as error:  # the package or its C library is missing
         return Diagnostic(
             Code.MISSING_EXTRA,
             f"watching DDS needs Cyclone DDS, which is not installed: {error}",
@@ -98,7 +98,7 @@ def _joined(number: int) -> Domain | Diagnostic:
             f"DDS domain {number} cannot be joined",
             help="Cyclone DDS has printed why: no network, or a mistake in CYCLONEDDS_URI",
         )
-    library.dds_set_log_mask(0)  # from here on it speaks of packets of others, without end
+    library.dds_set_log_mask(0)  # later messages would be about packets of others
     return domain
 
 
@@ -148,7 +148,7 @@ class Domain:
         for _ in range(_AT_ONCE):
             try:
                 found = self._news.take()
-            except Exception:  # names of others may be no text, and each is one of its own
+            except Exception:  # names of others may be invalid text; each is separate
                 continue
             if not found:
                 return

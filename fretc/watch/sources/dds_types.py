@@ -130,7 +130,7 @@ def _field(field: ros.Field, types: ros.Types, made: dict[str, Any]) -> Any:
         kind = made[field.type]
     if not field.many:
         return kind
-    many: Any = idl  # its generics are made at run time
+    many: Any = idl  # its generic types exist only at run time
     return many.sequence[kind] if field.count is None else many.array[kind, field.count]
 
 

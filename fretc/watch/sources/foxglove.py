@@ -247,7 +247,7 @@ class Foxglove(Middleware):
             case ServerTime():
                 self._warn_once(simulated_time())
             case Greeting():
-                pass  # a new session: its channels are advertised anew
+                pass  # a new session advertises its channels again
             case _:
                 assert_never(message)
 

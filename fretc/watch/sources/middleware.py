@@ -75,7 +75,7 @@ class Middleware(ABC):
         finally:
             self._mailbox.close()
 
-    # What the thread says
+    # Events of the thread
 
     def _opened(self, name: str) -> None:
         """Record a connection: everything that is sent from now on arrives."""

@@ -81,7 +81,7 @@ class Ros1(Middleware):
                 finally:
                     node.kill()
         except OSError:
-            pass  # its pipe broke: it has ended
+            pass  # its pipe is broken: the node has ended
         self._lost(_node_ended())
         return opened
 
