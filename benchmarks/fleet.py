@@ -23,7 +23,7 @@ from fretc.audit import dask_executor
 from fretc.audit.evidence.schema import Result
 from fretc.audit.into_store import StoredAudit, StoreWriter
 from fretc.audit.many_logs import Engine, audited, local_executor
-from fretc.audit.outputs.summary import summarized
+from fretc.audit.outputs.summary import summarize
 from fretc.audit.outputs.table import parquet, read, rows
 from fretc.audit.plan import Plan, planned
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -92,7 +92,7 @@ def table(results: Sequence[Result], path: Path) -> None:
     start = time.perf_counter()
     known = read([str(path)])
     assert not isinstance(known, Diagnostic), known.message
-    summary = summarized(known)
+    summary = summarize(known)
     taken = time.perf_counter() - start
     assert summary.whole["runs"] == RUNS
     size = path.stat().st_size / 1e6

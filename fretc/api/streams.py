@@ -12,7 +12,7 @@ from fretc.api.refusal import Refusal, accepted, bounded
 from fretc.audit.plan import Plan, planned
 from fretc.logs.stream import Stream as Truths
 from fretc.logs.stream import Tick as Row
-from fretc.watch.judging import Judges
+from fretc.watch.requirement_monitors import RequirementMonitors
 from fretish.bindings.declarations import Signal
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from monitors.kernel.stepping import Standing
@@ -58,7 +58,7 @@ class Stream:
         """
         plan = _plan(project)
         self._plan, self._declared = plan, project.declarations
-        self._judges = Judges(plan, kept=1)
+        self._judges = RequirementMonitors(plan, kept=1)
         self._truths = Truths(plan.declarations, self._judges.propositions)
 
     def add(self, signal: str, time_ns: int, value: object) -> None:

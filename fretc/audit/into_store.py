@@ -42,7 +42,7 @@ from fretc.audit.store.register import (
     vouched,
     vouches,
 )
-from fretc.audit.store.tables import Tables, joined, tabled
+from fretc.audit.store.tables import Tables, joined, to_tables
 from fretc.audit.store.writer import (
     files,
     is_store,
@@ -79,7 +79,7 @@ class StoredAudit:
 
 
 @dataclass(frozen=True, slots=True)
-class _Known:
+class _ReusableLog:
     """A log of an earlier audit with the same plan."""
 
     store: Store
@@ -92,7 +92,7 @@ class _Known:
 
 
 @dataclass(frozen=True, slots=True)
-class _Some:
+class _PartlyReusableLog:
     """A log of an audit with a plan that has some of the same requirements."""
 
     store: Store
@@ -125,7 +125,7 @@ class ReusableResults:
         self._parts: dict[tuple[str, ...], tuple[Store, Part]] = {}
         self.claims: set[str] = set()
         """The keys of requirements of another plan that are also in this one."""
-        self._some: dict[str, _Some] = {}
+        self._some: dict[str, _PartlyReusableLog] = {}
         self._last: tuple[Store, range, list[Result]] | None = None
         """The results of the last part that was read, because logs of one part are asked for in
         sequence."""
@@ -163,7 +163,9 @@ class ReusableResults:
             for entry, count in zip(
                 entries[row : row + part.runs], counts[row : row + part.runs], strict=True
             ):
-                self._some[entry.log] = _Some(store, same, range(place, stop), at - place, count)
+                self._some[entry.log] = _PartlyReusableLog(
+                    store, same, range(place, stop), at - place, count
+                )
                 at += count
             row, place = row + part.runs, stop
 
@@ -185,13 +187,13 @@ class ReusableResults:
         """The number of known logs that are not among the given ones."""
         return len({*self._logs, *self._some}.difference(logs))
 
-    def find(self, log: str) -> _Known | None:
+    def find(self, log: str) -> _ReusableLog | None:
         """The reusable results of a log that is unchanged."""
         if log not in self._logs:
             return None
         store, entry, part, place, count = self._logs[log]
         by = entry.known_by_now(rehash=self._rehash)
-        return None if by is None else _Known(store, entry, by, part, place, count)
+        return None if by is None else _ReusableLog(store, entry, by, part, place, count)
 
     def results(self, log: str) -> tuple[Result, ...]:
         """The reusable results of a log from an audit with another plan."""
@@ -207,14 +209,14 @@ class ReusableResults:
         of_log = self._last[2][some.first : some.first + some.count]
         return tuple(each for each in of_log if each.requirement in some.claims)
 
-    def part(self, logs: Sequence[str], known: Mapping[str, _Known]) -> Part | None:
+    def part(self, logs: Sequence[str], known: Mapping[str, _ReusableLog]) -> Part | None:
         """A part that has exactly these logs, with the facts that all its runs share."""
         store, part = self._parts.get(tuple(logs), (None, None))
         is_same = all(log in known and known[log].store is store for log in logs)
         return part if is_same else None
 
 
-def _results(plan: Plan, known: _Known) -> tuple[Result, ...]:
+def _results(plan: Plan, known: _ReusableLog) -> tuple[Result, ...]:
     """The results of a known log, with the labels of the present audit."""
     places = range(known.place, known.place + known.results)
     own = known.entry.labels or UNSET
@@ -232,7 +234,7 @@ class _Log:
     entry: Entry
     results: tuple[Result, ...] = ()
     tables: Tables | None = None
-    known: _Known | None = None
+    known: _ReusableLog | None = None
 
 
 @dataclass(slots=True)
@@ -384,7 +386,7 @@ class StoreWriter:
         self._read += own.read
         one = _Log(entry, audited.results)
         if sum(map(_events, audited.results)) > _HEAVY:
-            one = _Log(entry, tables=tabled(audited.results, __version__))
+            one = _Log(entry, tables=to_tables(audited.results, __version__))
         draft = self._draft_of[log]
         draft.found[log] = one
         self._complete(draft)
@@ -416,11 +418,11 @@ class StoreWriter:
                 waiting += one.results if one.known is None else _results(self._plan, one.known)
                 continue
             if waiting:
-                yield tabled(waiting, __version__)
+                yield to_tables(waiting, __version__)
                 waiting = []
             yield one.tables
         if waiting:
-            yield tabled(waiting, __version__)
+            yield to_tables(waiting, __version__)
 
     # Manifests
 

@@ -14,12 +14,12 @@ from compiler.files.records import replace as record_with
 from compiler.files.text_files import Stamp, file_sha256, stamp
 from fretc.audit.constancy import never_changed, tallies_of, totals
 from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
-from fretc.audit.evidence.briefs import Brief, EvidenceSource, brief
 from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.courses import course, no_way
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import EvidenceFile
+from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary, brief
 from fretc.audit.evidence.schema import (
     SCHEMA,
     Bindings,
@@ -199,7 +199,7 @@ def gathered(plan: Plan, audits: Sequence[LogResult]) -> Audit:
     )
 
 
-def estimates_of(plan: Plan, results: Iterable[Brief]) -> tuple[Estimated, ...]:
+def estimates_of(plan: Plan, results: Iterable[ResultSummary]) -> tuple[Estimated, ...]:
     """The answer of all runs for each requirement with a probability."""
     ids = {claim.id for claim in plan.claims if claim.chance is not None}
     counted = [each for each in results if each.requirement in ids] if ids else []

@@ -13,9 +13,9 @@ from compiler.situations.situations import Situation
 from compiler.situations.thresholds import Place
 from fretc.audit.evidence.schema import Health, Situations
 from fretc.audit.evidence.writer import RunResult, health
-from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judged
+from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judge
 from fretc.audit.measurements.margins import Margin, margins, worst
-from fretc.audit.measurements.situations import Near, encounters, nowhere_known
+from fretc.audit.measurements.situations import Near, nowhere_known, situation_ticks
 from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
@@ -178,7 +178,7 @@ def _evidence(
     monitor = requirement.monitor
     columns = {name: truths.columns[name] for name in requirement.propositions}
     ticks = len(truths.timeline.times)
-    judgement = judged(
+    judgement = judge(
         monitor,
         columns,
         truths.cut,
@@ -247,7 +247,7 @@ def _situations(
 ) -> Situations | None:
     if not requirement.situations:
         return None
-    found = [*encounters(requirement.situations, columns, ticks, near)]
+    found = [*situation_ticks(requirement.situations, columns, ticks, near)]
     return Situations(
         {each.key: at(each.seen) for each in found if each.seen is not None},
         {each.key: at(each.perhaps) for each in found if each.perhaps is not None},

@@ -17,7 +17,7 @@ from compiler.formalization.resolution import extended
 from compiler.project.folder import Project
 from compiler.situations.mutants import Mutant, mutants
 from compiler.targets.python import monitor as monitors
-from fretc.audit.measurements.judgement import Judgement, each_judged
+from fretc.audit.measurements.judgement import Judgement, judge_each
 from fretc.audit.plan import Plan
 from fretc.audit.pool import WorkerDied, each, was_killed
 from fretc.logs.reader import read
@@ -114,19 +114,19 @@ def _is_told(declarations: Declarations, name: str) -> bool:
 
 def suspects(requirement: FormalizedRequirement) -> MutantBatch:
     """The mutants of a requirement in one monitor, with the requirement itself."""
-    judged: list[Mutant] = []
+    judge: list[Mutant] = []
     refused: list[tuple[Mutant, str]] = []
     for mutant in mutants(requirement):
         why = monitors.refuse(plain(mutant.requirement))
         if why is None:
-            judged.append(mutant)
+            judge.append(mutant)
         else:
             refused.append((mutant, why.message))
-    numbered = [_called(each.requirement, f"M{n}") for n, each in enumerate(judged)]
+    numbered = [_called(each.requirement, f"M{n}") for n, each in enumerate(judge)]
     text = monitors.text(_called(requirement, "R"), *numbered)
     watching = load(f"{requirement.id}_mutants", text)
     return MutantBatch(
-        requirement.id, requirement.fingerprint, tuple(judged), tuple(refused), watching
+        requirement.id, requirement.fingerprint, tuple(judge), tuple(refused), watching
     )
 
 
@@ -181,7 +181,7 @@ def judgements(
     columns = {name: truths.columns.get(name, unknown) for name in monitor.PROPOSITIONS}
     if cut is not None:
         cut = {name: cut.get(name) for name in columns}
-    return each_judged(monitor, columns, cut, ticks, intact=intact, end=end)
+    return judge_each(monitor, columns, cut, ticks, intact=intact, end=end)
 
 
 def difference(own: Judgement, other: Judgement) -> Difference | None:

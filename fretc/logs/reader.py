@@ -29,7 +29,7 @@ from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder, of_all
 from fretc.logs.storage.inputs import Input, opened
 from fretc.logs.storage.log_names import name_of
-from fretc.logs.storage.parts import Numbered, Part, around, widened
+from fretc.logs.storage.parts import Part, RenumberingSink, around, widened
 from fretc.logs.storage.splits import ACTIVE, run_name, split
 from fretc.logs.topic_columns import Columns
 from fretc.logs.topics import clocks, never_stated, topic
@@ -280,7 +280,7 @@ def _folder(
     place: Span,
 ) -> _Run | Diagnostic:
     """The files of one run, in the order of its metadata."""
-    sink = Numbered(one)
+    sink = RenumberingSink(one)
     if isinstance(about, Diagnostic):
         return about
     if about.compressed:

@@ -19,10 +19,10 @@ from compiler.files.build_id import __version__
 from compiler.files.records import plain, replace
 from compiler.files.text_files import file_sha256
 from fretc.audit.evidence.basis import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
-from fretc.audit.evidence.briefs import brief
 from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.estimates import estimates
 from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.result_summaries import brief
 from fretc.audit.evidence.schema import Document, Requirement, Result
 from fretc.audit.evidence.schema import Finding as OfLog
 from fretc.audit.many_logs import Engine, audit_logs, named_situations

@@ -15,7 +15,7 @@ from fretc.audit.evidence.verdicts import BROKEN, SHOWN
 from monitors import kernel
 
 
-class Tone(StrEnum):
+class RoundOutcome(StrEnum):
     """The combined verdict of a round."""
 
     VIOLATED = "violated"
@@ -48,13 +48,13 @@ _NEUTRAL = (kernel.VACUOUS, "not exercised", "retired")
 """Verdicts that do not count beside others."""
 
 
-def tone(verdicts: Iterable[str]) -> Tone:
+def round_outcome(verdicts: Iterable[str]) -> RoundOutcome:
     """The combined verdict of a round from its verdicts, at least one."""
     words = {*verdicts}
     if words & {*BROKEN}:
-        return Tone.VIOLATED
+        return RoundOutcome.VIOLATED
     left_open = words - {*SHOWN, *_NEUTRAL}
-    return Tone.SHOWN if words & {*SHOWN} and not left_open else Tone.OPEN
+    return RoundOutcome.SHOWN if words & {*SHOWN} and not left_open else RoundOutcome.OPEN
 
 
 def change(rounds: Sequence[Sequence[str]]) -> Change:
@@ -64,27 +64,31 @@ def change(rounds: Sequence[Sequence[str]]) -> Change:
         rounds: the verdicts of each round, the newest last; empty for a round that did not judge
             it. At least one round has a verdict.
     """
-    *before, now = [tone(verdicts) if verdicts else None for verdicts in rounds]
+    *before, now = [round_outcome(verdicts) if verdicts else None for verdicts in rounds]
     judged = [each for each in before if each is not None]
     last = last_known(rounds)
     if now is None:
         assert judged, "it was never judged"
         return Change.GONE
     if not judged:
-        return Change.FIRST_VIOLATED if now is Tone.VIOLATED else Change.FIRST
-    was_violated = last is not None and before[last] is Tone.VIOLATED
+        return Change.FIRST_VIOLATED if now is RoundOutcome.VIOLATED else Change.FIRST
+    was_violated = last is not None and before[last] is RoundOutcome.VIOLATED
     match now:
-        case Tone.VIOLATED:
+        case RoundOutcome.VIOLATED:
             return Change.STILL if was_violated else Change.NEW
-        case Tone.SHOWN:
+        case RoundOutcome.SHOWN:
             return Change.FIXED if was_violated else Change.STEADY
-        case Tone.OPEN:
+        case RoundOutcome.OPEN:
             return Change.LOST if last is not None else Change.NEVER_SHOWN
 
 
 def last_known(rounds: Sequence[Sequence[str]]) -> int | None:
     """The index of the last round before the newest with a known outcome; None: none."""
-    known = [i for i, one in enumerate(rounds[:-1]) if one and tone(one) is not Tone.OPEN]
+    known = [
+        i
+        for i, one in enumerate(rounds[:-1])
+        if one and round_outcome(one) is not RoundOutcome.OPEN
+    ]
     return known[-1] if known else None
 
 
@@ -95,8 +99,8 @@ def is_flaky(rounds: Sequence[Sequence[str]], of_software: Mapping[str, Sequence
         rounds: the verdicts of each round, the newest last.
         of_software: the verdicts of the runs of each commit.
     """
-    tones = [tone(verdicts) for verdicts in rounds if verdicts]
-    known = [each for each in tones if each is not Tone.OPEN]
+    round_outcomes = [round_outcome(verdicts) for verdicts in rounds if verdicts]
+    known = [each for each in round_outcomes if each is not RoundOutcome.OPEN]
     turns = sum(a is not b for a, b in pairwise(known))
     return turns > 1 or any(
         {*verdicts} & {*BROKEN} and {*verdicts} & {*SHOWN} for verdicts in of_software.values()

@@ -14,7 +14,7 @@ from statistics import median
 from fretc.report.model import phrases
 from fretc.report.pictures.histograms import step
 from fretc.report.pictures.plots import places
-from fretc.trends.changes import Tone
+from fretc.trends.changes import RoundOutcome
 from fretc.trends.comparisons import Comparison, Finding, Measure, Value, amount
 
 _CELL, _TALL = 9, 16
@@ -25,7 +25,7 @@ _MOST_DOTS = 40
 """The most dots of a round: the worst ones, and as many others as fit."""
 _LABELS = 14
 """The approximate number of labelled rounds on the axis."""
-_KINDS = {Tone.VIOLATED: "violated", Tone.SHOWN: "shown", Tone.OPEN: "open"}
+_KINDS = {RoundOutcome.VIOLATED: "violated", RoundOutcome.SHOWN: "shown", RoundOutcome.OPEN: "open"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,31 +49,31 @@ class Strip:
     text: str
 
 
-def strip(tones: Sequence[Tone | None]) -> Strip:
+def strip(round_outcomes: Sequence[RoundOutcome | None]) -> Strip:
     """The newest rounds: a violated one is a tall bar, a shown one low, an open one hollow."""
-    first = max(0, len(tones) - MOST_CELLS)
-    shown = tones[first:]
+    first = max(0, len(round_outcomes) - MOST_CELLS)
+    shown = round_outcomes[first:]
     cells = tuple(_cell(i, each) for i, each in enumerate(shown))
     return Strip(_CELL * len(shown), _TALL, cells, _in_words(shown, first + 1))
 
 
-def _cell(place: int, each: Tone | None) -> Cell:
+def _cell(place: int, each: RoundOutcome | None) -> Cell:
     x, width = place * _CELL + 1, _CELL - 2
     match each:
-        case Tone.VIOLATED:
+        case RoundOutcome.VIOLATED:
             return Cell("violated", x, 0, width, _TALL)
-        case Tone.SHOWN:
+        case RoundOutcome.SHOWN:
             return Cell("shown", x, _TALL - 7, width, 7)
-        case Tone.OPEN:
+        case RoundOutcome.OPEN:
             return Cell("open", x, _TALL - 12, width, 12)
         case None:
             return Cell("absent", x, _TALL - 1, width, 1)
 
 
-def _in_words(tones: Sequence[Tone | None], first: int) -> str:
+def _in_words(round_outcomes: Sequence[RoundOutcome | None], first: int) -> str:
     """The rounds in words: `rounds 1 to 4 shown, 5 violated`."""
     parts, at = [], first
-    for each, some in groupby(tones):
+    for each, some in groupby(round_outcomes):
         last = at + len(list(some)) - 1
         which = f"{at}" if at == last else f"{at} to {last}"
         parts.append(f"{which} {'not judged' if each is None else _KINDS[each]}")

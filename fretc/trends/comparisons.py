@@ -16,7 +16,7 @@ from statistics import median
 from fretc.audit.evidence.schema import Threshold
 from fretc.report.model.phrases import some, value
 from fretc.trends.histories import Histories, Judged, Run, Scenario
-from fretc.trends.rank_test import Tail, decidable, fewer, holm, larger
+from fretc.trends.rank_test import RankTest, decidable, fewer, holm, larger
 
 LEVEL = 0.05
 """The probability of even one false regression among all that are reported."""
@@ -100,7 +100,7 @@ class Comparison:
 
 
 @dataclass(frozen=True, slots=True)
-class Sides:
+class ComparedRuns:
     """The two compared sets of runs."""
 
     after: str
@@ -109,7 +109,7 @@ class Sides:
     is_before: Callable[[Run], bool]
 
 
-def sides(histories: Histories) -> Sides:
+def sides(histories: Histories) -> ComparedRuns:
     """The newest version and the one before it; else the newest round and all before it.
 
     A version is as new as its newest run.
@@ -122,14 +122,14 @@ def sides(histories: Histories) -> Sides:
     versions = sorted(place, key=place.__getitem__)
     if len(versions) > 1 and place[versions[-1]][0] == histories.newest:
         before, after = versions[-2:]
-        return Sides(
+        return ComparedRuns(
             f"version {after}",
             f"version {before}",
             lambda run: run.version == after,
             lambda run: run.version == before,
         )
     newest = histories.newest
-    return Sides(
+    return ComparedRuns(
         "the newest round",
         "the rounds before it",
         lambda run: run.round == newest,
@@ -137,7 +137,9 @@ def sides(histories: Histories) -> Sides:
     )
 
 
-def comparisons(histories: Histories, held: Sides, level: float = LEVEL) -> tuple[Comparison, ...]:
+def comparisons(
+    histories: Histories, held: ComparedRuns, level: float = LEVEL
+) -> tuple[Comparison, ...]:
     """All comparisons, the regressions first.
 
     Only comparisons that could be significant among all others are tested (Tarone): this depends on
@@ -180,8 +182,8 @@ _Strata = Sequence[tuple[Sequence[float], Sequence[float]]]
 
 
 def _tested(
-    runs: Sequence[Run], held: Sides, measure: Measure, values: Sequence[Value]
-) -> tuple[Tail, _Strata]:
+    runs: Sequence[Run], held: ComparedRuns, measure: Measure, values: Sequence[Value]
+) -> tuple[RankTest, _Strata]:
     """The test, and its numbers: each log once, the newest ones first."""
     strata: dict[Scenario, tuple[list[float], list[float]]] = defaultdict(lambda: ([], []))
     passed: set[str] = set()

@@ -17,7 +17,7 @@ from datetime import UTC, datetime
 from pathlib import PurePosixPath
 
 from fretc.audit.evidence.basis import BINDINGS, CLOCK, PARAMS, SENTENCE, TOPICS
-from fretc.audit.evidence.briefs import Brief, EvidenceSource, RunFacts
+from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary, RunFacts
 from fretc.audit.evidence.schema import Selection
 from fretish.reading.natural_order import natural
 
@@ -310,7 +310,7 @@ class _Reader:
             time_of(facts),
         )
 
-    def _add(self, brief: Brief, run: int, basis: int) -> None:
+    def _add(self, brief: ResultSummary, run: int, basis: int) -> None:
         one = self.runs[run]
         self.judged[brief.requirement, one.scenario].append(
             Judged(
@@ -329,7 +329,7 @@ class _Reader:
         for one in source.probabilities:
             self.judged[one.requirement, ALL_RUNS].append(Judged(-1, own, one.answer, 0))
 
-    def _basis(self, brief: Brief) -> int:
+    def _basis(self, brief: ResultSummary) -> int:
         prints = brief.fingerprints
         parts = tuple(str(getattr(prints, name)) for name in _BASIS)
         return self._numbers.setdefault(parts, len(self._numbers))

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from fretc.audit.evidence.schema import Selection
-from fretc.trends.changes import Change, Tone, tone
+from fretc.trends.changes import Change, RoundOutcome, round_outcome
 from fretc.trends.histories import Histories, Judged, Run
 
 
@@ -38,7 +38,7 @@ def is_left_out(
             for selection in newest.selections
         )
     if change is Change.FIXED:
-        violated = [one for one in before if tone([one.verdict]) is Tone.VIOLATED]
+        violated = [one for one in before if round_outcome([one.verdict]) is RoundOutcome.VIOLATED]
         last = max((one.round for one in violated), default=-1)
         names, logs = {run.name for run in now}, {run.content for run in now}
         known = {runs[one.run].content for one in before}

@@ -181,7 +181,7 @@ def _rows(items: Sequence[Item]) -> list[dict[str, Any]]:
         {
             "requirement": item.requirement,
             "scenario": str(item.scenario),
-            "strip": asdict(strip(item.tones)),
+            "strip": asdict(strip(item.round_outcomes)),
             "now": _now(item),
         }
         for item in items

@@ -28,7 +28,7 @@ MOST, MOST_OF_STRATUM = 100, 50
 
 
 @dataclass(frozen=True, slots=True)
-class Tail:
+class RankTest:
     """The probability of ranks at least so large if nothing has changed."""
 
     p: float
@@ -38,7 +38,7 @@ class Tail:
     """The number of arrangements."""
 
 
-def larger(strata: Sequence[Stratum]) -> Tail:
+def larger(strata: Sequence[Stratum]) -> RankTest:
     """Test whether the later numbers are larger; strata with one side only are skipped.
 
     Args:
@@ -52,7 +52,7 @@ def larger(strata: Sequence[Stratum]) -> Tail:
         whole = np.convolve(whole, _sums(ranks, len(after)))
         arrangements *= comb(len(ranks), len(after))
     top = int(np.flatnonzero(whole)[-1]) if whole.any() else 0
-    return Tail(min(1.0, float(whole[total:].sum())), float(whole[top]), arrangements)
+    return RankTest(min(1.0, float(whole[total:].sum())), float(whole[top]), arrangements)
 
 
 def doubled_ranks(numbers: Sequence[float]) -> list[int]:

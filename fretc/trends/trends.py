@@ -6,13 +6,21 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from fretc.audit.evidence.briefs import EvidenceSource
-from fretc.trends.changes import RED, Change, Tone, change, is_flaky, last_known, tone
+from fretc.audit.evidence.result_summaries import EvidenceSource
+from fretc.trends.changes import (
+    RED,
+    Change,
+    RoundOutcome,
+    change,
+    is_flaky,
+    last_known,
+    round_outcome,
+)
 from fretc.trends.comparisons import (
     LEVEL,
+    ComparedRuns,
     Comparison,
     Finding,
-    Sides,
     comparisons,
     sides,
 )
@@ -45,22 +53,22 @@ class Item:
     """The verdicts of each round, the newest last."""
 
     @property
-    def tones(self) -> tuple[Tone | None, ...]:
+    def round_outcomes(self) -> tuple[RoundOutcome | None, ...]:
         """The combined verdict of each round; None: not judged."""
-        return tuple(tone(verdicts) if verdicts else None for verdicts in self.rounds)
+        return tuple(round_outcome(verdicts) if verdicts else None for verdicts in self.rounds)
 
     @property
     def was_violated(self) -> bool:
         """Whether it was violated when it was last known before the newest round."""
         last = last_known(self.rounds)
-        return last is not None and self.tones[last] is Tone.VIOLATED
+        return last is not None and self.round_outcomes[last] is RoundOutcome.VIOLATED
 
     @property
-    def last(self) -> Tone:
+    def last(self) -> RoundOutcome:
         """The verdicts of the last round that judged it."""
         if self.change is Change.NOT_SELECTED and self.was_violated:
-            return Tone.VIOLATED
-        return next(filter(None, reversed(self.tones)))
+            return RoundOutcome.VIOLATED
+        return next(filter(None, reversed(self.round_outcomes)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +81,7 @@ class Trends:
     """Id of a requirement → its sentence."""
     items: tuple[Item, ...]
     """Items, the worst first."""
-    held: Sides
+    held: ComparedRuns
     comparisons: tuple[Comparison, ...]
     level: float
     is_after: tuple[bool, ...]
@@ -132,7 +140,7 @@ class Group:
     def text(self) -> str:
         """The name with the last verdicts."""
         last = [item.last for item in self.items]
-        counts = [f"{last.count(each)} {each}" for each in Tone if each in last]
+        counts = [f"{last.count(each)} {each}" for each in RoundOutcome if each in last]
         return f"{self.name}: {', '.join(counts)}"
 
 

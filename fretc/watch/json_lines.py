@@ -14,7 +14,7 @@ from compiler.files.records import (
     json_schema,
     plain,
 )
-from fretc.watch.news import Changed, Found, Late, News, RunEnded
+from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, StateChange, WatchEvent
 from fretc.watch.sources.source import Interrupted, Missed, Opened, Reconnected
 
 _Time = Annotated[Whole | None, about("nanoseconds on the declared clock; null: there is none")]
@@ -117,15 +117,15 @@ def schema() -> dict[str, Any]:
 _HEAD = ("title", "description")
 
 
-def line(news: News) -> dict[str, Any]:
+def line(event: WatchEvent) -> dict[str, Any]:
     """The JSON object of one event."""
-    found: dict[str, Any] = plain(_line(news))
+    found: dict[str, Any] = plain(_line(event))
     return found
 
 
-def _line(news: News) -> Line:
-    match news:
-        case Changed(state, _, time):
+def _line(event: WatchEvent) -> Line:
+    match event:
+        case StateChange(state, _, time):
             return RequirementLine(
                 state.requirement,
                 state.verdict,
@@ -136,9 +136,9 @@ def _line(news: News) -> Line:
                 state.violated_ns,
                 time,
             )
-        case Late(ticks, messages):
+        case LateMessages(ticks, messages):
             return LateLine(ticks, dict(messages))
-        case Found(diagnostic):
+        case DiagnosticEvent(diagnostic):
             return MessageLine(
                 diagnostic.code.number,
                 str(diagnostic.severity),
@@ -156,4 +156,4 @@ def _line(news: News) -> Line:
         case RunEnded(number, verdicts, recording, ticks):
             return RunLine(number, ticks, dict(verdicts), recording)
         case _:
-            assert_never(news)
+            assert_never(event)

@@ -17,7 +17,7 @@ from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.traces import trace
 from fretc.logs.stream import End, Stream, Tick, Withdrawn
 from fretc.watch.decoding import Decoder, Timed
-from fretc.watch.judging import Judges
+from fretc.watch.requirement_monitors import RequirementMonitors
 from fretc.watch.sources.source import Arrival
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -77,7 +77,7 @@ class Session:
         patience = self._clock.patience
         assert patience is not None, "a clock by stamps has a lateness"
         self._patience = patience
-        self._judges = Judges(plan)
+        self._judges = RequirementMonitors(plan)
         self._stream = Stream(plan.declarations, self._judges.propositions)
         self._decoder = Decoder(plan.declarations)
         self._latest: dict[str, int] = {}
@@ -320,7 +320,7 @@ class Session:
             return recording
         found = trace(declarations, recording, names)
         times = found.timeline.times.tolist()
-        self._judges, self._ahead = Judges(self._plan), None
+        self._judges, self._ahead = RequirementMonitors(self._plan), None
         rows = rows_of([found.columns[name] for name in names], len(times))
         for time, row in zip(times, rows, strict=True):
             self._judges.step(Tick(time, dict(zip(names, row, strict=True))))

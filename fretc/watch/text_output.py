@@ -8,7 +8,7 @@ from typing import assert_never
 from fretc.audit.evidence.verdicts import VERDICTS
 from fretc.terminal.output import Piece
 from fretc.terminal.screen import Screen, fitted, padded, titled, width
-from fretc.watch.news import Changed, Found, Late, News, RunEnded
+from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, StateChange, WatchEvent
 from fretc.watch.session import Session
 from fretc.watch.sources.source import Interrupted, Missed, Opened, Reconnected
 from fretish.bindings.amounts import duration, seconds
@@ -75,17 +75,17 @@ def _ago(time: int, now: int) -> str:
     return f"{duration(max(0, now - time) / _S)} ago"
 
 
-def line(news: News, start: int | None) -> str | None:
+def line(event: WatchEvent, start: int | None) -> str | None:
     """The line of an event; None: a diagnostic says the same.
 
     Args:
-        news: the event.
+        event: the event.
         start: the time of the first tick, from which seconds count; None: there is none yet.
     """
-    match news:
-        case Changed(state, before, time):
+    match event:
+        case StateChange(state, before, time):
             return _changed(state, before, time, start)
-        case Late(ticks, messages):
+        case LateMessages(ticks, messages):
             of = ", ".join(f"{count} of {topic}" for topic, count in messages.items() if count)
             return f"late messages ({of}): {ticks} judged ticks became unknown"
         case Opened(name):
@@ -102,10 +102,10 @@ def line(news: News, start: int | None) -> str | None:
             where = f", recorded in {recording}" if recording else ""
             of = ", ".join(f"{id} {verdict}" for id, verdict in verdicts.items())
             return f"run {number} ended after {ticks} ticks{where}: {of}"
-        case Found():
+        case DiagnosticEvent():
             return None
         case _:
-            assert_never(news)
+            assert_never(event)
 
 
 def _changed(state: State, before: State | None, time: int, start: int | None) -> str | None:

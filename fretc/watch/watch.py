@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from fretc.audit.plan import Plan
-from fretc.watch.news import Changed, Found, Late, News, RunEnded
+from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, StateChange, WatchEvent
 from fretc.watch.recording import Recorder
 from fretc.watch.session import Ended, Jump, Session
 from fretc.watch.sources.source import (
@@ -86,7 +86,7 @@ class Watch:
 
     # Arrivals
 
-    def take(self, item: Arrival | Event | Idle) -> Iterator[News]:
+    def take(self, item: Arrival | Event | Idle) -> Iterator[WatchEvent]:
         """Process one message or event of a source, and return the events to report."""
         match item:
             case Arrival():
@@ -112,9 +112,9 @@ class Watch:
                 yield item
             case Problem(diagnostic):
                 self.failed |= diagnostic.is_error
-                yield Found(diagnostic)
+                yield DiagnosticEvent(diagnostic)
 
-    def _arrive(self, arrival: Arrival) -> Iterator[News]:
+    def _arrive(self, arrival: Arrival) -> Iterator[WatchEvent]:
         self._began = self._began or arrival.log_time
         self._has_begun = True
         found = self.session.arrive(arrival)
@@ -128,7 +128,7 @@ class Watch:
         if found is not None or self._is_due(arrival.log_time):
             yield from self._passed(found)
         for problem in self.session.problems:
-            yield Found(problem)
+            yield DiagnosticEvent(problem)
         self.session.problems.clear()
         if arrival.log_time - self._began > SILENCE:
             yield from self._silences(arrival.log_time)
@@ -141,38 +141,38 @@ class Watch:
         self._looked, self._judged = now, judged
         return True
 
-    def _passed(self, wrong: Diagnostic | None) -> Iterator[News]:
+    def _passed(self, wrong: Diagnostic | None) -> Iterator[WatchEvent]:
         if wrong is not None:
             self.failed = self.ended = True
-            yield Found(wrong)
+            yield DiagnosticEvent(wrong)
         yield from self._changes()
 
-    def _changes(self, *, ahead: bool = True) -> Iterator[News]:
+    def _changes(self, *, ahead: bool = True) -> Iterator[WatchEvent]:
         if self.session.late_ticks > self._late:
             self._late = self.session.late_ticks
-            yield Late(self._late, dict(self.session.late))
+            yield LateMessages(self._late, dict(self.session.late))
         for state in self.session.states(ahead=ahead):
             before = self._states.get(state.requirement)
             if state != before:
                 self._states[state.requirement] = state
-                yield Changed(state, before, self.session.now)
+                yield StateChange(state, before, self.session.now)
 
-    def _silences(self, now: int) -> Iterator[News]:
+    def _silences(self, now: int) -> Iterator[WatchEvent]:
         self._began = self._began or now
         if now - self._began < SILENCE:
             return
         for name, topic in self.session.topics.items():
             if not topic.count and name not in self._silent:
                 self._silent.add(name)
-                yield Found(_silent(name))
+                yield DiagnosticEvent(_silent(name))
 
-    def _begin_anew(self, jump: Jump, arrival: Arrival) -> Iterator[News]:
+    def _begin_anew(self, jump: Jump, arrival: Arrival) -> Iterator[WatchEvent]:
         """End this run and begin another one, because a clock was set back."""
-        yield Found(_set_back(jump))
+        yield DiagnosticEvent(_set_back(jump))
         yield from self.finish(begins_anew=True)
         if len(self.runs) >= MOST_RUNS:
             self.failed = self.ended = True
-            yield Found(_two_clocks(jump))
+            yield DiagnosticEvent(_two_clocks(jump))
             return
         self.session = Session(self._plan)
         if self._lost_since is not None:
@@ -187,7 +187,7 @@ class Watch:
 
     # The recording
 
-    def _recorded(self, arrival: Arrival) -> Iterator[News]:
+    def _recorded(self, arrival: Arrival) -> Iterator[WatchEvent]:
         if self._recorder is None or arrival.channel.topic not in self.session.topics:
             return
         try:
@@ -196,16 +196,16 @@ class Watch:
         except OSError as error:
             yield from self._not_recorded(error)
 
-    def _not_recorded(self, error: OSError) -> Iterator[News]:
+    def _not_recorded(self, error: OSError) -> Iterator[WatchEvent]:
         self.failed = True
         path = self._record
         if self._recorder is not None:
             path = self._recorder.path
             self._recorder.abandon()
         self._recorder = None
-        yield Found(_not_recorded(str(path), error.strerror or str(error)))
+        yield DiagnosticEvent(_not_recorded(str(path), error.strerror or str(error)))
 
-    def finish(self, *, begins_anew: bool = False) -> Iterator[News]:
+    def finish(self, *, begins_anew: bool = False) -> Iterator[WatchEvent]:
         """End the present run: its verdicts are those of an audit of its recording.
 
         If the source was never connected, there is neither a run nor a recording.
@@ -222,7 +222,7 @@ class Watch:
         found = self.session.end()
         if not isinstance(found, Ended):
             self.failed = True
-            yield Found(found)
+            yield DiagnosticEvent(found)
             found = Ended(dict.fromkeys(self._states, "no data"), self.session.now)
         path, session = None, self.session
         if self._recorder is not None:
@@ -237,7 +237,7 @@ class Watch:
         if session.disordered:
             log = path or (self._log if not self.runs and not begins_anew else None)
             judged = _no_log() if log is None else session.judge_again(log)
-            yield Found(_disordered(session.disordered, log, judged))
+            yield DiagnosticEvent(_disordered(session.disordered, log, judged))
             verdicts = verdicts if isinstance(judged, Diagnostic) else judged
         yield from self._changes(ahead=False)
         run = RunEnded(len(self.runs) + 1, verdicts, path, session.ticks)

@@ -43,7 +43,7 @@ _FEW = 10
 
 
 @dataclass(frozen=True, slots=True)
-class Drafted:
+class DraftedSignal:
     """A signal of the draft."""
 
     name: str
@@ -62,7 +62,7 @@ class Drafted:
 
 
 @dataclass(frozen=True, slots=True)
-class Other:
+class UndraftedField:
     """A field without a drafted signal, and the values that it can have."""
 
     path: str
@@ -74,8 +74,8 @@ class TopicDraft:
     """A topic with its signals and its other fields."""
 
     title: str
-    signals: tuple[Drafted, ...]
-    others: tuple[Other, ...]
+    signals: tuple[DraftedSignal, ...]
+    others: tuple[UndraftedField, ...]
     remark: str
     """The reason why no field of the topic can be bound; empty: some can."""
 
@@ -132,12 +132,12 @@ def draft(
     )
 
 
-def drafted_signals(overview: Overview) -> tuple[Drafted, ...]:
+def drafted_signals(overview: Overview) -> tuple[DraftedSignal, ...]:
     """The signals that a draft declares."""
     return tuple(signal for topic in _topics(overview) for signal in topic.signals)
 
 
-def plain_signals(overview: Overview) -> tuple[Drafted, ...]:
+def plain_signals(overview: Overview) -> tuple[DraftedSignal, ...]:
     """A signal for each enumeration or unitless field, for types that are not well known."""
     taken: set[str] = set()
     return tuple(
@@ -148,9 +148,9 @@ def plain_signals(overview: Overview) -> tuple[Drafted, ...]:
     )
 
 
-def _plain(topic: Topic, field: str, values: tuple[str, ...]) -> Drafted:
+def _plain(topic: Topic, field: str, values: tuple[str, ...]) -> DraftedSignal:
     name, type_ = _word(f"{topic.name}_{field}"), short_type(topic.type)
-    return Drafted(name, topic.name, type_, Quantity(field, ""), _max_age(topic), values)
+    return DraftedSignal(name, topic.name, type_, Quantity(field, ""), _max_age(topic), values)
 
 
 def _fields(overview: Overview, topic: str) -> dict[str, tuple[str, ...]]:
@@ -163,12 +163,12 @@ def _fields(overview: Overview, topic: str) -> dict[str, tuple[str, ...]]:
     }
 
 
-def _is_flag(overview: Overview, signal: Drafted) -> bool:
+def _is_flag(overview: Overview, signal: DraftedSignal) -> bool:
     leaves = overview.leaves.get(signal.topic) or {}
     return leaves[signal.quantity.field].kind is Kind.FLAG
 
 
-def _example(overview: Overview, signals: Sequence[Drafted]) -> str:
+def _example(overview: Overview, signals: Sequence[DraftedSignal]) -> str:
     """An expression over the first signal."""
     if not signals:
         return "x < 5 cm"
@@ -268,7 +268,7 @@ def _topics(overview: Overview) -> list[TopicDraft]:
         paths_of_signals = {signal.path for signal in signals}
         fields = {f"{name}.{field}": each for field, each in _fields(overview, name).items()}
         others = tuple(
-            Other(each, values)
+            UndraftedField(each, values)
             for each, values in fields.items()
             if each not in paths_of_signals and path(each) is not None
         )
@@ -277,14 +277,14 @@ def _topics(overview: Overview) -> list[TopicDraft]:
     return drafts
 
 
-def _drafted(topic: Topic, leaves: Leaves, words: Words) -> list[Drafted]:
+def _drafted(topic: Topic, leaves: Leaves, words: Words) -> list[DraftedSignal]:
     """The drafted signals of a topic of a well-known type; their names are not yet unique."""
     if not topic.count:
         return []
     base = _word(topic.name)
     type_ = short_type(topic.type)
     return [
-        Drafted(
+        DraftedSignal(
             "_".join(filter(None, (base, quantity.name))),
             topic.name,
             type_,
@@ -308,7 +308,7 @@ _RESERVED = {"and", "or", "not", "for", "true", "false", "abs", "min", "max"}
 """Keywords of bindings and sentences, which cannot be names of signals."""
 
 
-def _named(signal: Drafted, names: set[str]) -> Drafted:
+def _named(signal: DraftedSignal, names: set[str]) -> DraftedSignal:
     """The signal with a unique name that expressions can use."""
     name, number = signal.name, 2
     while name in names or name in _RESERVED:
@@ -363,7 +363,7 @@ def _max_age(topic: Topic) -> str:
     return "" if period is None else in_words(_nice(_AGES * period, _ROUND))
 
 
-def _tick(overview: Overview, signals: Sequence[Drafted]) -> tuple[int, str]:
+def _tick(overview: Overview, signals: Sequence[DraftedSignal]) -> tuple[int, str]:
     """A tick in which each fast topic sends one message, and the reason for its length."""
     topics = overview.recording.topics
     drafted = dict.fromkeys(signal.topic for signal in signals) or dict.fromkeys(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from compiler.situations.situations import Situation
 from fretc.audit.evidence.basis import Basis
-from fretc.audit.measurements.count_trials import Chance
+from fretc.audit.measurements.count_trials import RequiredProbability
 from fretc.audit.measurements.violations import Demand
 
 
@@ -23,5 +23,5 @@ class AuditedRequirement:
     """The response that is missing when the requirement is violated."""
     situations: tuple[Situation, ...] = field(compare=False)
     """The situations to look for in runs, from the sentence and the bindings."""
-    chance: Chance | None = None
+    chance: RequiredProbability | None = None
     """The probability; with one, only all runs together are judged."""

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import cast
 
-from fretc.audit.evidence.briefs import Brief
 from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.probabilities import (
     AVERAGE,
@@ -18,6 +17,7 @@ from fretc.audit.evidence.probabilities import (
     low,
     times,
 )
+from fretc.audit.evidence.result_summaries import ResultSummary
 from fretc.audit.measurements import confidence_intervals as odds
 from fretc.audit.measurements.confidence_intervals import INCONCLUSIVE, SUPPORTED
 from fretc.audit.measurements.trials import NO_TRIALS, Trials
@@ -25,7 +25,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 
 def estimates(
-    claims: Sequence[AuditedRequirement], results: Sequence[Brief], confidence: float
+    claims: Sequence[AuditedRequirement], results: Sequence[ResultSummary], confidence: float
 ) -> tuple[Estimated, ...]:
     """The answer for each audited requirement with a probability.
 
@@ -56,7 +56,9 @@ def warnings(estimates: Sequence[Estimated]) -> Iterator[Diagnostic]:
             )
 
 
-def _estimated(claim: AuditedRequirement, results: Sequence[Brief], level: float) -> Estimated:
+def _estimated(
+    claim: AuditedRequirement, results: Sequence[ResultSummary], level: float
+) -> Estimated:
     assert claim.chance is not None
     op, bound = claim.chance.op, Fraction(claim.chance.bound)
     distinct = _distinct(results)
@@ -86,20 +88,20 @@ def _estimated(claim: AuditedRequirement, results: Sequence[Brief], level: float
     )
 
 
-def _intact(results: Sequence[Brief]) -> int:
+def _intact(results: Sequence[ResultSummary]) -> int:
     """The results of intact logs with a trigger."""
     return sum(bool(r.intact and _trials(r).count) for r in results)
 
 
-def _distinct(results: Sequence[Brief]) -> list[Brief]:
+def _distinct(results: Sequence[ResultSummary]) -> list[ResultSummary]:
     """One result for each content: a copy of a log adds no information."""
-    first: dict[str, Brief] = {}
+    first: dict[str, ResultSummary] = {}
     for result in results:
         first.setdefault(result.content, result)
     return list(first.values())
 
 
-def _trials(result: Brief) -> Trials:
+def _trials(result: ResultSummary) -> Trials:
     return result.trials or NO_TRIALS
 
 

@@ -15,7 +15,13 @@ from compiler.files.checked_json import SchemaError, parsed
 from compiler.files.records import UnsetType, decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.briefs import Brief, Headed, RunFacts, brief, run_facts
+from fretc.audit.evidence.result_summaries import (
+    HeadProperties,
+    ResultSummary,
+    RunFacts,
+    brief,
+    run_facts,
+)
 from fretc.audit.evidence.schema import (
     Document,
     Result,
@@ -37,7 +43,7 @@ VERDICTS = (
 
 
 @dataclass(frozen=True)
-class EvidenceFile(Headed):
+class EvidenceFile(HeadProperties):
     """An evidence file in memory, with its name and its SHA-256: an `EvidenceSource`."""
 
     file: str
@@ -54,7 +60,7 @@ class EvidenceFile(Headed):
         """One result for each run and requirement."""
         return self.document.results
 
-    def briefs(self) -> Iterator[tuple[int, Brief]]:
+    def briefs(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order."""
         for place, result in enumerate(self.results):
             yield place, brief(result)

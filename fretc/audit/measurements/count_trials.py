@@ -25,7 +25,7 @@ from monitors.kernel import Column
 
 
 @dataclass(frozen=True, slots=True)
-class Chance:
+class RequiredProbability:
     """The required probability, and the demand that it is about."""
 
     op: ComparisonOperator
@@ -40,12 +40,12 @@ class Chance:
 
 
 @with_recursion_limit
-def chance(requirement: FormalizedRequirement) -> Chance | None:
+def chance(requirement: FormalizedRequirement) -> RequiredProbability | None:
     """The required probability; None: the sentence has none."""
     odds = requirement.sentence.probability
     if odds is None:
         return None
-    return Chance(
+    return RequiredProbability(
         odds.op,
         odds.digits,
         obligation(requirement.sentence, requirement.ticks or 0, predicates.Past()),

@@ -42,7 +42,7 @@ class Judgement:
         return kernel.NO_DATA not in (self.outcome.verdict, self.longer)
 
 
-def judged(
+def judge(
     monitor: Monitor,
     columns: Mapping[str, Column],
     cut: Mapping[str, bool | None] | None,
@@ -63,11 +63,11 @@ def judged(
         end: the verdict on demands that are open at the end.
         engine: the evaluator of the monitor.
     """
-    (judgement,) = each_judged(monitor, columns, cut, ticks, intact=intact, end=end, engine=engine)
+    (judgement,) = judge_each(monitor, columns, cut, ticks, intact=intact, end=end, engine=engine)
     return judgement
 
 
-def each_judged(
+def judge_each(
     monitor: Monitor,
     columns: Mapping[str, Column],
     cut: Mapping[str, bool | None] | None,

@@ -21,7 +21,7 @@ from monitors.kernel import Column
 
 
 @dataclass(frozen=True, slots=True)
-class Encounter:
+class SituationTicks:
     """The first ticks by which a situation has certainly occurred, and may have occurred."""
 
     key: str
@@ -40,9 +40,9 @@ def nowhere_known(ticks: int) -> Near:
     return lambda _: Column(0, (1 << ticks) - 1)
 
 
-def encounters(
+def situation_ticks(
     situations: Sequence[Situation], columns: Mapping[str, Column], ticks: int, near: Near
-) -> Iterator[Encounter]:
+) -> Iterator[SituationTicks]:
     """The situations in one run, in their order.
 
     Args:
@@ -73,7 +73,7 @@ def encounters(
         seen, perhaps = _first(true), _first(may)
         if seen != perhaps:  # unknown values leave the bounds apart
             seen, perhaps = _exact(formula, known, ticks, counted, (seen, perhaps))
-        yield Encounter(situation.key, seen, perhaps if seen is None else None)
+        yield SituationTicks(situation.key, seen, perhaps if seen is None else None)
 
 
 _THERE = ""

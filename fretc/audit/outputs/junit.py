@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from xml.etree import ElementTree
 
 from fretc.audit.evidence import verdicts
-from fretc.audit.evidence.briefs import audited_s
 from fretc.audit.evidence.probabilities import AVERAGE, Estimated
+from fretc.audit.evidence.result_summaries import audited_s
 from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import Level
 from fretc.audit.outputs.totals import runs

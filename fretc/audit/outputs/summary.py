@@ -16,7 +16,7 @@ from monitors import kernel
 if TYPE_CHECKING:
     import duckdb
 
-    from fretc.audit.outputs.table import Known
+    from fretc.audit.outputs.table import EvidenceTables
 
 SCHEMA = "fretc-summary-1"
 MOST = 10
@@ -133,7 +133,7 @@ class Summary:
         }
 
 
-def summarized(known: Known) -> Summary:
+def summarize(known: EvidenceTables) -> Summary:
     """The summary of all results."""
     with _asked(known, _COUNTED) as ask:
         (totals,) = _answer(ask, _WHOLE).records
@@ -149,7 +149,7 @@ def summarized(known: Known) -> Summary:
         )
 
 
-def answered(known: Known, query: str) -> Answer | Diagnostic:
+def run_query(known: EvidenceTables, query: str) -> Answer | Diagnostic:
     """The answer to a query of the user, which can read only these tables."""
     import duckdb
 
@@ -169,7 +169,7 @@ def _answer(ask: duckdb.DuckDBPyConnection, query: str) -> Answer:
 
 
 @contextmanager
-def _asked(known: Known, *more: str) -> Iterator[duckdb.DuckDBPyConnection]:
+def _asked(known: EvidenceTables, *more: str) -> Iterator[duckdb.DuckDBPyConnection]:
     """A connection with the tables, each result once; `more` are further statements."""
     import duckdb
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from compiler.files.text_files import regular, unreadable
-from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Result
 from fretc.audit.store.anywhere import required_source
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -55,7 +55,7 @@ _TYPES = {
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class EvidenceTables:
     """Tables for queries, of results; from stores and evidence also of violations and runs."""
 
     results: Table
@@ -78,7 +78,7 @@ def table(source: EvidenceSource) -> Table:
     return _known(source).results
 
 
-def read(paths: Sequence[str]) -> Known | Diagnostic:
+def read(paths: Sequence[str]) -> EvidenceTables | Diagnostic:
     """The rows of all the files; a row that several files contain comes once for each.
 
     Args:
@@ -92,14 +92,14 @@ def read(paths: Sequence[str]) -> Known | Diagnostic:
         if isinstance(one, Diagnostic):
             return one
         found.append(one)
-    return Known(
+    return EvidenceTables(
         pyarrow.concat_tables([one.results for one in found]),
         pyarrow.concat_tables([one.violations for one in found]),
         pyarrow.concat_tables([one.runs for one in found]),
     )
 
 
-def _read(path: str) -> Known | Diagnostic:
+def _read(path: str) -> EvidenceTables | Diagnostic:
     if not os.path.isdir(path):
         try:
             with regular(path) as file:
@@ -115,24 +115,24 @@ def _read(path: str) -> Known | Diagnostic:
     return evidence if isinstance(evidence, Diagnostic) else _known(evidence)
 
 
-def _alone(results: Table) -> Known:
+def _alone(results: Table) -> EvidenceTables:
     from fretc.audit.store.tables import RUNS, VIOLATIONS, schema
 
-    return Known(results, schema(VIOLATIONS).empty_table(), schema(RUNS).empty_table())
+    return EvidenceTables(results, schema(VIOLATIONS).empty_table(), schema(RUNS).empty_table())
 
 
-def _known(source: EvidenceSource) -> Known:
+def _known(source: EvidenceSource) -> EvidenceTables:
     from fretc.audit.store.reader import Store
-    from fretc.audit.store.tables import RESULTS, RUNS, VIOLATIONS, Tables, tabled
+    from fretc.audit.store.tables import RESULTS, RUNS, VIOLATIONS, Tables, to_tables
 
     of_name: Tables
     if isinstance(source, Store):
         of_name = {name: source.whole(name) for name in (RESULTS, VIOLATIONS, RUNS)}
     else:
         places = [place for place, _ in source.briefs()]
-        of_name = tabled([result for _, result in source.details(places)], source.fretc)
+        of_name = to_tables([result for _, result in source.details(places)], source.fretc)
     rows = of_name[RESULTS].select([*_TYPES]).cast(_schema())
-    return Known(rows, of_name[VIOLATIONS], of_name[RUNS])
+    return EvidenceTables(rows, of_name[VIOLATIONS], of_name[RUNS])
 
 
 def rows(results: Sequence[Result], fretc: str) -> Table:
@@ -142,9 +142,9 @@ def rows(results: Sequence[Result], fretc: str) -> Table:
         results: records of evidence.
         fretc: the version of fretc that wrote the results.
     """
-    from fretc.audit.store.tables import RESULTS, tabled
+    from fretc.audit.store.tables import RESULTS, to_tables
 
-    return tabled(results, fretc)[RESULTS].select([*_TYPES]).cast(_schema())
+    return to_tables(results, fretc)[RESULTS].select([*_TYPES]).cast(_schema())
 
 
 def _read_parquet(path: str) -> Table | Diagnostic:

@@ -7,8 +7,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
-from fretc.audit.evidence.briefs import Brief
 from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.result_summaries import ResultSummary
 from fretc.audit.evidence.schema import Result, Violation
 from fretc.audit.evidence.verdicts import BROKEN, SHOWN, VERDICTS
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
@@ -104,7 +104,7 @@ def word_of(result: Judged, refused: Collection[str] = ()) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Marks:
+class VerdictWords:
     """The word of every result, and the result to look at first."""
 
     names: Sequence[str]
@@ -126,10 +126,10 @@ class Marks:
 
     @staticmethod
     def of(
-        briefs: Iterable[Brief],
+        briefs: Iterable[ResultSummary],
         estimates: Iterable[Estimated] = (),
         refused: Collection[str] = (),
-    ) -> Marks:
+    ) -> VerdictWords:
         """The words of all results of an audit.
 
         Args:
@@ -158,7 +158,7 @@ class Marks:
                 if each.requirement not in answers:
                     alone.add(each.verdict)
                 place += 1
-        return Marks(
+        return VerdictWords(
             names,
             [*ids],
             words,
@@ -185,7 +185,7 @@ def severity(word: str) -> int:
     return _SEVERITY[word]
 
 
-def totals(marks: Marks) -> tuple[Total, ...]:
+def totals(marks: VerdictWords) -> tuple[Total, ...]:
     """The number of results and estimates of each word, the worst word first."""
     counts: Counter[str] = Counter()
     ids: dict[str, set[str]] = {}

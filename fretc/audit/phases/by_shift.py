@@ -17,8 +17,8 @@ from fractions import Fraction
 from heapq import heappop, heappush
 from itertools import pairwise
 
-from fretc.audit.measurements.judgement import Judgement, judged
-from fretc.audit.phases.sliding import Slide, Sliding, sliding
+from fretc.audit.measurements.judgement import Judgement, judge
+from fretc.audit.phases.sliding import PropositionByPhase, PropositionsByPhase, sliding
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
 from fretish.clock import in_words
@@ -152,11 +152,13 @@ class _Search:
     A class is an interval of phases at which the values of all ticks are equal: `first..last`.
     """
 
-    def __init__(self, slides: Sliding, monitor: Monitor, *, intact: bool, end: Verdict) -> None:
+    def __init__(
+        self, slides: PropositionsByPhase, monitor: Monitor, *, intact: bool, end: Verdict
+    ) -> None:
         self._slides, self._monitor = slides, monitor
         self._columns = {name: slides.of[name] for name in monitor.PROPOSITIONS}
         self._intact, self._end = intact, end
-        own: Sequence[Slide] = tuple(self._columns.values())
+        own: Sequence[PropositionByPhase] = tuple(self._columns.values())
         self._breaks = slides.breaks(own)
         """Phases at which the end of the log changes."""
         self._starts = slides.starts(own, self._breaks)
@@ -196,7 +198,7 @@ class _Search:
         low, high = self._starts[first], self._starts[last]
         ticks = self._slides.ticks(low)
         columns = {name: slide.column(low, high, ticks) for name, slide in self._columns.items()}
-        return judged(
+        return judge(
             self._monitor,
             columns,
             self._slides.cut(self._columns, low),

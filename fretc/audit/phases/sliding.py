@@ -28,7 +28,7 @@ from monitors.kernel import Column
 
 
 @dataclass(frozen=True, slots=True)
-class Slide:
+class PropositionByPhase:
     """The values of one proposition.
 
     `base` has shape (ticks at phase 0,): its states there. From `phases[i]` on, tick `ticks[i]` has
@@ -60,13 +60,13 @@ class Slide:
 
 
 @dataclass(frozen=True, slots=True)
-class Sliding:
+class PropositionsByPhase:
     """The values of all propositions of one log; `length` is the time from phase 0 to its end."""
 
     period: int
     declared: int
     length: int
-    of: Mapping[str, Slide]
+    of: Mapping[str, PropositionByPhase]
 
     @property
     def most_ticks(self) -> int:
@@ -83,7 +83,7 @@ class Sliding:
             return None
         return {name: self.of[name].cut(phase) for name in names}
 
-    def breaks(self, slides: Sequence[Slide]) -> list[int]:
+    def breaks(self, slides: Sequence[PropositionByPhase]) -> list[int]:
         """The phases at which the end changes: the last tick, or the values of the cut tick."""
         end = self.length % self.period  # here the last tick is at the very end
         places = {0, end, end + 1}
@@ -92,14 +92,14 @@ class Sliding:
             places |= {*slide.cut_phases.tolist(), *slide.phases[slide.ticks == last].tolist()}
         return sorted(places - {self.period})
 
-    def starts(self, slides: Sequence[Slide], breaks: Sequence[int]) -> Times:
+    def starts(self, slides: Sequence[PropositionByPhase], breaks: Sequence[int]) -> Times:
         """Shape (classes,): the phases at which any value changes, in order."""
         return distinct(np.concatenate([np.array(breaks, np.int64), *(s.phases for s in slides)]))
 
 
 def sliding(
     declarations: Declarations, recording: Recording, names: Iterable[str]
-) -> Sliding | None:
+) -> PropositionsByPhase | None:
     """The propositions at each phase; None: the clock ticks by message and has no phase.
 
     Args:
@@ -116,7 +116,7 @@ def sliding(
         name: _slide(declarations.propositions[name], declarations, recording, start, length)
         for name in names
     }
-    return Sliding(period, declarations.clock.phase, length, slides)
+    return PropositionsByPhase(period, declarations.clock.phase, length, slides)
 
 
 def _slide(
@@ -125,7 +125,7 @@ def _slide(
     recording: Recording,
     start: int,
     length: int,
-) -> Slide:
+) -> PropositionByPhase:
     period = declarations.clock.period
     assert period is not None
     late = late_messages(proposition, declarations, recording)
@@ -152,7 +152,7 @@ def _joined(
     start: int,
     length: int,
     period: int,
-) -> Slide:
+) -> PropositionByPhase:
     """The slide of the first ticks, one after the other, and of all later ones.
 
     Each is computed as if no message had been `late`.
@@ -173,7 +173,9 @@ def _joined(
     ticks, phases = np.divmod(times - start, period)
     order = np.argsort(phases, kind="stable")
     order = order[phases[order] > 0]  # changes at phase 0 are in `base`
-    return Slide(np.concatenate(base), phases[order], ticks[order], states[order], *cut)
+    return PropositionByPhase(
+        np.concatenate(base), phases[order], ticks[order], states[order], *cut
+    )
 
 
 def _masked(seen: Seen, late: Sequence[Late], last: int) -> Seen:
@@ -192,7 +194,7 @@ def _masked(seen: Seen, late: Sequence[Late], last: int) -> Seen:
 
 def _slide_of_past(
     past: PastValues, late: Sequence[Late], start: int, length: int, period: int
-) -> Slide:
+) -> PropositionByPhase:
     """The slide of a proposition that looks back by ticks.
 
     Its state changes when a sample comes, and one tick, two ticks, and so on, later.

@@ -15,7 +15,7 @@ import numpy as np
 from compiler.files.checked_json import SchemaError
 from compiler.files.checked_json import plain as parsed
 from compiler.files.records import decoded
-from fretc.audit.evidence.briefs import brief, judgement_of
+from fretc.audit.evidence.result_summaries import brief, judgement_of
 from fretc.audit.evidence.schema import Result
 from fretc.audit.store.tables import (
     EVENTS,
@@ -25,8 +25,8 @@ from fretc.audit.store.tables import (
     SAMPLES,
     VIOLATIONS,
     TableName,
+    TableRows,
     Tables,
-    Taken,
 )
 
 Ticks = Sequence[int]
@@ -68,7 +68,7 @@ def check(tables: Tables) -> None:
         raise SchemaError("the counts in `results` differ from the other tables")
 
 
-def _check_names(main: Taken, other: Taken, name: str) -> None:
+def _check_names(main: TableRows, other: TableRows, name: str) -> None:
     for column in _KEY:
         if not _same(main[column], other[column]):
             raise SchemaError(f"`{column}` of `{name}` is not that of `results`")
@@ -90,7 +90,7 @@ def _rows(column: Any, count: int) -> Any:
 
 
 def _expected(
-    main: Taken, broken: Taken, events: Taken, counts: Sequence[int]
+    main: TableRows, broken: TableRows, events: TableRows, counts: Sequence[int]
 ) -> Iterator[tuple[str, str, int, int]]:
     """Verdict, fingerprint and number of violations of each result, and its number of rows."""
     spans = [[*ticks] for ticks in zip(*_lists(broken, "first_tick", "last_tick"), strict=True)]
@@ -110,7 +110,7 @@ def _ticks(moments: Sequence[Mapping[str, int] | None]) -> list[int | None]:
     return [None if each is None else each["tick"] for each in moments]
 
 
-def _lists(table: Taken, *columns: str) -> Iterator[list[Any]]:
+def _lists(table: TableRows, *columns: str) -> Iterator[list[Any]]:
     return (table[name].to_pylist() for name in columns)
 
 

@@ -6,8 +6,8 @@ import os
 from dataclasses import replace
 
 from fretc.audit.evidence import reader as files
-from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.reader import EvidenceFile
+from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.store.errors import StoreError
 from fretish.diagnostics.diagnostic import Diagnostic, Severity
 

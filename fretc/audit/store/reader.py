@@ -20,8 +20,8 @@ from compiler.files.checked_json import plain as parsed
 from compiler.files.records import UNSET, UnsetType, decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.briefs import Brief, Headed, RunFacts, brief
 from fretc.audit.evidence.reader import EvidenceFile
+from fretc.audit.evidence.result_summaries import HeadProperties, ResultSummary, RunFacts, brief
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
 from fretc.audit.evidence.schema import (
     Document,
@@ -79,7 +79,7 @@ def manifest(folder: Path, name: str) -> Manifest | None:
 
 
 @dataclass(frozen=True)
-class Store(Headed):
+class Store(HeadProperties):
     """An `EvidenceSource`. The methods that read tables raise `StoreError`."""
 
     file: str
@@ -104,7 +104,7 @@ class Store(Headed):
         if self.manifest.register:
             self._content(REGISTER, self.manifest.register)
 
-    def briefs(self) -> Iterator[tuple[int, Brief]]:
+    def briefs(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order; the results of a run adjoin."""
         for start, part in self._parts():
             yield from enumerate(self._read(part, RESULTS, tables.briefs), start)
@@ -220,7 +220,7 @@ class Store(Headed):
         """All results, in order; each part's tables are checked before its results."""
         for start, part in self._parts():
             results = [each for _, each in self.details(range(start, start + part.results))]
-            expected = tables.tabled(results, self.manifest.fretc)
+            expected = tables.to_tables(results, self.manifest.fretc)
             for name in TABLES:
                 found = self._table(part, name)
                 for column in found.column_names:

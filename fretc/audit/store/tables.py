@@ -20,8 +20,8 @@ from compiler.files.checked_json import SchemaError
 from compiler.files.checked_json import plain as parsed
 from compiler.files.records import UNSET, decoded, plain, replace
 from compiler.files.templating import to_json
-from fretc.audit.evidence.briefs import Brief, RunFacts, brief, run_facts
 from fretc.audit.evidence.reader import VERDICTS
+from fretc.audit.evidence.result_summaries import ResultSummary, RunFacts, brief, run_facts
 from fretc.audit.evidence.samples import Surroundings
 from fretc.audit.evidence.schema import Hashes, Health, Result, Violation
 from fretc.audit.evidence.writer import unjudged
@@ -46,7 +46,7 @@ EXACT = "exact"
 Tables = Mapping[TableName, pa.Table]
 
 
-class Taken(Protocol):
+class TableRows(Protocol):
     """The interface of a table that is read: in Arrow's form, or still encoded."""
 
     @property
@@ -60,7 +60,7 @@ class Taken(Protocol):
         """Some rows, in rising order."""
 
 
-Source = Mapping[TableName, Taken]
+Source = Mapping[TableName, TableRows]
 
 
 # Rows --------------------------------------------------------------------------------------------
@@ -71,7 +71,7 @@ class _Row:
     """A result with its row numbers."""
 
     result: Result
-    brief: Brief
+    brief: ResultSummary
     run_row: int
     fretc: str
     exact: str | None = None
@@ -128,7 +128,7 @@ _ELSEWHERE = ("violations", "hashes", *_SHARED, _COURSE, *_FLAT)
 _MAIN = tuple(each for each in fields_of(Result) if each.name in _FLAT)
 _NESTED = tuple(each for each in fields_of(Result) if each.name not in _ELSEWHERE)
 _OF_RUN = tuple(each for each in fields_of(Result) if each.name in (*_SHARED[1:], _COURSE))
-_COUNTS = tuple(e for e in fields_of(Brief) if e.name not in (*_FLAT, "fingerprints"))
+_COUNTS = tuple(e for e in fields_of(ResultSummary) if e.name not in (*_FLAT, "fingerprints"))
 _FACTS = tuple(e for e in fields_of(RunFacts) if e.name not in _SHARED)
 _HASHES = fields_of(Hashes)
 _HASH = "_sha256"
@@ -179,7 +179,7 @@ def schema(table: TableName) -> pa.Schema:
 # To tables ---------------------------------------------------------------------------------------
 
 
-def tabled(results: Sequence[Result], fretc: str) -> Tables:
+def to_tables(results: Sequence[Result], fretc: str) -> Tables:
     """The tables of some results, in order.
 
     Args:
@@ -352,7 +352,7 @@ def _whole(table: pa.Table, name: str) -> pa.Array:
 
 
 def _of_runs(
-    table: Taken, run_rows: Sequence[int], begun: Collection[int]
+    table: TableRows, run_rows: Sequence[int], begun: Collection[int]
 ) -> dict[int, dict[str, Any]]:
     """Run → the facts that its results share, and its plot data if its first result is included.
 
@@ -395,7 +395,7 @@ def _windows(tables: Source, rows: Sequence[int]) -> Iterator[tuple[int, Any]]:
     return zip(some["violation_row"].to_pylist(), _objects(some, _WINDOW), strict=True)
 
 
-def _chosen(table: Taken, key: str, rows: Sequence[int], count: int) -> list[int]:
+def _chosen(table: TableRows, key: str, rows: Sequence[int], count: int) -> list[int]:
     """The rows that belong to the given rows of another table."""
     column = table[key]
     if column.null_count:
@@ -410,7 +410,7 @@ def _chosen(table: Taken, key: str, rows: Sequence[int], count: int) -> list[int
 # Summaries ---------------------------------------------------------------------------------------
 
 
-def briefs(table: pa.Table) -> list[Brief]:
+def briefs(table: pa.Table) -> list[ResultSummary]:
     """The summary of each row of `results`.
 
     Raises:
@@ -423,7 +423,8 @@ def briefs(table: pa.Table) -> list[Brief]:
     prints = _objects(some, _HASHES, _HASH)
     rows = zip(_objects(some, flat), prints, strict=True)
     found = decoded(
-        [{**row, "trials": row.get("trials"), "fingerprints": p} for row, p in rows], list[Brief]
+        [{**row, "trials": row.get("trials"), "fingerprints": p} for row, p in rows],
+        list[ResultSummary],
     )
     if not {each.verdict for each in found} <= {*VERDICTS}:
         raise SchemaError("`results` has an unknown verdict")

@@ -26,7 +26,7 @@ from fretc.audit.store.manifest import (
 )
 from fretc.audit.store.parts import parts
 from fretc.audit.store.register import Entry
-from fretc.audit.store.tables import RESULTS, RUNS, TABLES, Tables, runs_of, tabled
+from fretc.audit.store.tables import RESULTS, RUNS, TABLES, Tables, runs_of, to_tables
 from fretish.diagnostics.diagnostic import Diagnostic
 
 
@@ -140,7 +140,7 @@ def write_document(
     written: list[Part] = []
     for places in parts([run[0].run for run in runs]):
         results = [result for place in places for result in runs[place]]
-        part = write_part(folder, tabled(results, document.fretc))
+        part = write_part(folder, to_tables(results, document.fretc))
         if isinstance(part, Diagnostic):
             return part
         written.append(part)

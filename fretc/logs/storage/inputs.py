@@ -226,11 +226,11 @@ def _reader(descriptor: int) -> io.BufferedReader:
 # URLs
 
 
-class _Hashed(io.RawIOBase):
+class _HashingFile(io.RawIOBase):
     """A file at a URL. Bytes that are read in order are hashed at the same time."""
 
     def __init__(self, file: Any, size: int) -> None:
-        self._file, self._size = _Paced(file, _SMALL_BLOCK), size
+        self._file, self._size = _PacedStream(file, _SMALL_BLOCK), size
         self._at = self._hashed = 0
         self._digest = hashlib.sha256()
 
@@ -283,16 +283,16 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         size = about.get("size")
         if size is None or about.get("partial") is False:
             file = stack.enter_context(closing(_stream(system, path)))
-            return _copy(_copied(_Limited(file, size), stack))
+            return _copy(_copied(_LimitedStream(file, size), stack))
         if whole:
             file = stack.enter_context(system.open(path, "rb", block_size=web.BLOCK))
-            return _copy(_copied(_Limited(file, size), stack))
+            return _copy(_copied(_LimitedStream(file, size), stack))
         file = stack.enter_context(system.open(path, "rb", block_size=_SMALL_BLOCK))
     except ImportError as error:
         return storage_diagnostics.no_package(url, error, place)
     except Exception as error:  # each protocol raises its own exceptions
         raise as_os_error(error) from error
-    hashed = _Hashed(file, size)
+    hashed = _HashingFile(file, size)
     stream = stack.enter_context(io.BufferedReader(hashed, _SMALL_BLOCK))
     return Input(cast("io.BufferedReader", stream), size, hashed.sha256, lambda: None, None, None)
 
@@ -302,7 +302,7 @@ def _stream(system: Any, path: str) -> Any:
     return web.Stream(system, path) if web.is_web(path) else system.open(path, "rb", block_size=0)
 
 
-class _Paced:
+class _PacedStream:
     """The bytes from a server; its errors become OSError, and slowness is an error."""
 
     def __init__(self, file: Any, least: int = 0) -> None:
@@ -325,7 +325,7 @@ class _Paced:
         return data
 
 
-class _Limited(io.BytesIO):
+class _LimitedStream(io.BytesIO):
     """The bytes from a server, up to a limit and to the free space.
 
     If the size is known, all of them come, or an error.
@@ -333,7 +333,7 @@ class _Limited(io.BytesIO):
 
     def __init__(self, file: Any, size: int | None) -> None:
         super().__init__()
-        self._file, self._size, self._got = _Paced(file), size, 0
+        self._file, self._size, self._got = _PacedStream(file), size, 0
         room = shutil.disk_usage(tempfile.gettempdir()).free
         if size is not None and size > room:
             raise OSError(None, f"it has {size} bytes, but there is only room for {room} of a copy")

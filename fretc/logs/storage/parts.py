@@ -34,7 +34,7 @@ class Part:
     """The wanted values of its metadata."""
 
 
-class Numbered:
+class RenumberingSink:
     """A sink that passes messages on, and renumbers the streams of several files as one log."""
 
     def __init__(self, sink: Sink) -> None:

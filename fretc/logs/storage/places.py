@@ -11,7 +11,7 @@ from fretc.logs.storage.log_names import is_url
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class AllowedLocations:
     """The locations that may be opened.
 
     Allowed are files below the current folder and below folders that the user names, `https`, and

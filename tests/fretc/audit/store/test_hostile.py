@@ -14,7 +14,7 @@ from compiler.files.records import UNSET
 from fretc.audit.store.anywhere import read
 from fretc.audit.store.files import encoded
 from fretc.audit.store.reader import Store, opened
-from fretc.audit.store.tables import TABLES, TableName, tabled
+from fretc.audit.store.tables import TABLES, TableName, to_tables
 from fretc.audit.store.writer import is_store, remove, write_document
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import made_once
@@ -137,7 +137,7 @@ def test_a_store_whose_audit_was_stopped_says_so(store: Path) -> None:
 
 
 def tables() -> dict[TableName, pa.Table]:
-    return dict(tabled(RESULTS, "1"))
+    return dict(to_tables(RESULTS, "1"))
 
 
 @pytest.mark.slow

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from compiler.project.folder import load_folder
-from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.reader import EvidenceFile
+from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.store.anywhere import read as read_evidence
 from fretc.report.traceability.chain import Node, chains
 from fretc.report.traceability.comparison import Difference, differences
@@ -196,7 +196,9 @@ def compared(lock: Lock | None = None) -> dict[str, Difference]:
     assert not isinstance(project, Diagnostic)
     assert not isinstance(evidence, Diagnostic)
     base = lock or locked()
-    found = differences(standings(chains(project, Briefs.of(evidence)), base), base, project)
+    found = differences(
+        standings(chains(project, ResultSummaries.of(evidence)), base), base, project
+    )
     return {each.requirement: each for each in found if each.state != "same"}
 
 

@@ -68,7 +68,7 @@ def first_requirement(bound: Bound, origin: str) -> FirstRequirement:
 
 
 @dataclass(frozen=True, slots=True)
-class Beginning:
+class StarterFiles:
     """The first files of a project."""
 
     files: Mapping[str, str]
@@ -77,14 +77,14 @@ class Beginning:
     """Diagnostics about the log from which the files are drafted."""
 
 
-def without_log() -> Beginning:
+def without_log() -> StarterFiles:
     """The first files of a project without a log."""
     bound = Bound("speed", "1.5", "m/s")
     requirement = first_requirement(bound, "is an example.")
-    return Beginning(_files(requirement, render("project/speed.toml.j2")))
+    return StarterFiles(_files(requirement, render("project/speed.toml.j2")))
 
 
-def from_log(log: str) -> Beginning | Diagnostic:
+def from_log(log: str) -> StarterFiles | Diagnostic:
     """The first files of a project whose first requirement is about a signal of the log."""
     overview = look(log, words=True)
     if isinstance(overview, Diagnostic):
@@ -101,7 +101,7 @@ def from_log(log: str) -> Beginning | Diagnostic:
         return _no_signal(log)
     origin = f"is the largest value in {Path(overview.recording.name).name}, rounded up."
     files = _files(first_requirement(bound, origin), signals)
-    return Beginning(files, overview.recording.findings)
+    return StarterFiles(files, overview.recording.findings)
 
 
 def _files(requirement: FirstRequirement, signals: str) -> dict[str, str]:

@@ -35,7 +35,7 @@ Recorded = tuple[str | UnsetType, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Brief:
+class ResultSummary:
     """The result of one requirement in one run, with the number of its events."""
 
     run: str
@@ -152,7 +152,7 @@ class Head(Protocol):
         """The selection of logs; unset: all."""
 
 
-class Headed:
+class HeadProperties:
     """The properties of an `EvidenceSource` that its head provides."""
 
     @property
@@ -217,7 +217,7 @@ class EvidenceSource(Protocol):
     def selection(self) -> Selection | None:
         """The selection of the named logs that were audited; None: all."""
 
-    def briefs(self) -> Iterator[tuple[int, Brief]]:
+    def briefs(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order; the results of a run adjoin."""
 
     def runs(self) -> Iterator[RunFacts]:
@@ -244,19 +244,19 @@ class EvidenceSource(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Briefs:
+class ResultSummaries:
     """The summaries of all results of some evidence, and the evidence itself."""
 
     source: EvidenceSource
-    by_requirement: Mapping[str, Sequence[tuple[int, Brief]]]
+    by_requirement: Mapping[str, Sequence[tuple[int, ResultSummary]]]
     """The summaries of each requirement that has results, with their indices, in order."""
     firsts: Mapping[tuple[str, str], int]
     """The index of the first result of each run, by the name and the hash of its log."""
 
     @classmethod
-    def of(cls, source: EvidenceSource) -> Briefs:
+    def of(cls, source: EvidenceSource) -> ResultSummaries:
         """The summaries of all results, read once; equal values are shared to save memory."""
-        groups: dict[str, list[tuple[int, Brief]]] = {}
+        groups: dict[str, list[tuple[int, ResultSummary]]] = {}
         pools: _Pools = {str: {}, int: {}, float: {}}
         firsts: dict[tuple[str, str], int] = {}
         for place, each in source.briefs():
@@ -269,7 +269,7 @@ class Briefs:
 _Pools = dict[type, dict[Any, Any]]
 
 
-def _sharing(brief: Brief, pools: _Pools) -> Brief:
+def _sharing(brief: ResultSummary, pools: _Pools) -> ResultSummary:
     """The summary with its values replaced by equal ones that are already in memory."""
     values, share = [*_values(brief)], pools[str].setdefault
     for at, kind in _COMMON:
@@ -278,11 +278,11 @@ def _sharing(brief: Brief, pools: _Pools) -> Brief:
             values[at] = pools[kind].setdefault(value, value)
     prints = [each and share(each, each) for each in _prints(brief.fingerprints)]
     values[_AT] = Hashes(**dict(zip(_PRINTS, prints, strict=True)))
-    return Brief(*values)
+    return ResultSummary(*values)
 
 
 _PRINTS = Hashes.__struct_fields__
-_FIELDS = tuple(each.name for each in fields(Brief))
+_FIELDS = tuple(each.name for each in fields(ResultSummary))
 _AT = _FIELDS.index("fingerprints")
 _COMMON = tuple(
     (_FIELDS.index(name), kind)
@@ -297,11 +297,11 @@ _COMMON = tuple(
 _prints, _values = attrgetter(*_PRINTS), attrgetter(*_FIELDS)
 
 
-def brief(result: Result) -> Brief:
+def brief(result: Result) -> ResultSummary:
     """The summary of a result."""
     violations, latencies = result.violations, result.latencies
     first = violations[0] if violations else None
-    return Brief(
+    return ResultSummary(
         run=result.run,
         requirement=result.requirement,
         verdict=result.verdict,

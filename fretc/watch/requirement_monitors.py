@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import partial
 
-from fretc.audit.measurements.judgement import judged
+from fretc.audit.measurements.judgement import judge
 from fretc.audit.plan import Plan
 from fretc.logs.stream import Tick, Withdrawn
 from monitors import kernel
@@ -16,7 +16,7 @@ from monitors.loading import load
 from monitors.ticking import Ledger
 
 
-class Judges:
+class RequirementMonitors:
     """One monitor for each requirement of a plan."""
 
     def __init__(self, plan: Plan, kept: int = 0) -> None:
@@ -78,7 +78,7 @@ class Judges:
         ticks, last = min(1, self.count), self.ledger.last or {}
         columns = {name: _column(last.get(name), ticks) for name in monitor.PROPOSITIONS}
         engine = partial(_outcome, before=ticks)
-        found = judged(monitor, columns, cut, ticks, intact=intact, end=self._end, engine=engine)
+        found = judge(monitor, columns, cut, ticks, intact=intact, end=self._end, engine=engine)
         return self.said(monitor.REQUIREMENTS[0].id, str(found.verdict))
 
     def said(self, requirement: str, verdict: str) -> str:

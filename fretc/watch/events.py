@@ -11,7 +11,7 @@ from monitors.guard import State
 
 
 @dataclass(frozen=True, slots=True)
-class Changed:
+class StateChange:
     """The state of a requirement has changed."""
 
     state: State
@@ -21,7 +21,7 @@ class Changed:
 
 
 @dataclass(frozen=True, slots=True)
-class Late:
+class LateMessages:
     """Judged ticks have become unknown, because messages were late for them."""
 
     ticks: int
@@ -31,7 +31,7 @@ class Late:
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class DiagnosticEvent:
     """A diagnostic for the user; the watch continues."""
 
     diagnostic: Diagnostic
@@ -49,4 +49,13 @@ class RunEnded:
     ticks: int
 
 
-News = Changed | Late | Found | RunEnded | Opened | Interrupted | Reconnected | Missed
+WatchEvent = (
+    StateChange
+    | LateMessages
+    | DiagnosticEvent
+    | RunEnded
+    | Opened
+    | Interrupted
+    | Reconnected
+    | Missed
+)
