@@ -19,7 +19,14 @@ from urllib.parse import urlsplit
 
 from compiler.files.build_id import build_id
 from compiler.files.processes import shield
-from fretc.audit.many_logs import EVALUATIONS, Engine, LogAudits, LogResult, audited, given_up
+from fretc.audit.many_logs import (
+    EVALUATIONS,
+    Engine,
+    LogAudits,
+    LogResult,
+    audit_log,
+    results_of_killed_process,
+)
 from fretc.audit.plan import Plan, packed, unpacked
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import unless_installed
@@ -182,7 +189,11 @@ def _tasks(client: Client, plan: Plan, logs: Sequence[str]) -> LogAudits:
     for log in again:
         with contextlib.closing(_results(client, remote_plan, [log])) as done:
             for _, result in done:
-                yield log, result or given_up(plan, log, "all Dask workers that tried it died")
+                yield (
+                    log,
+                    result
+                    or results_of_killed_process(plan, log, "all Dask workers that tried it died"),
+                )
 
 
 def _results(
@@ -242,7 +253,7 @@ def _work(plan: bytes, log: str, folder: str, client_edition: str) -> LogResult 
     if build_id() != client_edition:
         return str(get_worker().address)
     with _ALONE, _in(folder):
-        return audited(_plan(plan), log)
+        return audit_log(_plan(plan), log)
 
 
 @lru_cache(maxsize=4)

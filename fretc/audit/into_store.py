@@ -26,7 +26,7 @@ from fretc.audit.many_logs import (
     diagnostics_of_all,
     document,
     estimates_of,
-    labelled,
+    with_command_labels,
 )
 from fretc.audit.plan import Plan, keys
 from fretc.audit.store.errors import StoreError
@@ -221,7 +221,7 @@ def _results(plan: Plan, known: _ReusableLog) -> tuple[Result, ...]:
     places = range(known.place, known.place + known.results)
     own = known.entry.labels or UNSET
     results = (replace(one, labels=own) for _, one in known.store.details(places))
-    return labelled(plan, LogResult(tuple(results), (), read=True)).results
+    return with_command_labels(plan, LogResult(tuple(results), (), read=True)).results
 
 
 # The writer ------------------------------------------------------------------------------------
@@ -336,8 +336,8 @@ class StoreWriter:
                     if isinstance(item, Diagnostic):
                         self._keep()
                         return item
-                    log, audited = item
-                    self._take(log, audited)
+                    log, log_result = item
+                    self._take(log, log_result)
                     tell(log)
                     self._keep_in_time()
             return self._finish()
@@ -369,7 +369,7 @@ class StoreWriter:
 
     def _take(self, log: str, own: LogResult) -> None:
         """Add the results of a log that was audited."""
-        audited = labelled(self._plan, own)
+        labelled_result = with_command_labels(self._plan, own)
         source = self._plan.declarations.source
         first = own.results[0]
         entry = Entry(
@@ -384,9 +384,9 @@ class StoreWriter:
         )
         self._note(log, tuple(map(self._one, own.diagnostics)))
         self._read += own.read
-        one = _Log(entry, audited.results)
-        if sum(map(_events, audited.results)) > _HEAVY:
-            one = _Log(entry, tables=to_tables(audited.results, __version__))
+        one = _Log(entry, labelled_result.results)
+        if sum(map(_events, labelled_result.results)) > _HEAVY:
+            one = _Log(entry, tables=to_tables(labelled_result.results, __version__))
         draft = self._draft_of[log]
         draft.found[log] = one
         self._complete(draft)

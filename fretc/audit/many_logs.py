@@ -15,11 +15,11 @@ from compiler.files.text_files import Stamp, file_sha256, stamp
 from fretc.audit.constancy import never_changed, tallies_of, totals
 from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
 from fretc.audit.evidence.claim import AuditedRequirement
-from fretc.audit.evidence.courses import course, no_way
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary, brief
+from fretc.audit.evidence.run_plot_data import map_diagnostics, plot_data
 from fretc.audit.evidence.schema import (
     SCHEMA,
     Bindings,
@@ -29,7 +29,7 @@ from fretc.audit.evidence.schema import (
     Result,
     Situation,
 )
-from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged, unread
+from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged_result, unread_result
 from fretc.audit.evidence.writer import text as written
 from fretc.audit.measurements.judgement import Engine as Evaluation
 from fretc.audit.measurements.tallies import Tally
@@ -43,9 +43,17 @@ from fretc.audit.one_log import (
 )
 from fretc.audit.phases.advice import findings
 from fretc.audit.plan import Plan, monitored_requirements
-from fretc.audit.pool import ENDLESS, Limits, TimedOut, WorkerDied, each, was_killed, was_late
+from fretc.audit.pool import (
+    ENDLESS,
+    Limits,
+    TimedOut,
+    WorkerDied,
+    killed_diagnostic,
+    map_processes,
+    time_limit_diagnostic,
+)
 from fretc.audit.store.recordings import KnownBy, SampleCache
-from fretc.logs.labels import NO_METADATA, labels, over
+from fretc.logs.labels import NO_METADATA, labels, with_overrides
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.storage.log_names import STDIN, name_of
@@ -130,20 +138,20 @@ def local_executor(
     """
 
     def judged(plan: Plan, log: str) -> LogResult:
-        return audited(plan, log, known(log), kept)
+        return audit_log(plan, log, known(log), kept)
 
     def engine(plan: Plan, logs: Sequence[str]) -> LogAudits:
         monitored_requirements(plan)  # loaded before the fork, so that processes inherit it
         if STDIN in logs:  # only this process can read standard input
-            yield STDIN, audited(plan, STDIN)
+            yield STDIN, audit_log(plan, STDIN)
         files = [log for log in logs if log != STDIN]
-        with closing(each(partial(judged, plan), files, jobs, limits)) as done:
+        with closing(map_processes(partial(judged, plan), files, jobs, limits)) as done:
             for place, result in done:
                 log = files[place]
                 if isinstance(result, WorkerDied):
-                    yield log, given_up(plan, log, str(result))
+                    yield log, results_of_killed_process(plan, log, str(result))
                 elif isinstance(result, TimedOut):
-                    yield log, _unaudited(plan, log, was_late(log, result, limits))
+                    yield log, _unaudited(plan, log, time_limit_diagnostic(log, result, limits))
                 else:
                     yield log, result
 
@@ -159,7 +167,7 @@ def audit_logs(
     logs: Sequence[str],
     engine: Engine = SEQUENTIAL,
     finished: Mapping[str, LogResult] = MappingProxyType({}),
-    tell: Callable[[str, LogResult], None] = lambda log, audited: None,
+    tell: Callable[[str, LogResult], None] = lambda log, result: None,
 ) -> Audit | Diagnostic:
     """Audit every log against every requirement.
 
@@ -183,10 +191,10 @@ def audit_logs(
             assert log not in done
             done[log] = one
             tell(log, one)
-    return gathered(plan, [labelled(plan, done[log]) for log in logs])
+    return combined_audit(plan, [with_command_labels(plan, done[log]) for log in logs])
 
 
-def gathered(plan: Plan, audits: Sequence[LogResult]) -> Audit:
+def combined_audit(plan: Plan, audits: Sequence[LogResult]) -> Audit:
     """One audit from the results of single logs, in their order."""
     results = [result for one in audits for result in one.results]
     of_all_runs = estimates_of(plan, map(brief, results))
@@ -242,7 +250,7 @@ def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
     return replace(diagnostic, message=f"{diagnostic.message} ({which})")
 
 
-def audited(
+def audit_log(
     plan: Plan, log: str, known: Sequence[Result] = (), kept: SampleCache | None = None
 ) -> LogResult:
     """Audit one log; all other inputs are in the plan.
@@ -266,11 +274,15 @@ def audited(
     evidence = audit(recording, declarations, new, EVALUATIONS[plan.evaluation]) if new else ()
     of_claim = {e.requirement: as_record(e) for e in evidence} | taken
     first, *others = (of_claim[claim.id] for claim in plan.claims)
-    records = (record_with(first, course=course(recording, declarations) or UNSET), *others)
+    records = (record_with(first, course=plot_data(recording, declarations) or UNSET), *others)
     phased = {each.requirement: phases_of(each.phases) for each in records if each.phases}
     own = LogResult(
         (*records, *_refused_results(plan, first)),
-        (*recording.findings, *findings(phased, declarations), *no_way(recording, declarations)),
+        (
+            *recording.findings,
+            *findings(phased, declarations),
+            *map_diagnostics(recording, declarations),
+        ),
         read=True,
         stamp=before if before == stamp(log) else None,
         known_by=by,
@@ -334,12 +346,12 @@ def _with_own_labels(
     return _with_labels(one, found, notes)
 
 
-def labelled(plan: Plan, one: LogResult) -> LogResult:
+def with_command_labels(plan: Plan, one: LogResult) -> LogResult:
     """The result of a log, with the labels that the command gives all runs."""
     if not plan.labels:
         return one
     first = one.results[0]
-    found, notes = over(first.labels or {}, plan.labels)
+    found, notes = with_overrides(first.labels or {}, plan.labels)
     return _with_labels(one, found, notes)
 
 
@@ -363,7 +375,7 @@ def _refused_results(plan: Plan, sibling: Result) -> Iterator[Result]:
     """
     log = {name: sha for name, sha in sibling.hashes.items() if name.startswith("log")}
     for refused in plan.refused:
-        yield unjudged(
+        yield unjudged_result(
             sibling.run,
             refused.id,
             f"not judged: {'; '.join(f'{d.code.number} {d.message}' for d in refused.why)}",
@@ -372,7 +384,7 @@ def _refused_results(plan: Plan, sibling: Result) -> Iterator[Result]:
         )
 
 
-def given_up(plan: Plan, log: str, how: str) -> LogResult:
+def results_of_killed_process(plan: Plan, log: str, how: str) -> LogResult:
     """The results of a log whose audit killed its process twice: no data.
 
     Args:
@@ -380,7 +392,7 @@ def given_up(plan: Plan, log: str, how: str) -> LogResult:
         log: its path.
         how: how the process ended.
     """
-    return _unread(plan, log, was_killed(log, how), None)
+    return _unread(plan, log, killed_diagnostic(log, how), None)
 
 
 def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogResult:
@@ -393,13 +405,15 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogR
         before: the stamp of the log before the attempt; None: it is unknown.
     """
     hashes = _hash_of(log, before)
-    records = [unread(name_of(log), each.id, why, {**hashes, **each.basis}) for each in plan.named]
+    records = [
+        unread_result(name_of(log), each.id, why, {**hashes, **each.basis}) for each in plan.named
+    ]
     return _with_own_labels(plan, LogResult(tuple(records), (why,), read=False))
 
 
 def _unaudited(plan: Plan, log: str, why: Diagnostic) -> LogResult:
     """The results of a log that was not audited before the time limit: no data, and no hash."""
-    records = [unread(name_of(log), each.id, why, each.basis) for each in plan.named]
+    records = [unread_result(name_of(log), each.id, why, each.basis) for each in plan.named]
     return _with_own_labels(plan, LogResult(tuple(records), (why,), read=False))
 
 

@@ -60,7 +60,7 @@ class Limits:
 ENDLESS = Limits()
 
 
-def was_late(log: str, how: TimedOut, limits: Limits) -> Diagnostic:
+def time_limit_diagnostic(log: str, how: TimedOut, limits: Limits) -> Diagnostic:
     """F440 or F441: a log that was not audited to its end because of a time limit.
 
     Args:
@@ -85,7 +85,7 @@ def was_late(log: str, how: TimedOut, limits: Limits) -> Diagnostic:
     )
 
 
-def was_killed(log: str, how: str) -> Diagnostic:
+def killed_diagnostic(log: str, how: str) -> Diagnostic:
     """F419.
 
     Args:
@@ -101,19 +101,19 @@ def was_killed(log: str, how: str) -> Diagnostic:
 
 
 @overload
-def each(
-    function: Callable[[T], R], things: Sequence[T], jobs: int
+def map_processes(
+    function: Callable[[T], R], items: Sequence[T], jobs: int
 ) -> Generator[tuple[int, R | WorkerDied], None, None]: ...
 
 
 @overload
-def each(
-    function: Callable[[T], R], things: Sequence[T], jobs: int, limits: Limits
+def map_processes(
+    function: Callable[[T], R], items: Sequence[T], jobs: int, limits: Limits
 ) -> Generator[tuple[int, R | WorkerDied | TimedOut], None, None]: ...
 
 
-def each(
-    function: Callable[[T], R], things: Sequence[T], jobs: int, limits: Limits = ENDLESS
+def map_processes(
+    function: Callable[[T], R], items: Sequence[T], jobs: int, limits: Limits = ENDLESS
 ) -> Generator[tuple[int, R | WorkerDied | TimedOut], None, None]:
     """The result of the function for each item with the item's index, in the order of completion.
 
@@ -121,26 +121,26 @@ def each(
 
     Args:
         function: a function whose results can be sent between processes.
-        things: any number of items; a single one without limits is processed by this process.
+        items: any number of items; a single one without limits is processed by this process.
         jobs: the number of processes.
         limits: the time limits; an item over a limit gives `TimedOut`.
 
     Raises:
         Exception: an exception that the function raises.
     """
-    if len(things) < 2 and limits == ENDLESS:
-        yield from ((place, function(thing)) for place, thing in enumerate(things))
+    if len(items) < 2 and limits == ENDLESS:
+        yield from ((index, function(thing)) for index, thing in enumerate(items))
         return
     clock = _Clock(limits)
     again: list[int] = []
-    with closing(_shared(function, things, range(len(things)), jobs, clock)) as done:
-        for place, result in done:
+    with closing(_shared(function, items, range(len(items)), jobs, clock)) as completed:
+        for index, result in completed:
             if isinstance(result, WorkerDied):
-                again.append(place)
+                again.append(index)
             else:
-                yield place, result
-    for place in again:
-        yield from _shared(function, things, [place], 1, clock)
+                yield index, result
+    for index in again:
+        yield from _shared(function, items, [index], 1, clock)
 
 
 class _Clock:
@@ -168,76 +168,74 @@ class _Clock:
 
 def _shared(
     function: Callable[[T], R],
-    things: Sequence[T],
-    places: Sequence[int],
+    items: Sequence[T],
+    indices: Sequence[int],
     jobs: int,
     clock: _Clock,
 ) -> Generator[tuple[int, R | WorkerDied | TimedOut], None, None]:
-    crew = _WorkerPool(function, things, clock)
-    waiting = deque(places)
+    pool = _WorkerPool(function, items, clock)
+    waiting = deque(indices)
     try:
-        while waiting or crew.busy:
+        while waiting or pool.busy:
             if clock.is_over:
-                for place in (*crew.places, *waiting):
-                    yield place, TimedOut.ALL
+                for index in (*pool.indices, *waiting):
+                    yield index, TimedOut.ALL
                 return
-            while waiting and len(crew.busy) < jobs:
-                crew.hire(waiting.popleft())
-            done = list(crew.done())
-            while waiting and len(crew.busy) < jobs and not clock.is_over:
-                crew.hire(waiting.popleft())  # workers continue while this process takes results
-            yield from done
+            while waiting and len(pool.busy) < jobs:
+                pool.submit(waiting.popleft())
+            completed = list(pool.completed())
+            while waiting and len(pool.busy) < jobs and not clock.is_over:
+                pool.submit(waiting.popleft())  # workers continue while this process takes results
+            yield from completed
     finally:
-        crew.dismiss()
+        pool.terminate()
 
 
 class _WorkerPool:
     """Processes that work on one item each, or are idle."""
 
-    def __init__(
-        self, function: Callable[[Any], Any], things: Sequence[Any], clock: _Clock
-    ) -> None:
-        self._function, self._things, self._clock = function, things, clock
+    def __init__(self, function: Callable[[Any], Any], items: Sequence[Any], clock: _Clock) -> None:
+        self._function, self._things, self._clock = function, items, clock
         self._idle: list[tuple[Connection, ForkProcess]] = []
         self.busy: dict[Connection, tuple[ForkProcess, int, float]] = {}
         """Each connection with its process, the index of its item, and its start time."""
 
     @property
-    def places(self) -> list[int]:
+    def indices(self) -> list[int]:
         """The indices of the items in progress."""
-        return [place for _, place, _ in self.busy.values()]
+        return [index for _, index, _ in self.busy.values()]
 
-    def hire(self, place: int) -> None:
+    def submit(self, index: int) -> None:
         """Let an idle process, or a new one, work on an item."""
-        connection, process = self._idle.pop() if self._idle else self._born()
+        connection, process = self._idle.pop() if self._idle else self._spawn()
         with suppress(OSError):  # the process has died, which `done` reports
-            connection.send(place)
-        self.busy[connection] = process, place, time.monotonic()
+            connection.send(index)
+        self.busy[connection] = process, index, time.monotonic()
 
-    def done(self) -> Iterator[tuple[int, Any]]:
+    def completed(self) -> Iterator[tuple[int, Any]]:
         """Wait for results or for time limits; the processes of results become idle."""
         patience = self._clock.patience(since for _, _, since in self.busy.values())
         for connection in wait(list(self.busy), patience):
             assert isinstance(connection, Connection)
-            process, place, _ = self.busy.pop(connection)
+            process, index, _ = self.busy.pop(connection)
             try:
                 fine, result = connection.recv()
             except (EOFError, OSError):
                 connection.close()
                 process.join()
-                yield place, WorkerDied(process.exitcode or 0)
+                yield index, WorkerDied(process.exitcode or 0)
                 continue
             self._idle.append((connection, process))
             if not fine:
                 raise result
-            yield place, result
-        for connection, (process, place, since) in list(self.busy.items()):
+            yield index, result
+        for connection, (process, index, since) in list(self.busy.items()):
             if self._clock.is_late(since):
                 del self.busy[connection]
                 _end(connection, process)
-                yield place, TimedOut.OWN
+                yield index, TimedOut.OWN
 
-    def dismiss(self) -> None:
+    def terminate(self) -> None:
         """Terminate all processes at once: they only read."""
         working = [(connection, process) for connection, (process, *_) in self.busy.items()]
         for _, process in (*working, *self._idle):
@@ -245,7 +243,7 @@ class _WorkerPool:
         for connection, process in (*working, *self._idle):
             _end(connection, process)
 
-    def _born(self) -> tuple[Connection, ForkProcess]:
+    def _spawn(self) -> tuple[Connection, ForkProcess]:
         # Forked, because some functions cannot be pickled, and loaded modules are inherited.
         context = multiprocessing.get_context("fork")
         ours, theirs = context.Pipe()
@@ -267,7 +265,7 @@ def _end(connection: Connection, process: ForkProcess) -> None:
 
 def _serve(
     function: Callable[[Any], Any],
-    things: Sequence[Any],
+    items: Sequence[Any],
     connection: Connection,
     inherited: Sequence[Connection],
 ) -> None:
@@ -277,4 +275,4 @@ def _serve(
         other.close()
     with suppress(EOFError, OSError):
         while True:
-            connection.send(reply(function, things[connection.recv()]))
+            connection.send(reply(function, items[connection.recv()]))

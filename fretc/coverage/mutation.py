@@ -19,7 +19,7 @@ from compiler.situations.mutants import Mutant, mutants
 from compiler.targets.python import monitor as monitors
 from fretc.audit.measurements.judgement import Judgement, judge_each
 from fretc.audit.plan import Plan
-from fretc.audit.pool import WorkerDied, each, was_killed
+from fretc.audit.pool import WorkerDied, killed_diagnostic, map_processes
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.traces import Trace, trace
@@ -298,8 +298,10 @@ def _each_run(
     files = [place for place, log in enumerate(logs) if log != STDIN]
     if STDIN in logs:  # another process does not have it
         yield logs.index(STDIN), of_run(asked, STDIN)
-    with closing(each(partial(of_run, asked), [logs[place] for place in files], jobs)) as done:
+    with closing(
+        map_processes(partial(of_run, asked), [logs[place] for place in files], jobs)
+    ) as done:
         for number, one in done:
             place = files[number]
             log = name_of(logs[place])
-            yield place, was_killed(log, str(one)) if isinstance(one, WorkerDied) else one
+            yield place, killed_diagnostic(log, str(one)) if isinstance(one, WorkerDied) else one

@@ -51,7 +51,7 @@ def labels(
     return found, tuple(diagnostics)
 
 
-def of_path(name: str, sources: Sequence[LabelSource], run: str) -> tuple[str, ...]:
+def path_label(name: str, sources: Sequence[LabelSource], run: str) -> tuple[str, ...]:
     """The value of a label in the path of a log."""
     patterns = [source.text for source in sources if source.is_path]
     found = [name_patterns.match(pattern, run) for pattern in patterns]
@@ -66,12 +66,12 @@ def _values(
 ) -> Iterator[str]:
     for source in sources:
         if source.is_path:
-            yield from of_path(name, [source], run)
+            yield from path_label(name, [source], run)
         else:
             yield from described.get(source.text, ())
 
 
-def over(before: Labels, given: Labels) -> tuple[Labels, tuple[Diagnostic, ...]]:
+def with_overrides(before: Labels, given: Labels) -> tuple[Labels, tuple[Diagnostic, ...]]:
     """The labels of a run with those of the command, and F552 for each that differs."""
     clashes = (_conflict(name) for name, value in given.items() if before.get(name, value) != value)
     return {**before, **given}, tuple(clashes)

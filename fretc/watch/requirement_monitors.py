@@ -79,9 +79,9 @@ class RequirementMonitors:
         columns = {name: _column(last.get(name), ticks) for name in monitor.PROPOSITIONS}
         engine = partial(_outcome, before=ticks)
         found = judge(monitor, columns, cut, ticks, intact=intact, end=self._end, engine=engine)
-        return self.said(monitor.REQUIREMENTS[0].id, str(found.verdict))
+        return self.audit_verdict(monitor.REQUIREMENTS[0].id, str(found.verdict))
 
-    def said(self, requirement: str, verdict: str) -> str:
+    def audit_verdict(self, requirement: str, verdict: str) -> str:
         """The verdict in an audit of the run; a run that alone decides nothing is inconclusive."""
         decides = requirement not in self.counted or verdict in (kernel.VACUOUS, kernel.NO_DATA)
         return verdict if decides else str(kernel.INCONCLUSIVE)

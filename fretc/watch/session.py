@@ -77,8 +77,8 @@ class Session:
         patience = self._clock.patience
         assert patience is not None, "a clock by stamps has a lateness"
         self._patience = patience
-        self._judges = RequirementMonitors(plan)
-        self._stream = Stream(plan.declarations, self._judges.propositions)
+        self._monitors = RequirementMonitors(plan)
+        self._stream = Stream(plan.declarations, self._monitors.propositions)
         self._decoder = Decoder(plan.declarations)
         self._latest: dict[str, int] = {}
         self._now = 0
@@ -103,7 +103,7 @@ class Session:
     def reads(self) -> Mapping[str, tuple[str, ...]]:
         """For each requirement, the topics on which it depends."""
         of, found = self._plan.declarations, {}
-        for monitor in self._judges.monitors:
+        for monitor in self._monitors.monitors:
             names = {n for each in monitor.PROPOSITIONS for n in of.propositions[each].signals}
             topics = {of.signals[name].path.topic for name in names}
             found[monitor.REQUIREMENTS[0].id] = tuple(sorted(topics))
@@ -127,17 +127,17 @@ class Session:
     @property
     def first_tick(self) -> int | None:
         """The time of the first tick."""
-        return self._judges.ledger.time(0)
+        return self._monitors.ledger.time(0)
 
     @property
     def ticks(self) -> int:
         """The number of judged ticks."""
-        return self._judges.count
+        return self._monitors.count
 
     @property
     def ledger(self) -> Ledger:
         """The judged ticks."""
-        return self._judges.ledger
+        return self._monitors.ledger
 
     @property
     def late(self) -> Mapping[str, int]:
@@ -147,7 +147,7 @@ class Session:
     @property
     def late_ticks(self) -> int:
         """The number of ticks that became unknown because a message was late."""
-        return self._judges.ledger.late
+        return self._monitors.ledger.late
 
     @property
     def now(self) -> int:
@@ -204,7 +204,7 @@ class Session:
 
     def _withdraw(self, late: Withdrawn | None) -> None:
         if late is not None:
-            self._judges.withdraw(late)
+            self._monitors.withdraw(late)
 
     def interrupt(self) -> None:
         """Record that the connection is lost: no tick is judged until `miss` is called."""
@@ -239,7 +239,7 @@ class Session:
         if isinstance(found, Diagnostic):
             return found
         for tick in found:
-            self._judges.step(tick)
+            self._monitors.step(tick)
         if found:
             self._ahead = None
         return None
@@ -252,13 +252,13 @@ class Session:
         Args:
             ahead: whether messages since the last tick count for `owed`.
         """
-        judges = self._judges
+        monitors = self._monitors
         if ahead and self._ahead is None:
             rows = [tick.truth for tick in self._stream.glance(max(self._now, self._time_passed))]
-            self._ahead = judges.owed(rows)
-        owed = self._ahead if ahead and self._ahead is not None else judges.owed()
+            self._ahead = monitors.owed(rows)
+        owed = self._ahead if ahead and self._ahead is not None else monitors.owed()
         owed = (None,) * len(owed) if self.interrupted else owed
-        read = zip(judges.standings(), owed, judges.last_triggers(), strict=True)
+        read = zip(monitors.standings(), owed, monitors.last_triggers(), strict=True)
         return tuple(
             State(
                 standing.requirement,
@@ -268,7 +268,7 @@ class Session:
                 self._tick_time(standing.open),
                 self._tick_time(standing.deadline),
                 None
-                if standing.requirement in judges.counted
+                if standing.requirement in monitors.counted
                 else self._tick_time(standing.first_violation),
             )
             for standing, owing, trigger in read
@@ -282,14 +282,14 @@ class Session:
         """The verdict of a run that has ended; a run with missed messages satisfies nothing."""
         if standing.requirement in self._final:
             return self._final[standing.requirement]
-        verdict = self._judges.said(standing.requirement, str(standing.verdict))
+        verdict = self._monitors.audit_verdict(standing.requirement, str(standing.verdict))
         return "no data" if self._missed and verdict in ("satisfied", "vacuous") else verdict
 
     def _tick_time(self, tick: int | None) -> int | None:
         """The time of a tick, also of a future one."""
         if tick is None:
             return None
-        known = self._judges.ledger.time(tick)
+        known = self._monitors.ledger.time(tick)
         origin, period = self.origin, self._clock.period
         if known is not None or origin is None or period is None:
             return known
@@ -303,8 +303,8 @@ class Session:
         if not isinstance(found, End):
             return found
         for tick in found.ticks:
-            self._judges.step(tick)
-        self._final = self._judges.verdicts(found.cut, intact=not self._missed)
+            self._monitors.step(tick)
+        self._final = self._monitors.verdicts(found.cut, intact=not self._missed)
         return Ended(self._final, found.until)
 
     def judge_again(self, log: str) -> Mapping[str, str] | Diagnostic:
@@ -313,16 +313,16 @@ class Session:
         Returns:
             The verdicts, which `states` has, too; or why the log cannot be read.
         """
-        declarations, names = self._plan.declarations, self._judges.propositions
+        declarations, names = self._plan.declarations, self._monitors.propositions
         signals = signals_of(declarations, names)
         recording = read(log, declarations, signals, self._plan.integrity)
         if isinstance(recording, Diagnostic):
             return recording
         found = trace(declarations, recording, names)
         times = found.timeline.times.tolist()
-        self._judges, self._ahead = RequirementMonitors(self._plan), None
+        self._monitors, self._ahead = RequirementMonitors(self._plan), None
         rows = rows_of([found.columns[name] for name in names], len(times))
         for time, row in zip(times, rows, strict=True):
-            self._judges.step(Tick(time, dict(zip(names, row, strict=True))))
-        self._final = self._judges.verdicts(found.cut, intact=recording.intact)
+            self._monitors.step(Tick(time, dict(zip(names, row, strict=True))))
+        self._final = self._monitors.verdicts(found.cut, intact=recording.intact)
         return self._final

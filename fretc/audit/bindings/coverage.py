@@ -17,7 +17,7 @@ from fretc.audit.one_log import examined, signals_of
 from fretc.audit.phases.advice import Runs, proposal
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.audit.plan import Plan, monitored_requirements
-from fretc.audit.pool import WorkerDied, each, was_killed
+from fretc.audit.pool import WorkerDied, killed_diagnostic, map_processes
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
@@ -210,10 +210,10 @@ def coverage(
     look = partial(_log_coverage, declarations=declarations, plan=plan)
     logs = tuple(dict.fromkeys(logs))
     of_logs = {
-        place: LogCoverage(logs[place], 0, None, (was_killed(logs[place], str(result)),))
+        place: LogCoverage(logs[place], 0, None, (killed_diagnostic(logs[place], str(result)),))
         if isinstance(result, WorkerDied)
         else result
-        for place, result in each(look, logs, jobs)
+        for place, result in map_processes(look, logs, jobs)
     }
     return Coverage(declarations, tuple(of_logs[place] for place in range(len(logs))))
 

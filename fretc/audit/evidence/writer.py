@@ -176,13 +176,15 @@ def as_record(evidence: RunResult) -> Result:
     )
 
 
-def unread(run: str, requirement: str, diagnostic: Diagnostic, hashes: Mapping[str, str]) -> Result:
+def unread_result(
+    run: str, requirement: str, diagnostic: Diagnostic, hashes: Mapping[str, str]
+) -> Result:
     """The result of a run whose log could not be read: no data."""
     health = Health(False, None, None, (), (_finding(diagnostic),), {})
-    return unjudged(run, requirement, diagnostic.message, hashes, health)
+    return unjudged_result(run, requirement, diagnostic.message, hashes, health)
 
 
-def unjudged(
+def unjudged_result(
     run: str, requirement: str, reason: str, hashes: Mapping[str, str], health: Health
 ) -> Result:
     """The result of a requirement that no log can be judged by: no data."""

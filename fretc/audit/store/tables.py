@@ -24,7 +24,7 @@ from fretc.audit.evidence.reader import VERDICTS
 from fretc.audit.evidence.result_summaries import ResultSummary, RunFacts, brief, run_facts
 from fretc.audit.evidence.samples import Surroundings
 from fretc.audit.evidence.schema import Hashes, Health, Result, Violation
-from fretc.audit.evidence.writer import unjudged
+from fretc.audit.evidence.writer import unjudged_result
 from fretc.audit.measurements.tallies import Tally
 from fretc.audit.store.columns import (
     Column,
@@ -331,7 +331,7 @@ def _firsts(runs: pa.ChunkedArray, rows: Sequence[int]) -> list[bool]:
 _NO_HEALTH = plain(Health(False, None, None, (), (), {}))
 """A placeholder for the health of the run, which is built once for all results of a run."""
 _NO_HASHES = dict.fromkeys(("sentence", "bindings", "monitor"), "0" * 64)
-_BLANK = plain(unjudged("", "none", "", _NO_HASHES, decoded(_NO_HEALTH, Health)))
+_BLANK = plain(unjudged_result("", "none", "", _NO_HASHES, decoded(_NO_HEALTH, Health)))
 """A result of which only the facts of the run are used."""
 
 

@@ -257,14 +257,14 @@ def test_results_can_be_read_by_other_tools(fretc: Fretc) -> None:
 def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audited(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch, jobs: str
 ) -> None:
-    real = auditing.audited
+    real = auditing.audit_log
 
     def deadly(plan: Plan, log: str, *rest: Any) -> auditing.LogResult:
         if log == "bad.mcap":
             os.kill(os.getpid(), signal.SIGKILL)
         return real(plan, log, *rest)
 
-    monkeypatch.setattr(auditing, "audited", deadly)
+    monkeypatch.setattr(auditing, "audit_log", deadly)
     for name in ("run", "bad", "other"):
         Path(f"{name}.mcap").write_bytes(part())
     run = fretc("audit", "run.mcap", "bad.mcap", "other.mcap", "--jobs", jobs)

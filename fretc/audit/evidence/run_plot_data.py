@@ -28,7 +28,7 @@ _EXACT = 10.0**-_DIGITS
 _MOST_LINES = MOST_POINTS // 3
 
 
-def course(recording: Recording, declarations: Declarations) -> Course | None:
+def plot_data(recording: Recording, declarations: Declarations) -> Course | None:
     """The plot data of a run; None: there is nothing to draw."""
     words = {
         name: _words(signal, recording)
@@ -39,7 +39,7 @@ def course(recording: Recording, declarations: Declarations) -> Course | None:
     return Course(way, words) if way or words else None
 
 
-def no_way(recording: Recording, declarations: Declarations) -> Iterator[Diagnostic]:
+def map_diagnostics(recording: Recording, declarations: Declarations) -> Iterator[Diagnostic]:
     """F428 if the bindings declare a map and a coordinate is never known."""
     drawn = declarations.map
     for signal in (drawn.x, drawn.y) if drawn else ():
@@ -187,7 +187,7 @@ def _above(number: float) -> float:
     return round(ceil(round(number * 10.0**digits, 6)) / 10.0**digits, digits)
 
 
-def place(way: Way, ns: int) -> tuple[float, float] | None:
+def position_at(way: Way, ns: int) -> tuple[float, float] | None:
     """The position of the robot at a time, within the error of the path; None: unknown.
 
     Up to `_HOLD` before the first and after the last sample it is where they are: ticks and samples
