@@ -41,8 +41,12 @@ def bases(
     topics = audited_topics(project) if topics is None else topics
     requirements = {id(requirement.entry): requirement for requirement in project.formalized}
     return {
-        id(each): basis(
-            each, requirements.get(id(each)), declarations, topics, monitors.get(id(each))
+        id(requirement): basis(
+            requirement,
+            requirements.get(id(requirement)),
+            declarations,
+            topics,
+            monitors.get(id(requirement)),
         )
-        for each in project.requirements
+        for requirement in project.requirements
     }

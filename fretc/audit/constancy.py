@@ -34,10 +34,10 @@ def totals(runs: Iterable[Mapping[str, Tally]]) -> dict[str, Total]:
 
 def _sum(tallies: Sequence[Tally]) -> Tally:
     return Tally(
-        sum(each.true for each in tallies),
-        sum(each.false for each in tallies),
-        sum(each.unknown for each in tallies),
-        sum(each.changes for each in tallies),
+        sum(tally.true for tally in tallies),
+        sum(tally.false for tally in tallies),
+        sum(tally.unknown for tally in tallies),
+        sum(tally.changes for tally in tallies),
     )
 
 

@@ -380,7 +380,9 @@ class StoreWriter:
             sha256=first.fingerprints.log or "",
             **marks(own.stamp if own.read else None),
             labels=first.labels or {},
-            diagnostics=tuple(diagnostic_text(each, source) for each in own.diagnostics),
+            diagnostics=tuple(
+                diagnostic_text(diagnostic, source) for diagnostic in own.diagnostics
+            ),
         )
         self._note(log, tuple(map(self._one, own.diagnostics)))
         self._read += own.read
@@ -479,7 +481,7 @@ class StoreWriter:
                 found.append((part, [draft.found[log].entry for log in logs]))
         self._write(self._manifest(found, UNFINISHED), UNFINISHED)
         entries = (entry for _, some in found for entry in some)
-        self.kept = sum(each.size is not None and each.log not in self.known for each in entries)
+        self.kept = sum(entry.size is not None and entry.log not in self.known for entry in entries)
 
     def _finish(self) -> StoredAudit:
         found: list[tuple[Part, Sequence[Entry]]] = []

@@ -196,21 +196,21 @@ def audit_logs(
 
 def combined_audit(plan: Plan, audits: Sequence[LogResult]) -> Audit:
     """One audit from the results of single logs, in their order."""
-    results = [result for one in audits for result in one.results]
+    results = [result for audit in audits for result in audit.results]
     of_all_runs = estimates_of(plan, map(brief, results))
-    tallies = (tallies_of(one.results) for one in audits)
-    of_logs = [(one.results[0].run, one.diagnostics) for one in audits]
+    tallies = (tallies_of(audit.results) for audit in audits)
+    of_logs = [(audit.results[0].run, audit.diagnostics) for audit in audits]
     return Audit(
         document(plan, results, of_all_runs),
         diagnostics_of_all(plan, of_logs, tallies, of_all_runs),
-        sum(one.read for one in audits),
+        sum(audit.read for audit in audits),
     )
 
 
 def estimates_of(plan: Plan, results: Iterable[ResultSummary]) -> tuple[Estimated, ...]:
     """The answer of all runs for each requirement with a probability."""
     ids = {claim.id for claim in plan.claims if claim.chance is not None}
-    counted = [each for each in results if each.requirement in ids] if ids else []
+    counted = [result for result in results if result.requirement in ids] if ids else []
     return estimates(plan.claims, counted, plan.confidence)
 
 
@@ -270,12 +270,16 @@ def audit_log(
         return _unread(plan, log, recording, before)
     recording = examined(recording, declarations, names)
     taken = {each.requirement: each for each in _taken_over(known, recording)}
-    new = [each for each in requirements if each.monitor.REQUIREMENTS[0].id not in taken]
+    new = [
+        requirement
+        for requirement in requirements
+        if requirement.monitor.REQUIREMENTS[0].id not in taken
+    ]
     evidence = audit(recording, declarations, new, EVALUATIONS[plan.evaluation]) if new else ()
     of_claim = {e.requirement: as_record(e) for e in evidence} | taken
     first, *others = (of_claim[claim.id] for claim in plan.claims)
     records = (record_with(first, course=plot_data(recording, declarations) or UNSET), *others)
-    phased = {each.requirement: phases_of(each.phases) for each in records if each.phases}
+    phased = {record.requirement: phases_of(record.phases) for record in records if record.phases}
     own = LogResult(
         (*records, *_refused_results(plan, first)),
         (
@@ -292,7 +296,9 @@ def audit_log(
 
 @cache_by_identity
 def _propositions(requirements: Sequence[MonitoredRequirement]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
+    return tuple(
+        dict.fromkeys(name for requirement in requirements for name in requirement.propositions)
+    )
 
 
 def _read(
@@ -406,14 +412,18 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogR
     """
     hashes = _hash_of(log, before)
     records = [
-        unread_result(name_of(log), each.id, why, {**hashes, **each.basis}) for each in plan.named
+        unread_result(name_of(log), requirement.id, why, {**hashes, **requirement.basis})
+        for requirement in plan.named
     ]
     return _with_own_labels(plan, LogResult(tuple(records), (why,), read=False))
 
 
 def _unaudited(plan: Plan, log: str, why: Diagnostic) -> LogResult:
     """The results of a log that was not audited before the time limit: no data, and no hash."""
-    records = [unread_result(name_of(log), each.id, why, each.basis) for each in plan.named]
+    records = [
+        unread_result(name_of(log), requirement.id, why, requirement.basis)
+        for requirement in plan.named
+    ]
     return _with_own_labels(plan, LogResult(tuple(records), (why,), read=False))
 
 
@@ -426,7 +436,7 @@ def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
 
 def named_situations(claim: AuditedRequirement) -> tuple[Situation, ...]:
     """The situations of a requirement, as evidence lists them."""
-    return tuple(Situation(each.key, each.words) for each in claim.situations)
+    return tuple(Situation(situation.key, situation.words) for situation in claim.situations)
 
 
 def document(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estimated]) -> Document:
@@ -436,18 +446,18 @@ def document(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estima
         fretc=__version__,
         bindings=Bindings(
             plan.declarations.source.name,
-            of_all({each.id: each.basis[BINDINGS] for each in plan.named}),
+            of_all({requirement.id: requirement.basis[BINDINGS] for requirement in plan.named}),
         ),
         requirements=tuple(
             Requirement(
-                each.id,
-                each.sentence,
-                each.basis[SENTENCE],
-                situations=named_situations(each)
-                if isinstance(each, AuditedRequirement)
+                requirement.id,
+                requirement.sentence,
+                requirement.basis[SENTENCE],
+                situations=named_situations(requirement)
+                if isinstance(requirement, AuditedRequirement)
                 else UNSET,
             )
-            for each in plan.named
+            for requirement in plan.named
         ),
         results=tuple(results),
         probabilities=tuple(of_all_runs) or UNSET,

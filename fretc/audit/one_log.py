@@ -102,7 +102,7 @@ def examined(
         for finding in blind_zones(declarations.propositions[name], declarations, recording.nearest)
     )
     expressions = [declarations.propositions[name].expression for name in propositions]
-    flags = dict.fromkeys(name.id for each in expressions for name in e.truths(each))
+    flags = dict.fromkeys(name.id for expression in expressions for name in e.truths(expression))
     untrue = (_untrue(declarations.signals[name], recording) for name in flags)
     found = (*recording.findings, *filter(None, untrue), *blind, *slow, *late)
     return replace(recording, findings=found)
@@ -136,7 +136,7 @@ def audit(
         requirements: the requirements with their monitors.
         engine: the evaluator of the monitors; the verdicts do not depend on it.
     """
-    names = dict.fromkeys(name for each in requirements for name in each.propositions)
+    names = dict.fromkeys(name for requirement in requirements for name in requirement.propositions)
     truths = trace(declarations, recording, tuple(names))
     margins_of = {
         name: margins(
@@ -145,13 +145,15 @@ def audit(
         for name in names
     }
     near = _near(recording, declarations, len(truths.timeline.times))
-    phases_of = phases(declarations, recording, [each.monitor for each in requirements])
+    phases_of = phases(
+        declarations, recording, [requirement.monitor for requirement in requirements]
+    )
     found, at = health(recording), _moments(truths.timeline)
     evidence = [
-        _evidence(recording, declarations, truths, at, margins_of, near, each, engine, found)
-        for each in requirements
+        _evidence(recording, declarations, truths, at, margins_of, near, requirement, engine, found)
+        for requirement in requirements
     ]
-    return tuple(_phased(each, phases_of.get(each.requirement)) for each in evidence)
+    return tuple(_phased(result, phases_of.get(result.requirement)) for result in evidence)
 
 
 def _phased(evidence: RunResult, phases: Phases | None) -> RunResult:

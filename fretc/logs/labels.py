@@ -112,7 +112,7 @@ def _conflict(name: str) -> Diagnostic:
 
 def _none(name: str, sources: Sequence[LabelSource], *, is_given: bool) -> Diagnostic:
     """F553."""
-    texts = (f"{'path' if one.is_path else 'metadata'}:{one.text}" for one in sources)
+    texts = (f"{'path' if source.is_path else 'metadata'}:{source.text}" for source in sources)
     where = " or ".join(f"`{text}`" for text in texts)
     what = f"is empty, or longer than {LONGEST} characters" if is_given else "has no value"
     return Diagnostic(

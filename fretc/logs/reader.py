@@ -225,7 +225,10 @@ def _file(
         return part
     if part.span is None:
         return log_diagnostics.empty(place)
-    damages, notes = [(place, *one) for one in part.damages], (*part.notes, *_alone(path, place))
+    damages, notes = (
+        [(place, *damage) for damage in part.damages],
+        (*part.notes, *_alone(path, place)),
+    )
     described = together([*_of_folder(path, asked), part.described])
     return _Run(part.sha256, part.size, (part.span,), damages, notes, part.checked, described)
 

@@ -390,7 +390,7 @@ class Stream:
             findings=(),
             intact=not self._gaps,
             late={
-                topic: Late(*np.array([(one.first, one.last) for one in spans], np.int64).T)
+                topic: Late(*np.array([(span.first, span.last) for span in spans], np.int64).T)
                 for topic, spans in self._late.items()
                 if spans
             },

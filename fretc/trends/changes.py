@@ -100,7 +100,9 @@ def is_flaky(rounds: Sequence[Sequence[str]], of_software: Mapping[str, Sequence
         of_software: the verdicts of the runs of each commit.
     """
     round_outcomes = [round_outcome(verdicts) for verdicts in rounds if verdicts]
-    known = [each for each in round_outcomes if each is not RoundOutcome.OPEN]
+    known = [
+        round_outcome for round_outcome in round_outcomes if round_outcome is not RoundOutcome.OPEN
+    ]
     turns = sum(a is not b for a, b in pairwise(known))
     return turns > 1 or any(
         {*verdicts} & {*BROKEN} and {*verdicts} & {*SHOWN} for verdicts in of_software.values()

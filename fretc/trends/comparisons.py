@@ -187,13 +187,13 @@ def _tested(
     """The test, and its numbers: each log once, the newest ones first."""
     strata: dict[Scenario, tuple[list[float], list[float]]] = defaultdict(lambda: ([], []))
     passed: set[str] = set()
-    for one in values:  # from the oldest round on, so that copies in later rounds are skipped
-        run = runs[one.run]
+    for run_value in values:  # from the oldest round on, so that copies in later rounds are skipped
+        run = runs[run_value.run]
         is_after = held.is_after(run)
         if run.content in passed or not (is_after or held.is_before(run)):
             continue
         passed.add(run.content)
-        strata[one.scenario][is_after].append(one.number)
+        strata[run_value.scenario][is_after].append(run_value.number)
     both = fewer([(before[::-1], after[::-1]) for before, after in strata.values()])
     sign = -1 if measure.is_better_larger else 1
     return larger([([sign * x for x in b], [sign * x for x in a]) for b, a in both]), both
@@ -243,10 +243,10 @@ def _measures(
         return
     judged.sort(key=lambda one: (one.round, histories.runs[one.run].time or -1, one.run))
     basis = judged[-1].basis
-    same = [one for one in judged if one.basis == basis]
+    same = [outcome for outcome in judged if outcome.basis == basis]
     for kind, number in ((Kind.LONGEST, _longest), (Kind.MEDIAN, _median)):
         values = tuple(_value(histories.runs, one, number(one)) for one in same)
-        known = tuple(each for each in values if each is not None)
+        known = tuple(value for value in values if value is not None)
         if known:
             yield Measure((requirement,), kind, "s"), known
     yield from _margins(histories, requirement, same)
@@ -282,7 +282,7 @@ def _margins(
     for measure, margins in found.items():
         ordered = [(one, margins[run]) for run, one in known.items() if run in margins]
         values = (_value(histories.runs, one, number) for one, number in ordered)
-        yield measure, tuple(each for each in values if each is not None)
+        yield measure, tuple(value for value in values if value is not None)
 
 
 def _margin(each: Threshold) -> float | None:

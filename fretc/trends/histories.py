@@ -249,7 +249,9 @@ def _rounds(
             max(times[key], default=None),
             len(members[key]),
             tuple(dict.fromkeys(v for one in members[key] if (v := one.labels.get(VERSION)))),
-            frozenset(each.id for some in audits[key].values() for each in some.requirements),
+            frozenset(
+                requirement.id for some in audits[key].values() for requirement in some.requirements
+            ),
             tuple(each.selection for each in audits[key].values() if each.selection is not None),
         )
         for key in keys
@@ -258,7 +260,7 @@ def _rounds(
 
 
 def _times(facts: Sequence[RunFacts]) -> list[int]:
-    return [time for one in facts if (time := time_of(one)) is not None]
+    return [time for run in facts if (time := time_of(run)) is not None]
 
 
 def _round_name(by: str, key: str, sources: Sequence[EvidenceSource]) -> str:
@@ -285,8 +287,10 @@ class _Reader:
         for one in facts:
             run_of[one.run] = len(self.runs)
             self.runs.append(self._run(one, self._round_of[_key(self._by, number, one)]))
-        self.requirements |= {each.id: each.sentence for each in source.requirements}
-        together = {each.requirement for each in source.probabilities}
+        self.requirements |= {
+            requirement.id: requirement.sentence for requirement in source.requirements
+        }
+        together = {probability.requirement for probability in source.probabilities}
         places, bases = array("q"), array("q")
         for _, brief in source.briefs():
             run, basis = run_of[brief.run], self._basis(brief)
@@ -326,8 +330,10 @@ class _Reader:
     def _add_estimates(self, source: EvidenceSource, number: int, rounds: Sequence[int]) -> None:
         """Add the answers of all runs of an evidence to its newest round."""
         own = self._round_of[str(number)] if self._by == EVIDENCE else max(rounds, default=0)
-        for one in source.probabilities:
-            self.judged[one.requirement, ALL_RUNS].append(Judged(-1, own, one.answer, 0))
+        for probability in source.probabilities:
+            self.judged[probability.requirement, ALL_RUNS].append(
+                Judged(-1, own, probability.answer, 0)
+            )
 
     def _basis(self, brief: ResultSummary) -> int:
         prints = brief.fingerprints
@@ -338,8 +344,8 @@ class _Reader:
 def verdicts_of_rounds(judged: Sequence[Judged], rounds: int) -> tuple[tuple[str, ...], ...]:
     """The verdicts of each round."""
     found: list[list[str]] = [[] for _ in range(rounds)]
-    for one in judged:
-        found[one.round].append(one.verdict)
+    for outcome in judged:
+        found[outcome.round].append(outcome.verdict)
     return tuple(map(tuple, found))
 
 

@@ -28,14 +28,14 @@ def _plain(trends: Trends) -> dict[str, Any]:
         "runs": trends.runs,
         "rounds": [_round(each) for each in trends.rounds],
         "requirements": dict(trends.sentences),
-        "items": [_item(each) for each in trends.items],
+        "items": [_item(item) for item in trends.items],
         "compared": {
             "before": trends.held.before,
             "after": trends.held.after,
             "level": trends.level,
             **{str(kind): count for kind, count in by_finding(trends.comparisons).items()},
         },
-        "comparisons": [_comparison(each) for each in trends.comparisons],
+        "comparisons": [_comparison(comparison) for comparison in trends.comparisons],
     }
 
 
@@ -45,7 +45,7 @@ def _round(each: Round) -> dict[str, Any]:
         "days": each.days,
         "runs": each.runs,
         "versions": list(each.versions),
-        "selections": [plain(one) for one in each.selections],
+        "selections": [plain(selection) for selection in each.selections],
     }
 
 

@@ -27,8 +27,14 @@ def is_left_out(
     """
     newest = histories.rounds[-1]
     runs = histories.runs
-    now = [runs[one.run] for one in judged if one.round == histories.newest and one.run >= 0]
-    before = [one for one in judged if one.round < histories.newest and one.run >= 0]
+    now = [
+        runs[outcome.run]
+        for outcome in judged
+        if outcome.round == histories.newest and outcome.run >= 0
+    ]
+    before = [
+        outcome for outcome in judged if outcome.round < histories.newest and outcome.run >= 0
+    ]
     if change is Change.GONE and requirement in newest.requirements:
         last = max((one.round for one in before), default=-1)
         return any(
@@ -39,15 +45,15 @@ def is_left_out(
         )
     if change is Change.FIXED:
         violated = [one for one in before if round_outcome([one.verdict]) is RoundOutcome.VIOLATED]
-        last = max((one.round for one in violated), default=-1)
+        last = max((outcome.round for outcome in violated), default=-1)
         names, logs = {run.name for run in now}, {run.content for run in now}
         known = {runs[one.run].content for one in before}
         return any(
-            _may_leave_out(selection, runs[one.run], by_date=logs <= known)
-            for one in violated
-            if one.round == last
-            and runs[one.run].name not in names
-            and runs[one.run].content not in logs
+            _may_leave_out(selection, runs[outcome.run], by_date=logs <= known)
+            for outcome in violated
+            if outcome.round == last
+            and runs[outcome.run].name not in names
+            and runs[outcome.run].content not in logs
             for selection in newest.selections
         )
     return False

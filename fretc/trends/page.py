@@ -56,11 +56,19 @@ _LISTS = (
 def html(trends: Trends) -> str:
     """The text of the whole file."""
     style = render("report/style.css.j2") + render("trends/style.css.j2")
-    lists = [_listed(each, trends.of(*each.kinds)) for each in _LISTS]
+    lists = [_listed(change_list, trends.of(*change_list.kinds)) for change_list in _LISTS]
     flaky = [item for item in trends.items if item.flaky]
     regressed = trends.found(Finding.REGRESSED)
-    others = [one for one in trends.comparisons if one.finding is not Finding.REGRESSED]
-    moving = [one for one in others if len({value.number for value in one.values}) > 1]
+    others = [
+        comparison
+        for comparison in trends.comparisons
+        if comparison.finding is not Finding.REGRESSED
+    ]
+    moving = [
+        comparison
+        for comparison in others
+        if len({value.number for value in comparison.values}) > 1
+    ]
     pictured = moving[:_MOST_CHARTS]
     return render(
         "trends/page.html.j2",
@@ -74,7 +82,7 @@ def html(trends: Trends) -> str:
                 "facts": _facts(trends),
                 "rounds": [_round(i, each) for i, each in enumerate(trends.rounds, 1)],
                 "by": trends.by,
-                "lists": [each for each in lists if each["rows"]],
+                "lists": [change_list for change_list in lists if change_list["rows"]],
                 "flaky": {
                     "rows": _rows(flaky[:_MOST_RED]),
                     "left": _left(flaky[_MOST_RED:]),
@@ -125,7 +133,7 @@ def _headline(trends: Trends) -> str:
 
 def _facts(trends: Trends) -> list[str]:
     newest = trends.rounds[-1]
-    versions = phrases.some([f"version {each}" for each in newest.versions], 3)
+    versions = phrases.some([f"version {version}" for version in newest.versions], 3)
     about = ", ".join(filter(None, [newest.days, versions, phrases.times(newest.runs, "run")]))
     steady, never = len(trends.of(Change.STEADY)), len(trends.of(Change.NEVER_SHOWN))
     return [
@@ -133,7 +141,7 @@ def _facts(trends: Trends) -> list[str]:
         f"{phrases.times(len(trends.rounds), 'round')}, {phrases.times(trends.runs, 'run')}, "
         f"{phrases.times(len(trends.sentences), 'requirement')}; {phrases.whole(steady)} shown as "
         f"before, {phrases.whole(never)} never shown.",
-        *(f"Newest round: {in_words(each)}." for each in newest.selections),
+        *(f"Newest round: {in_words(selection)}." for selection in newest.selections),
         *([f"{trends.order[:1].upper()}{trends.order[1:]}."] if len(trends.rounds) > 1 else []),
     ]
 

@@ -100,7 +100,7 @@ class Trends:
 
     def found(self, kind: Finding) -> tuple[Comparison, ...]:
         """The comparisons with a finding."""
-        return tuple(one for one in self.comparisons if one.finding is kind)
+        return tuple(comparison for comparison in self.comparisons if comparison.finding is kind)
 
     @property
     def is_worse(self) -> bool:
@@ -140,7 +140,7 @@ class Group:
     def text(self) -> str:
         """The name with the last verdicts."""
         last = [item.last for item in self.items]
-        counts = [f"{last.count(each)} {each}" for each in RoundOutcome if each in last]
+        counts = [f"{last.count(outcome)} {outcome}" for outcome in RoundOutcome if outcome in last]
         return f"{self.name}: {', '.join(counts)}"
 
 
@@ -185,7 +185,7 @@ def trends(
         level: the probability of even one false regression.
     """
     if by not in (None, EVIDENCE, DAY) and not any(
-        by in facts.labels for each in sources for facts in each.runs()
+        by in facts.labels for source in sources for facts in source.runs()
     ):
         return Diagnostic(
             Code.NOT_COMPARABLE,
@@ -219,7 +219,7 @@ def trends(
 def _item(known: Histories, requirement: str, scenario: Scenario, judged: Sequence[Judged]) -> Item:
     rounds = verdicts_of_rounds(judged, len(known.rounds))
     basis = max(judged, key=lambda one: one.round).basis
-    comparable = [one for one in judged if one.basis == basis]
+    comparable = [outcome for outcome in judged if outcome.basis == basis]
     of_software: dict[str, list[str]] = defaultdict(list)
     for one in comparable:
         software = known.runs[one.run].software if one.run >= 0 else f"all of {one.round}"

@@ -66,8 +66,8 @@ class Decoder:
         names |= {declarations.clock.topic} if declarations.clock.topic else set()
         self._topics = {
             name: _Topic(
-                tuple(each.name for each in signals if each.path.topic == name),
-                [each for each in signals if each.path.topic == name],
+                tuple(signal.name for signal in signals if signal.path.topic == name),
+                [signal for signal in signals if signal.path.topic == name],
             )
             for name in names
         }

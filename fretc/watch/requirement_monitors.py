@@ -22,11 +22,11 @@ class RequirementMonitors:
     def __init__(self, plan: Plan, kept: int = 0) -> None:
         """Monitors before the first tick; the last `kept` ticks (0: all) can become unknown."""
         self._end = Verdict(plan.declarations.clock.end)
-        self.monitors = tuple(load(f"{each.id}_monitor", each.monitor) for each in plan.claims)
+        self.monitors = tuple(load(f"{claim.id}_monitor", claim.monitor) for claim in plan.claims)
         self.propositions = tuple(
-            dict.fromkeys(name for each in self.monitors for name in each.PROPOSITIONS)
+            dict.fromkeys(name for monitor in self.monitors for name in monitor.PROPOSITIONS)
         )
-        self.counted = frozenset(each.id for each in plan.claims if each.chance is not None)
+        self.counted = frozenset(claim.id for claim in plan.claims if claim.chance is not None)
         """Requirements with a probability: no single run shows whether they hold."""
         self.ledger = Ledger(self.monitors, kept)
 
@@ -57,20 +57,21 @@ class RequirementMonitors:
         """
         ahead = tuple(rows)
         found = (
-            each.standings_after(ahead) if ahead else each.standings() for each in self.monitors
+            monitor.standings_after(ahead) if ahead else monitor.standings()
+            for monitor in self.monitors
         )
         return tuple(standing.owed for standings in found for standing in standings)
 
     def last_triggers(self) -> tuple[int | None, ...]:
         """For each requirement, the time of the last tick with a certain trigger."""
         marks = (monitor.must.marks()[0] for monitor in self.monitors)
-        return tuple(self.ledger.time(each.last) if each.last >= 0 else None for each in marks)
+        return tuple(self.ledger.time(mark.last) if mark.last >= 0 else None for mark in marks)
 
     def verdicts(self, cut: Mapping[str, Truth] | None, *, intact: bool) -> dict[str, str]:
         """The verdicts of an audit of a log that ends here."""
         return {
-            each.REQUIREMENTS[0].id: self._verdict(each, cut, intact=intact)
-            for each in self.monitors
+            monitor.REQUIREMENTS[0].id: self._verdict(monitor, cut, intact=intact)
+            for monitor in self.monitors
         }
 
     def _verdict(self, monitor: Monitor, cut: Mapping[str, Truth] | None, *, intact: bool) -> str:

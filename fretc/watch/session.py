@@ -104,7 +104,7 @@ class Session:
         """For each requirement, the topics on which it depends."""
         of, found = self._plan.declarations, {}
         for monitor in self._monitors.monitors:
-            names = {n for each in monitor.PROPOSITIONS for n in of.propositions[each].signals}
+            names = {n for name in monitor.PROPOSITIONS for n in of.propositions[name].signals}
             topics = {of.signals[name].path.topic for name in names}
             found[monitor.REQUIREMENTS[0].id] = tuple(sorted(topics))
         return found

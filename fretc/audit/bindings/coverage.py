@@ -235,7 +235,7 @@ def _phases(
     log: str, declarations: Declarations, recording: Recording, plan: Plan
 ) -> Mapping[str, Phases]:
     """The verdicts by phase, on the ticks of an audit: the requirements' topics set the first."""
-    monitors = [each.monitor for each in monitored_requirements(plan)]
+    monitors = [requirement.monitor for requirement in monitored_requirements(plan)]
     if _topics(plan.declarations) != _topics(declarations):
         names = tuple(plan.declarations.signals)
         again = read(log, plan.declarations, names)

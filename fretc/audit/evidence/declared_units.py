@@ -28,7 +28,7 @@ def thresholds_in_declared_units(
     """The thresholds in declared units."""
     if declared is None:
         return tuple(thresholds)
-    return tuple(_threshold(each, declared.signals) for each in thresholds)
+    return tuple(_threshold(threshold, declared.signals) for threshold in thresholds)
 
 
 def without_samples(results: Sequence[Result], declared: Declarations | None) -> tuple[Result, ...]:
@@ -38,12 +38,12 @@ def without_samples(results: Sequence[Result], declared: Declarations | None) ->
         results: in base units.
         declared: the bindings.
     """
-    return tuple(in_declared_units(bare(each), declared) for each in results)
+    return tuple(in_declared_units(bare(result), declared) for result in results)
 
 
 def bare(result: Result) -> Result:
     """The result without the samples around its violations."""
-    violations = tuple(replace(each, surroundings=None) for each in result.violations)
+    violations = tuple(replace(violation, surroundings=None) for violation in result.violations)
     return replace(result, violations=violations)
 
 
@@ -52,8 +52,8 @@ def _result(result: Result, declared: Mapping[str, Signal]) -> Result:
     return replace(
         result,
         units={name: unit for name, (unit, _) in units.items()},
-        violations=tuple(_violation(each, units) for each in result.violations),
-        thresholds=tuple(_threshold(each, declared) for each in result.thresholds),
+        violations=tuple(_violation(violation, units) for violation in result.violations),
+        thresholds=tuple(_threshold(threshold, declared) for threshold in result.thresholds),
     )
 
 

@@ -43,13 +43,13 @@ def estimates(
 
 def warnings(estimates: Sequence[Estimated]) -> Iterator[Diagnostic]:
     """F506 for each requirement that so few logs cannot support, whatever their triggers show."""
-    for one in estimates:
-        least = odds.fewest(one.operator, Fraction(one.bound), one.confidence)
-        if one.answer == INCONCLUSIVE and one.logs.counted < least:
+    for estimate in estimates:
+        least = odds.fewest(estimate.operator, Fraction(estimate.bound), estimate.confidence)
+        if estimate.answer == INCONCLUSIVE and estimate.logs.counted < least:
             yield Diagnostic(
                 Code.FEW_RUNS,
-                f"the probability of {one.requirement} is estimated from "
-                f"{times(one.logs.counted, 'log')} with a trigger",
+                f"the probability of {estimate.requirement} is estimated from "
+                f"{times(estimate.logs.counted, 'log')} with a trigger",
                 help=f"audit {least} or more: triggers of one log may depend on each other, so "
                 "logs are counted, not triggers",
                 severity=Severity.WARNING,

@@ -282,7 +282,7 @@ def _sharing(brief: ResultSummary, pools: _Pools) -> ResultSummary:
 
 
 _PRINTS = Hashes.__struct_fields__
-_FIELDS = tuple(each.name for each in fields(ResultSummary))
+_FIELDS = tuple(field.name for field in fields(ResultSummary))
 _AT = _FIELDS.index("fingerprints")
 _COMMON = tuple(
     (_FIELDS.index(name), kind)
@@ -335,7 +335,7 @@ def judgement(result: Result) -> str:
         result.verdict,
         result.finite,
         len(result.triggers),
-        [[each.first_tick, each.last_tick] for each in result.violations],
+        [[violation.first_tick, violation.last_tick] for violation in result.violations],
         [moment.tick for moment in result.open],
     )
 

@@ -153,7 +153,7 @@ def as_record(evidence: RunResult) -> Result:
         ticks=outcome.ticks,
         start_ns=evidence.start_ns,
         end_ns=evidence.end_ns,
-        states=tuple(_state(*each) for each in evidence.states),
+        states=tuple(_state(*state) for state in evidence.states),
         answers=tuple(Answer(m.tick, m.ns, m.seconds, t.tick) for t, m in evidence.answers),
         triggers=evidence.triggers,
         violations=tuple(map(_violation, evidence.violations)),
@@ -246,7 +246,9 @@ def phase_verdicts(phases: Phases) -> PhaseVerdicts:
 
 def phases_of(record: PhaseVerdicts) -> Phases:
     """The verdict at each phase, from its record."""
-    stretches = (Stretch(each.first_ns, each.last_ns, each.verdict) for each in record.stretches)
+    stretches = (
+        Stretch(stretch.first_ns, stretch.last_ns, stretch.verdict) for stretch in record.stretches
+    )
     return Phases(record.period_ns, record.declared_ns, tuple(stretches))
 
 

@@ -108,7 +108,9 @@ def _signals(requirement: FormalizedRequirement) -> list[Signal]:
         for signal in declared.propositions[name].signals
     )
     signals = (declared.signals[name] for name in names if name in declared.signals)
-    return [each for each in signals if not each.values and not each.path.each][:_MOST_PLOTTED]
+    return [signal for signal in signals if not signal.values and not signal.path.each][
+        :_MOST_PLOTTED
+    ]
 
 
 def _line(signal: Signal) -> dict[str, Any]:

@@ -67,7 +67,7 @@ def counted(kinds: Sequence[str]) -> dict[str, str]:
 def _suite_of_all(
     root: ElementTree.Element, estimates: Sequence[Estimated], titled: Mapping[str, str]
 ) -> None:
-    counts = counted([verdicts.junit(one.answer) for one in estimates])
+    counts = counted([verdicts.junit(estimate.answer) for estimate in estimates])
     suite = ElementTree.SubElement(root, "testsuite", {"name": "all runs", **counts})
     for one in estimates:
         name = valid(titled.get(one.requirement, one.requirement))
@@ -130,10 +130,13 @@ def github(
         title = f"{names[result.requirement]} {result.verdict}"
         message = f"{result.run}: {reason(result)}"
         lines.append(_annotation(level, places[result.requirement], title, message))
-    for one in estimates:
-        level, title = _GITHUB[verdicts.level(one.answer)], f"{names[one.requirement]} {one.answer}"
-        message = f"all runs: {one.reason}; {one.lines[1]}; {AVERAGE}"
-        lines.append(_annotation(level, places[one.requirement], title, message))
+    for estimate in estimates:
+        level, title = (
+            _GITHUB[verdicts.level(estimate.answer)],
+            f"{names[estimate.requirement]} {estimate.answer}",
+        )
+        message = f"all runs: {estimate.reason}; {estimate.lines[1]}; {AVERAGE}"
+        lines.append(_annotation(level, places[estimate.requirement], title, message))
     return "".join(lines)
 
 

@@ -101,8 +101,8 @@ def sarif(
         estimates: the answers of all runs: each gives one more result.
         failed: requirements that could not be formalized.
     """
-    found = [one for one in results if one.level is not Level.NONE]
-    of_all = [one for one in estimates if one.level is not Level.NONE]
+    found = [result for result in results if result.level is not Level.NONE]
+    of_all = [estimate for estimate in estimates if estimate.level is not Level.NONE]
     ids = {one.result.requirement for one in found} | {one.requirement for one in of_all}
     named = {r.id: r for r in (*(rule.entry for rule in rules), *failed)}
     occurring = [requirement for id, requirement in named.items() if id in ids]
@@ -177,12 +177,12 @@ def _files(
 ) -> dict[str, dict[str, Any]]:
     """Each file by its name: the logs, and the files with the sentences."""
     files: dict[str, dict[str, Any]] = {}
-    for one in results:
-        run = one.result.run
+    for result in results:
+        run = result.result.run
         artifact = files.setdefault(
             run, {"location": _place(path_of(run)), "roles": ["analysisTarget"]}
         )
-        size, sha256 = one.result.health.size, one.result.hashes.get("log")
+        size, sha256 = result.result.health.size, result.result.hashes.get("log")
         artifact |= {"length": size} if size is not None else {}
         artifact |= {"hashes": {"sha-256": sha256}} if sha256 else {}
     for requirement in used:

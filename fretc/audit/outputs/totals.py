@@ -137,7 +137,7 @@ class VerdictWords:
             estimates: the answers of all runs.
             refused: the ids of requirements that could not be compared with any run.
         """
-        answers = {one.requirement: one.answer for one in estimates}
+        answers = {estimate.requirement: estimate.answer for estimate in estimates}
         names: list[str] = []
         words: list[Mapping[str, str]] = []
         ids: dict[str, None] = {}

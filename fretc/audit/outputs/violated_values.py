@@ -36,4 +36,4 @@ def reason(result: Result) -> str:
 def _bounds(result: Result, signal: str) -> list[float]:
     """The bounds with which a signal, or its absolute value, is compared."""
     thresholds = (t for t in result.thresholds if t.signal in (signal, f"abs({signal})"))
-    return [sign * each.bound for each in thresholds for sign in (1, -1)]
+    return [sign * threshold.bound for threshold in thresholds for sign in (1, -1)]

@@ -107,7 +107,7 @@ def _expected(
 
 def _ticks(moments: Sequence[Mapping[str, int] | None]) -> list[int | None]:
     """The ticks of moments; a missing moment has none."""
-    return [None if each is None else each["tick"] for each in moments]
+    return [None if moment is None else moment["tick"] for moment in moments]
 
 
 def _lists(table: TableRows, *columns: str) -> Iterator[list[Any]]:

@@ -139,7 +139,9 @@ class Real:
         if exact and int in kinds:
             raise InexactError
         if kinds & {int, str}:
-            values = [None if each is None else float(_INFINITE.get(each, each)) for each in values]
+            values = [
+                None if value is None else float(_INFINITE.get(value, value)) for value in values
+            ]
         return pa.array(values, self.type)
 
     def values(self, array: pa.Array) -> list[Any]:
@@ -183,18 +185,18 @@ class Struct:
     @property
     def type(self) -> pa.DataType:
         """A struct with a field for each field of the record."""
-        return pa.struct([pa.field(each.name, each.column.type) for each in self.fields])
+        return pa.struct([pa.field(field.name, field.column.type) for field in self.fields])
 
     def array(self, values: Sequence[Any], *, exact: bool) -> pa.Array:
         """The records as an array."""
         null = [value is None or value is UNSET for value in values]
         if not any(null):
-            parts = [each.array(values, exact=exact) for each in self.fields]
+            parts = [field.array(values, exact=exact) for field in self.fields]
             return pa.StructArray.from_arrays(parts, fields=[*self.type])
         there = [value for value, no in zip(values, null, strict=True) if not no]
         places = iter(range(len(there)))
         rows = pa.array([None if no else next(places) for no in null], pa.int64())
-        parts = [each.array(there, exact=exact).take(rows) for each in self.fields]
+        parts = [field.array(there, exact=exact).take(rows) for field in self.fields]
         return pa.StructArray.from_arrays(parts, fields=[*self.type], mask=pa.array(null))
 
     def values(self, array: pa.Array) -> list[Any]:
@@ -208,10 +210,10 @@ class Struct:
 
 def objects(fields: Sequence[Field], arrays: Sequence[pa.Array]) -> list[Any]:
     """An object for each row."""
-    names = [each.name for each in fields]
+    names = [field.name for field in fields]
     parts = [each.column.values(array) for each, array in zip(fields, arrays, strict=True)]
     rows = [dict(zip(names, row, strict=True)) for row in zip(*parts, strict=True)]
-    for name in (each.name for each in fields if each.absent):
+    for name in (field.name for field in fields if field.absent):
         for row in rows:
             if row[name] is None:
                 del row[name]
@@ -357,15 +359,15 @@ def fields_of(record: type) -> tuple[Field, ...]:
 
 def _fields(kind: Any) -> tuple[Field, ...]:
     return tuple(
-        Field(each.encode_name, each.name, column_of(each.type), not each.required)
-        for each in kind.fields
+        Field(field.encode_name, field.name, column_of(field.type), not field.required)
+        for field in kind.fields
     )
 
 
 def column_of(kind: Any) -> Column:
     """The column for a type, as `types.type_info` describes it."""
     options = _options(kind)
-    names = {type(each) for each in options}
+    names = {type(option) for option in options}
     if names == {types.FloatType, types.StrType}:
         return NumberOrWord()
     if types.FloatType in names:
@@ -396,7 +398,7 @@ def _options(kind: Any) -> list[Any]:
         kind = kind.type
     if not isinstance(kind, types.UnionType):
         return [kind]
-    options = [each for inner in kind.types for each in _options(inner)]
-    some = [each for each in options if not isinstance(each, types.NoneType)]
+    options = [option for inner in kind.types for option in _options(inner)]
+    some = [option for option in options if not isinstance(option, types.NoneType)]
     has_point = any(isinstance(each, types.FloatType) for each in some)
     return [each for each in some if not (has_point and isinstance(each, types.IntType))]

@@ -250,8 +250,8 @@ class Store(HeadProperties):
         self, part: Part, name: TableName, read: Callable[[pa.Table], list[T]]
     ) -> Iterator[T]:
         try:
-            for some in self._rows(part, name).groups():
-                yield from read(some)
+            for group in self._rows(part, name).groups():
+                yield from read(group)
         except SchemaError as error:
             raise self._error(f"cannot be read: {error}") from None
 

@@ -94,7 +94,7 @@ class SampleCache:
         """
         if before is None or not _stands_alone(log) or recording.samples.keys() != {*wanted}:
             return
-        findings = [_plain(each, declarations) for each in recording.findings]
+        findings = [_plain(finding, declarations) for finding in recording.findings]
         if None in findings:
             return
         about = {
@@ -163,10 +163,10 @@ def _stands_alone(log: str) -> bool:
 
 def _packed(about: Mapping[str, Any], arrays: Sequence[Array]) -> bytes:
     """The length of a description, the description, and the arrays one after the other."""
-    kinds = [[each.dtype.str, len(each)] for each in arrays]
+    kinds = [[array.dtype.str, len(array)] for array in arrays]
     head = json.dumps({**about, "arrays": kinds}).encode()
     return b"".join(
-        (len(head).to_bytes(_LENGTH, "little"), head, *(each.tobytes() for each in arrays))
+        (len(head).to_bytes(_LENGTH, "little"), head, *(array.tobytes() for array in arrays))
     )
 
 

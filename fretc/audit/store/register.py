@@ -83,13 +83,13 @@ def marks(before: Stamp | None) -> dict[str, Any]:
 def table(entries: Sequence[Entry]) -> pa.Table:
     """The entries as a table, in the order of the runs."""
     fields = fields_of(Entry)
-    arrays = [each.array(entries, exact=False) for each in fields]
-    return pa.Table.from_arrays(arrays, names=[each.name for each in fields])
+    arrays = [field.array(entries, exact=False) for field in fields]
+    return pa.Table.from_arrays(arrays, names=[field.name for field in fields])
 
 
 def types() -> pa.Schema:
     """The types of the columns."""
-    return pa.schema([pa.field(each.name, each.column.type) for each in fields_of(Entry)])
+    return pa.schema([pa.field(field.name, field.column.type) for field in fields_of(Entry)])
 
 
 def entries(found: pa.Table) -> list[Entry]:
@@ -99,7 +99,7 @@ def entries(found: pa.Table) -> list[Entry]:
         SchemaError: the table has no valid entries.
     """
     fields = fields_of(Entry)
-    arrays = [pa.concat_arrays(found[each.name].chunks) for each in fields] if len(found) else []
+    arrays = [pa.concat_arrays(found[field.name].chunks) for field in fields] if len(found) else []
     return decoded(objects(fields, arrays), list[Entry]) if arrays else []
 
 

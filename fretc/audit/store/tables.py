@@ -116,7 +116,7 @@ def _of(names: str, column: Column) -> Iterator[Field]:
 
 
 def _below(path: str, fields: Iterable[Field]) -> Iterator[Field]:
-    return (each.below(path) for each in fields)
+    return (field.below(path) for field in fields)
 
 
 _SHARED = ("health", "labels")
@@ -125,15 +125,15 @@ _COURSE = "course"
 """Fields of the first result of a run."""
 _FLAT = "run requirement verdict finite reason clock ticks start_ns end_ns trials".split()
 _ELSEWHERE = ("violations", "hashes", *_SHARED, _COURSE, *_FLAT)
-_MAIN = tuple(each for each in fields_of(Result) if each.name in _FLAT)
-_NESTED = tuple(each for each in fields_of(Result) if each.name not in _ELSEWHERE)
-_OF_RUN = tuple(each for each in fields_of(Result) if each.name in (*_SHARED[1:], _COURSE))
+_MAIN = tuple(field for field in fields_of(Result) if field.name in _FLAT)
+_NESTED = tuple(field for field in fields_of(Result) if field.name not in _ELSEWHERE)
+_OF_RUN = tuple(field for field in fields_of(Result) if field.name in (*_SHARED[1:], _COURSE))
 _COUNTS = tuple(e for e in fields_of(ResultSummary) if e.name not in (*_FLAT, "fingerprints"))
 _FACTS = tuple(e for e in fields_of(RunFacts) if e.name not in _SHARED)
 _HASHES = fields_of(Hashes)
 _HASH = "_sha256"
 _HEALTH = fields_of(Health)
-_VIOLATION = tuple(each for each in fields_of(Violation) if each.name != "window")
+_VIOLATION = tuple(field for field in fields_of(Violation) if field.name != "window")
 _WINDOW = fields_of(Surroundings)
 _NAMES = (*_of("run requirement", Text()),)
 
@@ -233,8 +233,8 @@ def _run(results: Sequence[Result], *, exact: bool) -> _Run:
 
 
 def _table(fields: Sequence[Field], rows: Sequence[Any], *, exact: bool) -> pa.Table:
-    arrays = [each.array(rows, exact=exact) for each in fields]
-    return pa.Table.from_arrays(arrays, names=[each.name for each in fields])
+    arrays = [field.array(rows, exact=exact) for field in fields]
+    return pa.Table.from_arrays(arrays, names=[field.name for field in fields])
 
 
 def runs_of(results: Iterable[Result]) -> list[list[Result]]:
@@ -338,7 +338,7 @@ _BLANK = plain(unjudged_result("", "none", "", _NO_HASHES, decoded(_NO_HEALTH, H
 def _objects(table: pa.Table, fields: Sequence[Field], suffix: str = "") -> list[Any]:
     if not fields:
         return [{} for _ in range(table.num_rows)]
-    return objects(fields, [_whole(table, f"{each.name}{suffix}") for each in fields])
+    return objects(fields, [_whole(table, f"{field.name}{suffix}") for field in fields])
 
 
 def _taken(table: Any, rows: Sequence[int]) -> Any:
@@ -367,7 +367,7 @@ def _of_runs(
         if row not in begun:
             more.pop(_COURSE, None)
     found = decoded([{**_BLANK, "health": health, **more} for health, more in parts], list[Result])
-    names = ("health", *(each.attribute for each in _OF_RUN))
+    names = ("health", *(field.attribute for field in _OF_RUN))
     return {
         row: {name: getattr(one, name) for name in names}
         for row, one in zip(known, found, strict=True)
@@ -444,7 +444,7 @@ def facts(table: pa.Table) -> list[RunFacts]:
     texts = table[EXACT].to_pylist()
     held = [n for n, text in enumerate(texts) if text is None]
     some = _taken(table, held)
-    labels = tuple(each for each in _OF_RUN if each.name == "labels")
+    labels = tuple(field for field in _OF_RUN if field.name == "labels")
     rows = zip(*(_objects(some, fields) for fields in (_FACTS, _HEALTH, labels)), strict=True)
     records = [{**facts, "health": health, **labels} for facts, health, labels in rows]
     found = decoded(records, list[RunFacts])
@@ -472,7 +472,7 @@ def nested(tables: Tables, name: str, requirements: Collection[str]) -> list[tup
     wanted = pa.array([*requirements], pa.string())
     is_wanted = pc.is_in(main["requirement"], wanted).to_numpy(zero_copy_only=False)
     rows: list[int] = np.flatnonzero(is_wanted).tolist()
-    (column,) = (each.column for each in _NESTED if each.name == name)
+    (column,) = (field.column for field in _NESTED if field.name == name)
     values = column.values(_whole(_taken(events, rows), name))
     texts = _taken(main[EXACT], rows).to_pylist()
     whole = [
@@ -519,7 +519,7 @@ def tallies(tables: Tables) -> list[dict[str, Tally]]:
     Raises:
         SchemaError: the tables cannot be read.
     """
-    (column,) = (each.column for each in _NESTED if each.name == "propositions")
+    (column,) = (field.column for field in _NESTED if field.name == "propositions")
     found: list[dict[str, Tally]] = [{} for _ in range(len(tables[RUNS]))]
     rows = tables[RESULTS]["run_row"].to_pylist()
     values = column.values(_whole(tables[EVENTS], "propositions"))

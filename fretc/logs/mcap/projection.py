@@ -339,7 +339,7 @@ class Projection:
         batch = self._batches[id]
         entries = _numbers(b"".join(batch.entries))
         counts, *of_chunks = np.array(batch.limits, np.uint64).T
-        bases, limits = (np.repeat(some, counts.astype(np.int64)) for some in of_chunks[:2])
+        bases, limits = (np.repeat(of_chunk, counts.astype(np.int64)) for of_chunk in of_chunks[:2])
         times, places = entries[::2], (entries[1::2] + bases).astype(np.int64)
         if not _in_time(times, counts, *of_chunks[2:]):
             raise BrokenError("the index of a chunk does not match its messages")

@@ -93,7 +93,7 @@ def _named(signal: Signal, message: Message) -> Signal:
     ):
         return signal
     numbers = tuple(
-        number for each in signal.values if (number := holder.constant(each)) is not None
+        number for value in signal.values if (number := holder.constant(value)) is not None
     )
     return replace(signal, numbers=numbers) if len(set(numbers)) == len(signal.values) else signal
 

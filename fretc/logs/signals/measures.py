@@ -196,7 +196,7 @@ def _nearest(exact: Fraction, kind: np.dtype[Any]) -> Values:
     if kind != np.float32 or not isfinite(narrow):
         return np.array([double], kind if kind == EXACT else np.float64)
     around = (narrow, *(np.nextafter(narrow, np.float32(end)) for end in (-np.inf, np.inf)))
-    finite = [each for each in around if isfinite(each)]
+    finite = [number for number in around if isfinite(number)]
     return np.array([min(finite, key=lambda each: abs(Fraction(float(each)) - exact))], np.float32)
 
 

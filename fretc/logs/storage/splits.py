@@ -80,7 +80,7 @@ def is_backup(path: str) -> bool:
         return False
     fixed = (name.replace(".orig.bag", ".bag"), name.replace(".bag.orig.active", ".bag"))
     originals = {*fixed, f"{fixed[1]}.active"} - {name}
-    return any(os.path.exists(os.path.join(root, each)) for each in originals)
+    return any(os.path.exists(os.path.join(root, original)) for original in originals)
 
 
 def unclosed_backup(path: str) -> str | None:

@@ -52,5 +52,7 @@ def _publisher(word: str, source: Source) -> Publisher | Diagnostic:
 def addresses(publishers: Sequence[Publisher]) -> list[str]:
     """The addresses of the servers among the publishers."""
     return [
-        f"ws://{each.host}:{each.port}" for each in publishers if isinstance(each, FoxgloveServer)
+        f"ws://{publisher.host}:{publisher.port}"
+        for publisher in publishers
+        if isinstance(publisher, FoxgloveServer)
     ]

@@ -67,8 +67,8 @@ class Publishing:
         if not self._publishers:
             return
         if isinstance(item, Arrival):
-            for each in self._publishers:
-                each.pass_on(item)
+            for publisher in self._publishers:
+                publisher.pass_on(item)
         states = watch.session.states()
         if states != self._states or time.monotonic() - self._last >= PERIOD:
             self._publish(states, watch)
@@ -77,13 +77,13 @@ class Publishing:
         """Publish the final states, and close all publishers."""
         if self._publishers:
             self._publish(watch.session.states(ahead=False), watch)
-        for each in self._publishers:
-            each.close()
+        for publisher in self._publishers:
+            publisher.close()
 
     def _publish(self, states: tuple[State, ...], watch: Watch) -> None:
         earlier = [run.verdicts for run in watch.runs]
         violated = {id for run in earlier for id, verdict in run.items() if verdict == "violated"}
         known = statuses(watch.session, states, violated)
-        for each in self._publishers:
-            each.publish(states, known, watch.session.received)
+        for publisher in self._publishers:
+            publisher.publish(states, known, watch.session.received)
         self._last, self._states = time.monotonic(), states

@@ -29,7 +29,7 @@ def statuses(
         """The reason why the source is not reliable; empty: it is."""
         if session.interrupted:
             return "the source is not connected"
-        return "; ".join(f"no message of {each} yet" for each in topics if each in silent)
+        return "; ".join(f"no message of {topic} yet" for topic in topics if topic in silent)
 
     wrong = fault(session.topics)
     values: dict[str, object] = {
@@ -39,8 +39,8 @@ def statuses(
     sources = status(STALE if wrong else OK, SOURCES, wrong or "all come", values)
     own = (
         status_of(
-            each, fault(session.reads[each.requirement]), violated=each.requirement in violated
+            state, fault(session.reads[state.requirement]), violated=state.requirement in violated
         )
-        for each in states
+        for state in states
     )
     return [sources, *own]

@@ -252,13 +252,13 @@ def _array(statuses: Sequence[Status], now: int) -> bytes:
 
     found = [
         own["DiagnosticStatus"](
-            level=each.level,
-            name=text(each.name),
-            message=text(each.message),
+            level=status.level,
+            name=text(status.name),
+            message=text(status.message),
             hardware_id="",
-            values=[own["KeyValue"](key=text(k), value=text(v)) for k, v in each.values],
+            values=[own["KeyValue"](key=text(k), value=text(v)) for k, v in status.values],
         )
-        for each in statuses
+        for status in statuses
     ]
     seconds, rest = divmod(now, 10**9)
     header = own["Header"](stamp=own["Time"](sec=seconds, nanosec=rest), frame_id="")

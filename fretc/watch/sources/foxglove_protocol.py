@@ -124,9 +124,9 @@ def _text(message: str, topics: Collection[str]) -> Message | None:
             return Greeting()
         case "advertise":
             items = shape.field("channels").items()
-            return Advertisement(tuple(_advertised(each) for each in items if _is_in(each, topics)))
+            return Advertisement(tuple(_advertised(item) for item in items if _is_in(item, topics)))
         case "unadvertise":
-            return Withdrawal(tuple(each.count() for each in shape.field("channelIds").items()))
+            return Withdrawal(tuple(item.count() for item in shape.field("channelIds").items()))
         case "status":
             return Status(shape.field("level").count() > 0, shape.field("message").text())
         case _:
