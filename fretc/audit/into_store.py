@@ -86,7 +86,7 @@ class _ReusableLog:
     entry: Entry
     by: KnownBy
     part: int
-    place: int
+    index: int
     """The index of its first result."""
     results: int
 
@@ -157,28 +157,28 @@ class ReusableResults:
         if not same or len(entries) != len(counts):
             return
         self.claims |= {*same}
-        row = place = 0
+        row = index = 0
         for part in store.manifest.parts:
-            stop, at = place + part.results, place
+            stop, at = index + part.results, index
             for entry, count in zip(
                 entries[row : row + part.runs], counts[row : row + part.runs], strict=True
             ):
                 self._some[entry.log] = _PartlyReusableLog(
-                    store, same, range(place, stop), at - place, count
+                    store, same, range(index, stop), at - index, count
                 )
                 at += count
-            row, place = row + part.runs, stop
+            row, index = row + part.runs, stop
 
     def _add(self, store: Store, *, alike: bool) -> None:
         entries, counts = store.register(), [*store.counts()]
         if len(entries) != len(counts):
             return
-        row = place = 0
+        row = index = 0
         for number, part in enumerate(store.manifest.parts):
             of_part = entries[row : row + part.runs]
             for entry, count in zip(of_part, counts[row : row + part.runs], strict=True):
-                self._logs[entry.log] = (store, entry, number, place, count)
-                place += count
+                self._logs[entry.log] = (store, entry, number, index, count)
+                index += count
             row += part.runs
             if alike:
                 self._parts[tuple(entry.log for entry in of_part)] = (store, part)
@@ -191,9 +191,9 @@ class ReusableResults:
         """The reusable results of a log that is unchanged."""
         if log not in self._logs:
             return None
-        store, entry, part, place, count = self._logs[log]
+        store, entry, part, index, count = self._logs[log]
         by = entry.known_by_now(rehash=self._rehash)
-        return None if by is None else _ReusableLog(store, entry, by, part, place, count)
+        return None if by is None else _ReusableLog(store, entry, by, part, index, count)
 
     def results(self, log: str) -> tuple[Result, ...]:
         """The reusable results of a log from an audit with another plan."""
@@ -218,9 +218,9 @@ class ReusableResults:
 
 def _results(plan: Plan, known: _ReusableLog) -> tuple[Result, ...]:
     """The results of a known log, with the labels of the present audit."""
-    places = range(known.place, known.place + known.results)
+    indices = range(known.index, known.index + known.results)
     own = known.entry.labels or UNSET
-    results = (replace(one, labels=own) for _, one in known.store.details(places))
+    results = (replace(one, labels=own) for _, one in known.store.details(indices))
     return with_command_labels(plan, LogResult(tuple(results), (), read=True)).results
 
 
@@ -287,7 +287,7 @@ class StoreWriter:
         self._before = files(folder)
         """Files that existed before: an earlier manifest that is damaged may need them."""
         self._is_finished = False
-        self._drafts = [_Draft([logs[n] for n in places]) for places in parts(logs)]
+        self._drafts = [_Draft([logs[n] for n in indices]) for indices in parts(logs)]
         self._draft_of = {log: draft for draft in self._drafts for log in draft.logs}
         self.known = {log: one for log in logs if (one := self.earlier.find(log)) is not None}
         self.new = [log for log in logs if log not in self.known]

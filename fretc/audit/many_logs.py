@@ -146,8 +146,8 @@ def local_executor(
             yield STDIN, audit_log(plan, STDIN)
         files = [log for log in logs if log != STDIN]
         with closing(map_processes(partial(judged, plan), files, jobs, limits)) as done:
-            for place, result in done:
-                log = files[place]
+            for index, result in done:
+                log = files[index]
                 if isinstance(result, WorkerDied):
                     yield log, results_of_killed_process(plan, log, str(result))
                 elif isinstance(result, TimedOut):

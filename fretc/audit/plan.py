@@ -21,7 +21,7 @@ from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.schema import SCHEMA, Selection
 from fretc.audit.expected_response import demand
-from fretc.audit.measurements import confidence_intervals as odds
+from fretc.audit.measurements import confidence_intervals as intervals
 from fretc.audit.measurements.count_trials import chance, trials
 from fretc.audit.one_log import MonitoredRequirement
 from fretc.audit.refusals import RefusedRequirement, active_requirements, refusals
@@ -46,7 +46,7 @@ class Plan:
     """How thoroughly a log is checked."""
     digest: str
     """SHA-256 of everything in the plan by which a single log is judged, byte for byte."""
-    confidence: float = odds.CONFIDENCE
+    confidence: float = intervals.CONFIDENCE
     """The confidence of bounds of a probability over all logs."""
     refused: tuple[RefusedRequirement, ...] = field(default=(), compare=False, repr=False)
     """The requirements in force that cannot be audited."""
@@ -76,7 +76,7 @@ def planned(
     project: Project,
     evaluation: str = "columns",
     integrity: Integrity = Integrity.HASH,
-    confidence: float = odds.CONFIDENCE,
+    confidence: float = intervals.CONFIDENCE,
 ) -> Plan | tuple[Diagnostic, ...]:
     """The plan to audit every requirement that is not retired, or the diagnostics that prevent it.
 

@@ -210,12 +210,12 @@ def coverage(
     look = partial(_log_coverage, declarations=declarations, plan=plan)
     logs = tuple(dict.fromkeys(logs))
     of_logs = {
-        place: LogCoverage(logs[place], 0, None, (killed_diagnostic(logs[place], str(result)),))
+        index: LogCoverage(logs[index], 0, None, (killed_diagnostic(logs[index], str(result)),))
         if isinstance(result, WorkerDied)
         else result
-        for place, result in map_processes(look, logs, jobs)
+        for index, result in map_processes(look, logs, jobs)
     }
-    return Coverage(declarations, tuple(of_logs[place] for place in range(len(logs))))
+    return Coverage(declarations, tuple(of_logs[index] for index in range(len(logs))))
 
 
 def _log_coverage(log: str, declarations: Declarations, plan: Plan | None) -> LogCoverage:

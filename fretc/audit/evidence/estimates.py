@@ -18,7 +18,7 @@ from fretc.audit.evidence.probabilities import (
     times,
 )
 from fretc.audit.evidence.result_summaries import ResultSummary
-from fretc.audit.measurements import confidence_intervals as odds
+from fretc.audit.measurements import confidence_intervals as intervals
 from fretc.audit.measurements.confidence_intervals import INCONCLUSIVE, SUPPORTED
 from fretc.audit.measurements.trials import NO_TRIALS, Trials
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
@@ -44,7 +44,7 @@ def estimates(
 def warnings(estimates: Sequence[Estimated]) -> Iterator[Diagnostic]:
     """F506 for each requirement that so few logs cannot support, whatever their triggers show."""
     for estimate in estimates:
-        least = odds.fewest(estimate.operator, Fraction(estimate.bound), estimate.confidence)
+        least = intervals.fewest(estimate.operator, Fraction(estimate.bound), estimate.confidence)
         if estimate.answer == INCONCLUSIVE and estimate.logs.counted < least:
             yield Diagnostic(
                 Code.FEW_RUNS,
@@ -64,8 +64,8 @@ def _estimated(
     distinct = _distinct(results)
     runs = [_trials(result) for result in distinct]
     damaged = sum(not result.intact for result in distinct)
-    estimate = odds.estimated(runs, odds.both_sides(op, level))
-    answer = odds.answer(estimate, op, bound)
+    estimate = intervals.estimated(runs, intervals.both_sides(op, level))
+    answer = intervals.answer(estimate, op, bound)
     undecided = answer == SUPPORTED and damaged > 0
     return Estimated(
         requirement=claim.id,
@@ -83,7 +83,7 @@ def _estimated(
         ),
         estimate=None if estimate.share is None else round(estimate.share, 9),
         bounds=estimate.bounds,
-        needed=odds.needed(estimate, op, bound) if answer == INCONCLUSIVE else None,
+        needed=intervals.needed(estimate, op, bound) if answer == INCONCLUSIVE else None,
         meaning=AVERAGE,
     )
 
@@ -108,7 +108,7 @@ def _trials(result: ResultSummary) -> Trials:
 # Texts -----------------------------------------------------------------------------------------
 
 
-def _reason(estimate: odds.Estimate, answer: str, text: str) -> str:
+def _reason(estimate: intervals.Estimate, answer: str, text: str) -> str:
     least, most = low(estimate.bounds.low), high(estimate.bounds.high)
     if not estimate.trials.count:
         return "there was no trigger"

@@ -8,7 +8,7 @@ from math import ceil, floor
 from typing import Annotated, Literal
 
 from compiler.files.records import Count, Meta, Name, Ordinal, Record, Share, about
-from fretc.audit.measurements import confidence_intervals as odds
+from fretc.audit.measurements import confidence_intervals as intervals
 from fretc.audit.measurements.confidence_intervals import Bounds
 from fretish.expressions import ComparisonOperator
 from fretish.units import number
@@ -94,7 +94,7 @@ class Estimated(Record, frozen=True):
         outcomes = f"{triggers.answered} of {count} triggers answered, {triggers.failed} failed"
         yield f"{outcomes}, {triggers.open} open, in {times(logs.counted, 'log')}{_others(logs)}"
         share = "not known" if self.estimate is None else f"{self.estimate:.4f}"
-        each = odds.both_sides(self.operator, self.confidence)
+        each = intervals.both_sides(self.operator, self.confidence)
         at = f"at {_percent(each)} each: {shown(self.bounds)}"
         stretch = f"bounds (the logs are the independent units) {at}"
         yield f"estimate {share}; {stretch}"

@@ -62,8 +62,8 @@ class EvidenceFile(HeadProperties):
 
     def briefs(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order."""
-        for place, result in enumerate(self.results):
-            yield place, brief(result)
+        for index, result in enumerate(self.results):
+            yield index, brief(result)
 
     def runs(self) -> Iterator[RunFacts]:
         """The facts of each run, in the order of their first results."""
@@ -73,29 +73,29 @@ class EvidenceFile(HeadProperties):
             results_of.setdefault(key, []).append(result)
         yield from map(run_facts, results_of.values())
 
-    def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
+    def details(self, indices: Collection[int]) -> Iterator[tuple[int, Result]]:
         """The whole results at the given indices, in order."""
-        for place in sorted({*places}):
-            yield place, self.results[place]
+        for index in sorted({*indices}):
+            yield index, self.results[index]
 
     def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
         """Latencies in seconds of each result of some requirements, with its index, in order."""
-        for place, result in self._of(requirements):
-            yield place, result.latencies
+        for index, result in self._of(requirements):
+            yield index, result.latencies
 
     def thresholds(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Sequence[Threshold]]]:
         """The thresholds of each result of some requirements, with its index, in order."""
-        for place, result in self._of(requirements):
-            yield place, result.thresholds
+        for index, result in self._of(requirements):
+            yield index, result.thresholds
 
     def situations(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Situations | UnsetType]]:
         """The situations that each result of some requirements shows, with its index, in order."""
-        for place, result in self._of(requirements):
-            yield place, result.situations
+        for index, result in self._of(requirements):
+            yield index, result.situations
 
     def _of(self, requirements: Collection[str]) -> Iterator[tuple[int, Result]]:
         return self.details([at for id in {*requirements} for at in self._places.get(id, ())])
@@ -103,10 +103,10 @@ class EvidenceFile(HeadProperties):
     @cached_property
     def _places(self) -> Mapping[str, Sequence[int]]:
         """The indices of the results of each requirement."""
-        places_of: dict[str, list[int]] = {}
-        for place, result in enumerate(self.results):
-            places_of.setdefault(result.requirement, []).append(place)
-        return places_of
+        indices_of: dict[str, list[int]] = {}
+        for index, result in enumerate(self.results):
+            indices_of.setdefault(result.requirement, []).append(index)
+        return indices_of
 
 
 def read(path: str) -> EvidenceFile | Diagnostic:

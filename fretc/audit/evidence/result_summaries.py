@@ -223,7 +223,7 @@ class EvidenceSource(Protocol):
     def runs(self) -> Iterator[RunFacts]:
         """The facts of each run, in the order of their first results."""
 
-    def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
+    def details(self, indices: Collection[int]) -> Iterator[tuple[int, Result]]:
         """The whole results at the given indices, in order."""
 
     def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
@@ -259,10 +259,10 @@ class ResultSummaries:
         groups: dict[str, list[tuple[int, ResultSummary]]] = {}
         pools: _Pools = {str: {}, int: {}, float: {}}
         firsts: dict[tuple[str, str], int] = {}
-        for place, each in source.briefs():
+        for index, each in source.briefs():
             shared = _sharing(each, pools)
-            groups.setdefault(each.requirement, []).append((place, shared))
-            firsts.setdefault((shared.run, shared.log), place)
+            groups.setdefault(each.requirement, []).append((index, shared))
+            firsts.setdefault((shared.run, shared.log), index)
         return cls(source, groups, firsts)
 
 
@@ -415,13 +415,13 @@ def _seconds(result: Result) -> Callable[[int], float]:
     rate = times[known[-1]] / known[-1] if known[-1] else _mean_tick(result)
 
     def at(tick: int) -> float:
-        place = bisect_right(known, tick) - 1
-        before = known[place]
+        index = bisect_right(known, tick) - 1
+        before = known[index]
         if before == tick:
             return times[tick]
-        if place + 1 == len(known):
+        if index + 1 == len(known):
             return round(times[before] + (tick - before) * rate, 9)
-        after = known[place + 1]
+        after = known[index + 1]
         share = (tick - before) / (after - before)
         return round(times[before] + (times[after] - times[before]) * share, 9)
 

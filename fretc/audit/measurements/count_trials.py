@@ -42,12 +42,12 @@ class RequiredProbability:
 @with_recursion_limit
 def chance(requirement: FormalizedRequirement) -> RequiredProbability | None:
     """The required probability; None: the sentence has none."""
-    odds = requirement.sentence.probability
-    if odds is None:
+    probability = requirement.sentence.probability
+    if probability is None:
         return None
     return RequiredProbability(
-        odds.op,
-        odds.digits,
+        probability.op,
+        probability.digits,
         obligation(requirement.sentence, requirement.ticks or 0, predicates.Past()),
     )
 

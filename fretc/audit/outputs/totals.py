@@ -21,8 +21,8 @@ NOT_JUDGED = "not judged"
 COUNTED = "counted over all runs"
 """The word for a run that alone decides nothing: its triggers count with those of all others."""
 _SEVERITY = {
-    word: place
-    for place, word in enumerate(
+    word: index
+    for index, word in enumerate(
         word
         for verdict in VERDICTS
         for word in (
@@ -142,7 +142,7 @@ class VerdictWords:
         words: list[Mapping[str, str]] = []
         ids: dict[str, None] = {}
         first: tuple[tuple[int, int], int] | None = None
-        place = 0
+        index = 0
         verdicts: set[str] = set()
         alone: set[str] = set()
         for run in runs(briefs):
@@ -152,12 +152,12 @@ class VerdictWords:
             for each in run:
                 word = words[-1][each.requirement]
                 if word not in (*SHOWN, COUNTED):
-                    found = (severity(word), -each.violated_ticks), place
+                    found = (severity(word), -each.violated_ticks), index
                     first = min(first or found, found)
                 verdicts.add(each.verdict)
                 if each.requirement not in answers:
                     alone.add(each.verdict)
-                place += 1
+                index += 1
         return VerdictWords(
             names,
             [*ids],

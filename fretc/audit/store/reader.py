@@ -114,9 +114,9 @@ class Store(HeadProperties):
         for _, part in self._parts():
             yield from self._read(part, RUNS, tables.facts)
 
-    def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
+    def details(self, indices: Collection[int]) -> Iterator[tuple[int, Result]]:
         """The whole results at the given indices, in order."""
-        wanted = sorted({*places})
+        wanted = sorted({*indices})
         for start, part in self._parts():
             rows = [at - start for at in wanted if start <= at < start + part.results]
             if rows:
