@@ -23,11 +23,11 @@ from fretc.audit.measurements.violations import Demand, Moment, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
 from fretc.logs.sample_fingerprint import fingerprint
+from fretc.logs.signals.enum_values import UnmappedSamples, shown
 from fretc.logs.signals.rates import late_topics, slow_topics
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.signals import blind_zones
 from fretc.logs.signals.traces import Timeline, Trace, timeline, trace
-from fretc.logs.signals.words import UnmappedSamples, shown
 from fretc.logs.watch_records import clock_text
 from fretish import expressions as e
 from fretish.bindings.amounts import duration, scaled, seconds, shared_unit

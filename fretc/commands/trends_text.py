@@ -188,14 +188,14 @@ def _groups(groups: Sequence[Group], sign: Sign, title: str) -> Iterator[Line]:
 
 
 def _regressions(trends: Trends, screen: Screen) -> Iterator[Line]:
-    found = trends.found(Finding.REGRESSED)
+    found = trends.with_finding(Finding.REGRESSED)
     if not found:
         return
     yield _BLANK
     yield _title(
         signs.BAD,
         len(found),
-        f"regressed in {trends.held.after} (medians), statistically significant",
+        f"regressed in {trends.compared.after} (medians), statistically significant",
     )
     for one in found[:6]:
         ids = _column(one.measure.ids, _ID, screen)
@@ -209,12 +209,13 @@ def _rest(trends: Trends) -> Iterator[Line]:
     steady, never = len(trends.of(Change.STEADY)), len(trends.of(Change.NEVER_SHOWN))
     flaky = sum(item.flaky for item in trends.items)
     yield ((f"{steady} shown as before, {never} never shown; {flaky} flaky in all", None),)
-    chance = len(trends.found(Finding.CHANCE))
-    few = len(trends.found(Finding.TOO_FEW))
-    held = f"{trends.held.after} against {trends.held.before}"
+    chance = len(trends.with_finding(Finding.CHANCE))
+    few = len(trends.with_finding(Finding.TOO_FEW))
+    compared = f"{trends.compared.after} against {trends.compared.before}"
     yield (
         (
-            f"latencies and margins, {held}: {len(trends.found(Finding.REGRESSED))} regressed, "
+            f"latencies and margins, {compared}: {len(trends.with_finding(Finding.REGRESSED))} "
+            "regressed, "
             f"{chance} no worse than chance, {few} with too few runs to tell",
             None,
         ),

@@ -22,10 +22,10 @@ from fretc.logs.messages.decoding import Decode, constants, decoder, is_single, 
 from fretc.logs.messages.layouts import Layout, Layouts, Location, Shape, Where
 from fretc.logs.messages.probes import trusted
 from fretc.logs.messages.vectorized import nearest, samples, siblings
+from fretc.logs.signals.enum_values import UnmappedSamples, enum_index, enum_indices, shown
 from fretc.logs.signals.samples import EXACT, Numbers, Times, Values, widest
 from fretc.logs.signals.signals import RANGE_MIN, FieldError, is_chosen, sample
 from fretc.logs.signals.signals import nearest as nearest_of_one
-from fretc.logs.signals.words import UnmappedSamples, shown, word, words
 from fretish.bindings.declarations import Reduce, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -84,16 +84,16 @@ class Extract:
             self.values[signal.name] = self.values[signal.name].astype(EXACT, copy=False)
         self.values[signal.name][at] = numbers
 
-    def put_word(self, signal: Signal, at: int, word: float | str) -> None:
+    def put_enum_value(self, signal: Signal, at: int, word: float | str) -> None:
         """Store the index of an enumeration value, or record a text without one."""
         if isinstance(word, str):
             self._note(signal, np.array([at]), word)
         else:
             self.values[signal.name][at] = word
 
-    def put_words(self, signal: Signal, at: Places, numbers: Values) -> None:
+    def put_enum_values(self, signal: Signal, at: Places, numbers: Values) -> None:
         """Store the enumeration values of some numbers."""
-        places, foreign = words(signal, numbers)
+        places, foreign = enum_indices(signal, numbers)
         self.values[signal.name][at] = places
         if foreign.any():
             self._note(signal, at[foreign], shown(numbers[foreign][0]))
@@ -206,7 +206,7 @@ class Extraction:
         for signal in tuple(self.signals):
             try:
                 if signal.values:
-                    extract.put_word(signal, row, word(signal, message))
+                    extract.put_enum_value(signal, row, enum_index(signal, message))
                 else:
                     number = sample(signal, message, single=signal.name in self._single)
                     extract.put(signal, row, number)
@@ -320,7 +320,7 @@ class Extraction:
             else:
                 values = self._reduced(signal, payloads, rows, field, sibling_values)
             if signal.values:
-                extract.put_words(signal, rows, values)
+                extract.put_enum_values(signal, rows, values)
             else:
                 extract.put(signal, rows, values)
         if (RANGE_MIN,) in single:

@@ -11,10 +11,10 @@ from collections.abc import Collection, Mapping, Sequence
 
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.messages.decoding import MissingExtra
+from fretc.logs.signals.enum_values import UnmappedSamples
 from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.topic_clocks import STILL_RUN
-from fretc.logs.signals.words import UnmappedSamples
 from fretish.bindings.amounts import duration, seconds
 from fretish.bindings.declarations import Signal, short_type
 from fretish.bindings.words import listed

@@ -20,11 +20,11 @@ import numpy as np
 from fretc.logs import log_diagnostics
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.messages.python_messages import Message, Value, sampled
+from fretc.logs.signals.enum_values import UnmappedSamples, shown
 from fretc.logs.signals.propositions import truth_values
 from fretc.logs.signals.samples import EXACT, Gap, Late, Recording, Samples
 from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.traces import proposition_states
-from fretc.logs.signals.words import UnmappedSamples, shown
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.expressions import ticks_back

@@ -18,9 +18,9 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.messages import FileTimes, Messages
 from fretc.logs.mcap.payloads import Payloads
+from fretc.logs.signals.enum_values import UnmappedSamples
 from fretc.logs.signals.samples import Gap, Late, Series, Times, Values
 from fretc.logs.signals.topic_clocks import JUMP, forward_fill, late, unset
-from fretc.logs.signals.words import UnmappedSamples
 from fretish.bindings.declarations import Declarations, Signal, short_type
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic

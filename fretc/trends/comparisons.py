@@ -15,7 +15,7 @@ from statistics import median
 
 from fretc.audit.evidence.schema import Threshold
 from fretc.report.model.phrases import some, value
-from fretc.trends.histories import Histories, Judged, Run, Scenario
+from fretc.trends.histories import Histories, Run, RunOutcome, Scenario
 from fretc.trends.rank_test import RankTest, decidable, fewer, holm, larger
 
 LEVEL = 0.05
@@ -109,7 +109,7 @@ class ComparedRuns:
     is_before: Callable[[Run], bool]
 
 
-def sides(histories: Histories) -> ComparedRuns:
+def compared_runs(histories: Histories) -> ComparedRuns:
     """The newest version and the one before it; else the newest round and all before it.
 
     A version is as new as its newest run.
@@ -138,7 +138,7 @@ def sides(histories: Histories) -> ComparedRuns:
 
 
 def comparisons(
-    histories: Histories, held: ComparedRuns, level: float = LEVEL
+    histories: Histories, compared: ComparedRuns, level: float = LEVEL
 ) -> tuple[Comparison, ...]:
     """All comparisons, the regressions first.
 
@@ -147,11 +147,11 @@ def comparisons(
 
     Args:
         histories: the histories of all evidence.
-        held: the two compared sets of runs.
+        compared: the two compared sets of runs.
         level: the probability of even one false regression.
     """
     measured = _measured(histories)
-    tested = [_tested(histories.runs, held, measure, values) for measure, values in measured]
+    tested = [_tested(histories.runs, compared, measure, values) for measure, values in measured]
     family = decidable([tail.least for tail, _ in tested], level)
     adjusted = dict(zip(family, holm([tested[i][0].p for i in family]), strict=True))
     found = [
@@ -182,15 +182,15 @@ _Strata = Sequence[tuple[Sequence[float], Sequence[float]]]
 
 
 def _tested(
-    runs: Sequence[Run], held: ComparedRuns, measure: Measure, values: Sequence[Value]
+    runs: Sequence[Run], compared: ComparedRuns, measure: Measure, values: Sequence[Value]
 ) -> tuple[RankTest, _Strata]:
     """The test, and its numbers: each log once, the newest ones first."""
     strata: dict[Scenario, tuple[list[float], list[float]]] = defaultdict(lambda: ([], []))
     passed: set[str] = set()
     for run_value in values:  # from the oldest round on, so that copies in later rounds are skipped
         run = runs[run_value.run]
-        is_after = held.is_after(run)
-        if run.content in passed or not (is_after or held.is_before(run)):
+        is_after = compared.is_after(run)
+        if run.content in passed or not (is_after or compared.is_before(run)):
             continue
         passed.add(run.content)
         strata[run_value.scenario][is_after].append(run_value.number)
@@ -252,22 +252,22 @@ def _measures(
     yield from _margins(histories, requirement, same)
 
 
-def _longest(one: Judged) -> float | None:
+def _longest(one: RunOutcome) -> float | None:
     return one.longest
 
 
-def _median(one: Judged) -> float | None:
+def _median(one: RunOutcome) -> float | None:
     return one.median
 
 
-def _value(runs: Sequence[Run], one: Judged, number: float | None) -> Value | None:
+def _value(runs: Sequence[Run], one: RunOutcome, number: float | None) -> Value | None:
     if number is None:
         return None
     return Value(one.run, runs[one.run].scenario, one.round, float(number))
 
 
 def _margins(
-    histories: Histories, requirement: str, same: Sequence[Judged]
+    histories: Histories, requirement: str, same: Sequence[RunOutcome]
 ) -> Iterator[tuple[Measure, tuple[Value, ...]]]:
     """The least margin of each run to each threshold; 0 for a crossed one."""
     known = {one.run: one for one in same}

@@ -86,7 +86,7 @@ class Round:
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class RunOutcome:
     """The result of one requirement in one run."""
 
     run: int
@@ -109,7 +109,7 @@ class Histories:
     runs: tuple[Run, ...]
     requirements: Mapping[str, str]
     """Id → the sentence in the newest evidence."""
-    judged: Mapping[tuple[str, Scenario], Sequence[Judged]]
+    judged: Mapping[tuple[str, Scenario], Sequence[RunOutcome]]
     order: str
     """The order of rounds, in words."""
     sources: tuple[EvidenceSource, ...] = field(repr=False)
@@ -275,7 +275,7 @@ class _Reader:
     def __init__(self, by: str, round_of: Mapping[str, int]) -> None:
         self.runs: list[Run] = []
         self.requirements: dict[str, str] = {}
-        self.judged: dict[tuple[str, Scenario], list[Judged]] = defaultdict(list)
+        self.judged: dict[tuple[str, Scenario], list[RunOutcome]] = defaultdict(list)
         self.places: list[Sequence[int]] = []
         self.bases: list[Sequence[int]] = []
         self._by, self._round_of = by, round_of
@@ -317,7 +317,7 @@ class _Reader:
     def _add(self, brief: ResultSummary, run: int, basis: int) -> None:
         one = self.runs[run]
         self.judged[brief.requirement, one.scenario].append(
-            Judged(
+            RunOutcome(
                 run,
                 one.round,
                 brief.verdict,
@@ -332,7 +332,7 @@ class _Reader:
         own = self._round_of[str(number)] if self._by == EVIDENCE else max(rounds, default=0)
         for probability in source.probabilities:
             self.judged[probability.requirement, ALL_RUNS].append(
-                Judged(-1, own, probability.answer, 0)
+                RunOutcome(-1, own, probability.answer, 0)
             )
 
     def _basis(self, brief: ResultSummary) -> int:
@@ -341,7 +341,7 @@ class _Reader:
         return self._numbers.setdefault(parts, len(self._numbers))
 
 
-def verdicts_of_rounds(judged: Sequence[Judged], rounds: int) -> tuple[tuple[str, ...], ...]:
+def verdicts_of_rounds(judged: Sequence[RunOutcome], rounds: int) -> tuple[tuple[str, ...], ...]:
     """The verdicts of each round."""
     found: list[list[str]] = [[] for _ in range(rounds)]
     for outcome in judged:

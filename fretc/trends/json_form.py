@@ -30,8 +30,8 @@ def _plain(trends: Trends) -> dict[str, Any]:
         "requirements": dict(trends.sentences),
         "items": [_item(item) for item in trends.items],
         "compared": {
-            "before": trends.held.before,
-            "after": trends.held.after,
+            "before": trends.compared.before,
+            "after": trends.compared.after,
             "level": trends.level,
             **{str(kind): count for kind, count in by_finding(trends.comparisons).items()},
         },

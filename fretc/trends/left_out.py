@@ -11,11 +11,11 @@ from datetime import datetime
 
 from fretc.audit.evidence.schema import Selection
 from fretc.trends.changes import Change, RoundOutcome, round_outcome
-from fretc.trends.histories import Histories, Judged, Run
+from fretc.trends.histories import Histories, Run, RunOutcome
 
 
 def is_left_out(
-    histories: Histories, requirement: str, judged: Sequence[Judged], change: Change
+    histories: Histories, requirement: str, judged: Sequence[RunOutcome], change: Change
 ) -> bool:
     """Whether the selection of logs may be the reason for a change.
 

@@ -58,7 +58,7 @@ def html(trends: Trends) -> str:
     style = render("report/style.css.j2") + render("trends/style.css.j2")
     lists = [_listed(change_list, trends.of(*change_list.kinds)) for change_list in _LISTS]
     flaky = [item for item in trends.items if item.flaky]
-    regressed = trends.found(Finding.REGRESSED)
+    regressed = trends.with_finding(Finding.REGRESSED)
     others = [
         comparison
         for comparison in trends.comparisons
@@ -95,13 +95,13 @@ def html(trends: Trends) -> str:
                 "not_selected_count": phrases.whole(len(trends.of(Change.NOT_SELECTED))),
                 "not_selected": _groups(not_selected(trends)),
                 "arrived": _groups(arrived(trends)),
-                "held": {"before": trends.held.before, "after": trends.held.after},
+                "compared": {"before": trends.compared.before, "after": trends.compared.after},
                 "level": f"{trends.level:g}",
                 "regressed": _charts(trends, regressed[:_MOST_CHARTS], "regressed"),
                 "regressed_lines": [_line(one) for one in regressed[_MOST_CHARTS:]],
                 "others": _charts(trends, pictured, "other"),
-                "few": len(trends.found(Finding.TOO_FEW)),
-                "chance": len(trends.found(Finding.CHANCE)),
+                "few": len(trends.with_finding(Finding.TOO_FEW)),
+                "chance": len(trends.with_finding(Finding.CHANCE)),
                 "pictured": len(pictured),
                 "moving": len(moving),
             }
@@ -121,7 +121,7 @@ def _mark(trends: Trends) -> dict[str, Any]:
 def _headline(trends: Trends) -> str:
     counts = (
         (len(trends.of(*RED)), "new violation", ""),
-        (len(trends.found(Finding.REGRESSED)), "regression", ""),
+        (len(trends.with_finding(Finding.REGRESSED)), "regression", ""),
         (len(trends.of(Change.STILL)), "requirement still violated in a scenario",
          "requirements still violated in scenarios"),
         (len(trends.lost), "verdict lost", "verdicts lost"),

@@ -21,15 +21,15 @@ from fretc.trends.comparisons import (
     ComparedRuns,
     Comparison,
     Finding,
+    compared_runs,
     comparisons,
-    sides,
 )
 from fretc.trends.histories import (
     DAY,
     EVIDENCE,
     Histories,
-    Judged,
     Round,
+    RunOutcome,
     Scenario,
     histories,
     verdicts_of_rounds,
@@ -81,7 +81,7 @@ class Trends:
     """Id of a requirement → its sentence."""
     items: tuple[Item, ...]
     """Items, the worst first."""
-    held: ComparedRuns
+    compared: ComparedRuns
     comparisons: tuple[Comparison, ...]
     level: float
     is_after: tuple[bool, ...]
@@ -98,14 +98,14 @@ class Trends:
         """The items of some kinds."""
         return tuple(item for item in self.items if item.change in kinds)
 
-    def found(self, kind: Finding) -> tuple[Comparison, ...]:
+    def with_finding(self, kind: Finding) -> tuple[Comparison, ...]:
         """The comparisons with a finding."""
         return tuple(comparison for comparison in self.comparisons if comparison.finding is kind)
 
     @property
     def is_worse(self) -> bool:
         """Whether a requirement is newly violated, or a number has regressed."""
-        return bool(self.of(*RED) or self.found(Finding.REGRESSED))
+        return bool(self.of(*RED) or self.with_finding(Finding.REGRESSED))
 
     @property
     def has_pairs(self) -> bool:
@@ -202,21 +202,23 @@ def trends(
             natural(item.scenario.name),
         )
     )
-    held = sides(known)
+    compared = compared_runs(known)
     return Trends(
         known.by,
         known.rounds,
         known.requirements,
         tuple(items),
-        held,
-        comparisons(known, held, level),
+        compared,
+        comparisons(known, compared, level),
         level,
-        tuple(held.is_after(run) for run in known.runs),
+        tuple(compared.is_after(run) for run in known.runs),
         known.order,
     )
 
 
-def _item(known: Histories, requirement: str, scenario: Scenario, judged: Sequence[Judged]) -> Item:
+def _item(
+    known: Histories, requirement: str, scenario: Scenario, judged: Sequence[RunOutcome]
+) -> Item:
     rounds = verdicts_of_rounds(judged, len(known.rounds))
     basis = max(judged, key=lambda one: one.round).basis
     comparable = [outcome for outcome in judged if outcome.basis == basis]

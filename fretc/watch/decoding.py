@@ -20,7 +20,7 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.payloads import Payloads
 from fretc.logs.messages.python_messages import Value
-from fretc.logs.signals.words import UNKNOWN
+from fretc.logs.signals.enum_values import UNKNOWN
 from fretc.watch.sources.source import Arrival, Channel
 from fretish.bindings.declarations import Declarations, Signal, short_type
 from fretish.clock import TimeSource

@@ -37,7 +37,7 @@ class Jump:
 
 
 @dataclass(frozen=True, slots=True)
-class Ended:
+class EndedRun:
     """A run that has ended, with the verdicts of an audit of its recording."""
 
     verdicts: Mapping[str, str]
@@ -295,7 +295,7 @@ class Session:
             return known
         return origin + self._clock.phase + tick * period
 
-    def end(self) -> Ended | Diagnostic:
+    def end(self) -> EndedRun | Diagnostic:
         """End the run."""
         if self._gap_from is not None:
             self._withdraw(self._stream.miss(self._gap_from, self._now))
@@ -305,7 +305,7 @@ class Session:
         for tick in found.ticks:
             self._monitors.step(tick)
         self._final = self._monitors.verdicts(found.cut, intact=not self._missed)
-        return Ended(self._final, found.until)
+        return EndedRun(self._final, found.until)
 
     def judge_again(self, log: str) -> Mapping[str, str] | Diagnostic:
         """Judge the ended run by a log of it, as an audit does: in the order of times.

@@ -8,7 +8,7 @@ from pathlib import Path
 from fretc.audit.plan import Plan
 from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, StateChange, WatchEvent
 from fretc.watch.recording import Recorder
-from fretc.watch.session import Ended, Jump, Session
+from fretc.watch.session import EndedRun, Jump, Session
 from fretc.watch.sources.source import (
     Arrival,
     Event,
@@ -220,10 +220,10 @@ class Watch:
         if self._lost_since is not None:
             self.session.miss(self._lost_since, max(self._lost_since, self.session.received))
         found = self.session.end()
-        if not isinstance(found, Ended):
+        if not isinstance(found, EndedRun):
             self.failed = True
             yield DiagnosticEvent(found)
-            found = Ended(dict.fromkeys(self._states, "no data"), self.session.now)
+            found = EndedRun(dict.fromkeys(self._states, "no data"), self.session.now)
         path, session = None, self.session
         if self._recorder is not None:
             path = str(self._recorder.path)

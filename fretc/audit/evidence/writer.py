@@ -39,9 +39,9 @@ from fretc.audit.measurements.trials import Trials
 from fretc.audit.measurements.violations import Moment, Window
 from fretc.audit.measurements.violations import Violation as Broken
 from fretc.audit.phases.by_shift import Phases, Stretch
+from fretc.logs.signals.enum_values import enum_value
 from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.samples import Topic as Read
-from fretc.logs.signals.words import word_at
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.rendering import as_json
 from monitors.kernel import Outcome
@@ -308,7 +308,7 @@ def _surroundings(window: Window) -> Surroundings:
 
 
 def _words(samples: Samples) -> WordSeries:
-    words = (word_at(float(value), samples.words) for value in samples.values)
+    words = (enum_value(float(value), samples.words) for value in samples.values)
     return WordSeries(tuple(samples.times.tolist()), tuple(words))
 
 

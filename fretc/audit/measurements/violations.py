@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compiler.files.records import Count, Record, Seconds, Whole
+from fretc.logs.signals.enum_values import enum_value
 from fretc.logs.signals.samples import Recording, Samples, Values, scaled
-from fretc.logs.signals.words import word_at
 from monitors.kernel import Outcome
 
 SURROUNDINGS = 10**9
@@ -145,7 +145,7 @@ def value_at(recording: Recording, signal: str, ns: int) -> float | str | None:
         return None
     i = int(np.searchsorted(samples.times, ns, "right")) - 1
     if samples.words:
-        return word_at(float(samples.values[i]), samples.words) if i >= 0 else None
+        return enum_value(float(samples.values[i]), samples.words) if i >= 0 else None
     value = scaled(float(samples.values[i]), samples.scale) if i >= 0 else float("nan")
     return value if np.isfinite(value) else None
 

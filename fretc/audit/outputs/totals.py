@@ -53,7 +53,7 @@ class Total:
         return sign_of(self.word).colour if self.word != COUNTED else None
 
 
-class Judged(Protocol):
+class HasVerdict(Protocol):
     """A result or its summary."""
 
     @property
@@ -73,7 +73,7 @@ class Judged(Protocol):
         """Present for a requirement with a probability."""
 
 
-J = TypeVar("J", bound=Judged)
+J = TypeVar("J", bound=HasVerdict)
 
 
 def runs(results: Iterable[J]) -> Iterator[tuple[J, ...]]:
@@ -90,7 +90,7 @@ def runs(results: Iterable[J]) -> Iterator[tuple[J, ...]]:
         yield tuple(group.values())
 
 
-def word_of(result: Judged, refused: Collection[str] = ()) -> str:
+def word_of(result: HasVerdict, refused: Collection[str] = ()) -> str:
     """The word under which a result counts: its verdict, unless the run alone decides nothing.
 
     Args:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from fretc.logs.signals.enum_values import UNKNOWN, enum_index
 from fretc.logs.signals.samples import EXACT
 from fretc.logs.signals.signals import (
     Sparse,
@@ -19,7 +20,6 @@ from fretc.logs.signals.signals import (
     optional_field,
     sample,
 )
-from fretc.logs.signals.words import UNKNOWN, word
 from fretish.bindings.declarations import Signal
 
 Value = tuple[float, np.dtype[Any] | None, str]
@@ -71,7 +71,7 @@ def sampled(signal: Signal, message: Message) -> Value:
     """
     single = _is_single(signal, message)
     signal = _named(signal, message)
-    value = word(signal, message) if signal.values else sample(signal, message, single=single)
+    value = enum_index(signal, message) if signal.values else sample(signal, message, single=single)
     if isinstance(value, str):
         return UNKNOWN, None, value
     if isinstance(value, int):

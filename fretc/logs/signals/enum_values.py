@@ -36,7 +36,7 @@ class UnmappedSamples:
         return UnmappedSamples(self.count + later.count, self.first, self.text)
 
 
-def word(signal: Signal, message: object) -> float | str:
+def enum_index(signal: Signal, message: object) -> float | str:
     """The index of the signal's enumeration value in one message.
 
     Args:
@@ -88,8 +88,8 @@ def _places(keys: tuple[str, ...] | tuple[int, ...]) -> Mapping[object, float]:
     return {key: float(place) for place, key in enumerate(keys)}
 
 
-def words(signal: Signal, numbers: Values) -> tuple[Numbers, NDArray[np.bool_]]:
-    """`word` for many numbers at once: the indices, and the numbers without an enumeration value.
+def enum_indices(signal: Signal, numbers: Values) -> tuple[Numbers, NDArray[np.bool_]]:
+    """`enum_index` of many numbers: the indices, and a mask of numbers without a value.
 
     Args:
         signal: a signal with `numbers`.
@@ -118,6 +118,6 @@ def _plain(value: object) -> object:
     return int(value) if whole else value  # type: ignore[call-overload]
 
 
-def word_at(place: float, values: Sequence[str]) -> str | None:
+def enum_value(place: float, values: Sequence[str]) -> str | None:
     """The enumeration value at an index; None: unknown."""
     return None if isnan(place) else values[int(place)]

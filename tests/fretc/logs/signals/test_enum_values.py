@@ -10,9 +10,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fretc.audit.one_log import examined
+from fretc.logs.signals.enum_values import enum_indices
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
-from fretc.logs.signals.words import words
 from fretc.logs.stream import End, Stream
 from tests.effort import examples
 from tests.fretc.logs.logs import (
@@ -324,7 +324,7 @@ def test_numbers_mean_the_same_words_at_once_and_one_by_one(
 ) -> None:
     text = declared(values="{" + ", ".join(f"w{n + 9} = {n}" for n in known) + "}")
     signal = declare(text.replace("'docking'", f"'w{known[0] + 9}'")).signals["mode"]
-    places, foreign = words(signal, np.array(seen, np.float64))
+    places, foreign = enum_indices(signal, np.array(seen, np.float64))
     for number, place, is_foreign in zip(seen, places, foreign, strict=True):
         assert bool(is_foreign) is (number == number and number not in known)
         assert (known[int(place)] == number) if number in known else np.isnan(place)
