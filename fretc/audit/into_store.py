@@ -197,17 +197,21 @@ class ReusableResults:
 
     def results(self, log: str) -> tuple[Result, ...]:
         """The reusable results of a log from an audit with another plan."""
-        some = self._some.get(log)
-        if some is None:
+        partial = self._some.get(log)
+        if partial is None:
             return ()
-        if self._last is None or self._last[0] is not some.store or self._last[1] != some.part:
+        if (
+            self._last is None
+            or self._last[0] is not partial.store
+            or self._last[1] != partial.part
+        ):
             try:
-                found = [each for _, each in some.store.details(some.part)]
+                results_of_part = [each for _, each in partial.store.details(partial.part)]
             except StoreError:
-                found = []
-            self._last = some.store, some.part, found
-        of_log = self._last[2][some.first : some.first + some.count]
-        return tuple(each for each in of_log if each.requirement in some.claims)
+                results_of_part = []
+            self._last = partial.store, partial.part, results_of_part
+        of_log = self._last[2][partial.first : partial.first + partial.count]
+        return tuple(each for each in of_log if each.requirement in partial.claims)
 
     def part(self, logs: Sequence[str], known: Mapping[str, _ReusableLog]) -> Part | None:
         """A part that has exactly these logs, with the facts that all its runs share."""
@@ -289,7 +293,9 @@ class StoreWriter:
         self._is_finished = False
         self._drafts = [_Draft([logs[n] for n in indices]) for indices in parts(logs)]
         self._draft_of = {log: draft for draft in self._drafts for log in draft.logs}
-        self.known = {log: one for log in logs if (one := self.earlier.find(log)) is not None}
+        self.known = {
+            log: reusable for log in logs if (reusable := self.earlier.find(log)) is not None
+        }
         self.new = [log for log in logs if log not in self.known]
         self.missing = self.earlier.missing(logs)
         """The number of logs of the store that are not among those of this audit."""
@@ -308,15 +314,15 @@ class StoreWriter:
         """Remove the files that no manifest lists, and release the folder."""
         try:
             names = [name for name in (FILE, UNFINISHED) if (self.folder / name).exists()]
-            found = [manifest(self.folder, name) for name in names]
-            if not any(each is None or each.parts for each in found):
+            manifests = [manifest(self.folder, name) for name in names]
+            if not any(each is None or each.parts for each in manifests):
                 remove(self.folder)
                 if self._new_folder is not None:
                     with suppress(OSError):  # the folder is not empty
                         self._new_folder.rmdir()
             else:
                 others = set() if self._is_finished else self._before
-                remove_others(self.folder, *filter(None, found), kept=others)
+                remove_others(self.folder, *filter(None, manifests), kept=others)
         finally:
             os.close(self._lock)
 
@@ -386,11 +392,11 @@ class StoreWriter:
         )
         self._note(log, tuple(map(self._one, own.diagnostics)))
         self._read += own.read
-        one = _Log(entry, labelled_result.results)
+        finished_log = _Log(entry, labelled_result.results)
         if sum(map(_events, labelled_result.results)) > _HEAVY:
-            one = _Log(entry, tables=to_tables(labelled_result.results, __version__))
+            finished_log = _Log(entry, tables=to_tables(labelled_result.results, __version__))
         draft = self._draft_of[log]
-        draft.found[log] = one
+        draft.found[log] = finished_log
         self._complete(draft)
 
     def _one(self, found: Diagnostic) -> Diagnostic:
@@ -431,7 +437,7 @@ class StoreWriter:
     def _manifest(self, drafts: Sequence[tuple[Part, Sequence[Entry]]], name: str) -> Manifest:
         entries = [entry for _, some in drafts for entry in some]
         about = document(self._plan, (), ())
-        made = Manifest(
+        new_manifest = Manifest(
             schema=SCHEMA,
             fretc=about.fretc,
             bindings=about.bindings,
@@ -442,10 +448,10 @@ class StoreWriter:
             selection=about.selection,
         )
         if name == UNFINISHED:
-            return made
-        provisional = Store(str(self.folder), "", made)
+            return new_manifest
+        provisional = Store(str(self.folder), "", new_manifest)
         estimates = estimates_of(self._plan, (each for _, each in provisional.briefs()))
-        return replace(made, probabilities=estimates or UNSET)
+        return replace(new_manifest, probabilities=estimates or UNSET)
 
     def _write(self, made: Manifest, name: str) -> str:
         """Write a manifest and the register that authenticates it."""
@@ -470,29 +476,29 @@ class StoreWriter:
         """Write the finished results, so that a later audit can reuse them."""
         if self._key is None:
             return
-        found: list[tuple[Part, Sequence[Entry]]] = []
+        finished_parts: list[tuple[Part, Sequence[Entry]]] = []
         for draft in self._drafts:
             if draft.part is not None:
-                found.append((draft.part, draft.entries))
+                finished_parts.append((draft.part, draft.entries))
                 continue
             logs = [log for log in draft.logs if log in draft.found]
             if logs:
                 part = self._written(draft, logs)
-                found.append((part, [draft.found[log].entry for log in logs]))
-        self._write(self._manifest(found, UNFINISHED), UNFINISHED)
-        entries = (entry for _, some in found for entry in some)
+                finished_parts.append((part, [draft.found[log].entry for log in logs]))
+        self._write(self._manifest(finished_parts, UNFINISHED), UNFINISHED)
+        entries = (entry for _, some in finished_parts for entry in some)
         self.kept = sum(entry.size is not None and entry.log not in self.known for entry in entries)
 
     def _finish(self) -> StoredAudit:
-        found: list[tuple[Part, Sequence[Entry]]] = []
+        finished_parts: list[tuple[Part, Sequence[Entry]]] = []
         for draft in self._drafts:
             assert draft.part is not None, "every log is finished"
-            found.append((draft.part, draft.entries))
-        made = self._manifest(found, FILE)
-        entries = [entry for _, some in found for entry in some]
-        store = Store(str(self.folder), "", made)
+            finished_parts.append((draft.part, draft.entries))
+        final_manifest = self._manifest(finished_parts, FILE)
+        entries = [entry for _, some in finished_parts for entry in some]
+        store = Store(str(self.folder), "", final_manifest)
         if self._read:  # a mistyped name must not cost the evidence of the last audit
-            store = Store(str(self.folder), self._write(made, FILE), made)
+            store = Store(str(self.folder), self._write(final_manifest, FILE), final_manifest)
             self._is_finished = True
             for name in (UNFINISHED, REUSE[UNFINISHED]):
                 (self.folder / name).unlink(missing_ok=True)

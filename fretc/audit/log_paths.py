@@ -89,13 +89,13 @@ def _named(path: str) -> Iterator[str | Diagnostic]:
 
 def _stored(path: str) -> Iterator[str | Diagnostic]:
     """The logs below a folder of an object store, or those that a pattern matches."""
-    found = below(path, lambda name: name.endswith(_LOGS) and not name.endswith(ANNOTATIONS))
-    if found is None or isinstance(found, Diagnostic):
-        yield path if found is None else found
-    elif not found:
+    addresses = below(path, lambda name: name.endswith(_LOGS) and not name.endswith(ANNOTATIONS))
+    if addresses is None or isinstance(addresses, Diagnostic):
+        yield path if addresses is None else addresses
+    elif not addresses:
         yield _empty(path) if path.endswith("/") else _no_match(path)
     else:
-        yield from found
+        yield from addresses
 
 
 def _below(path: Path, visited: dict[str, None] | None = None) -> Iterator[str | Diagnostic]:

@@ -307,9 +307,9 @@ def _read(
     """The recording of a log with all signals of the propositions, read or from the cache."""
     declarations, integrity = plan.declarations, plan.integrity
     signals = signals_of(declarations, names)
-    known = kept.recording(log, declarations, signals, integrity) if kept else None
-    if known is not None:
-        return known
+    cached = kept.recording(log, declarations, signals, integrity) if kept else None
+    if cached is not None:
+        return cached
     drawn = declarations.map
     beside = (drawn.x, drawn.y) if drawn else ()
     recording = read(log, declarations, signals, integrity, beside)
@@ -348,8 +348,8 @@ def _with_own_labels(
     declared = plan.declarations.labels
     if not declared:
         return one
-    found, notes = labels(declared, one.results[0].run, described)
-    return _with_labels(one, found, notes)
+    own_labels, notes = labels(declared, one.results[0].run, described)
+    return _with_labels(one, own_labels, notes)
 
 
 def with_command_labels(plan: Plan, one: LogResult) -> LogResult:
@@ -357,8 +357,8 @@ def with_command_labels(plan: Plan, one: LogResult) -> LogResult:
     if not plan.labels:
         return one
     first = one.results[0]
-    found, notes = with_overrides(first.labels or {}, plan.labels)
-    return _with_labels(one, found, notes)
+    all_labels, notes = with_overrides(first.labels or {}, plan.labels)
+    return _with_labels(one, all_labels, notes)
 
 
 def _with_labels(

@@ -104,8 +104,8 @@ def examined(
     expressions = [declarations.propositions[name].expression for name in propositions]
     flags = dict.fromkeys(name.id for expression in expressions for name in e.truths(expression))
     untrue = (_untrue(declarations.signals[name], recording) for name in flags)
-    found = (*recording.findings, *filter(None, untrue), *blind, *slow, *late)
-    return replace(recording, findings=found)
+    all_findings = (*recording.findings, *filter(None, untrue), *blind, *slow, *late)
+    return replace(recording, findings=all_findings)
 
 
 def _untrue(signal: Signal, recording: Recording) -> Diagnostic | None:
@@ -148,9 +148,11 @@ def audit(
     phases_of = phases(
         declarations, recording, [requirement.monitor for requirement in requirements]
     )
-    found, at = health(recording), _moments(truths.timeline)
+    run_health, at = health(recording), _moments(truths.timeline)
     evidence = [
-        _evidence(recording, declarations, truths, at, margins_of, near, requirement, engine, found)
+        _evidence(
+            recording, declarations, truths, at, margins_of, near, requirement, engine, run_health
+        )
         for requirement in requirements
     ]
     return tuple(_phased(result, phases_of.get(result.requirement)) for result in evidence)
@@ -249,10 +251,10 @@ def _situations(
 ) -> Situations | None:
     if not requirement.situations:
         return None
-    found = [*situation_ticks(requirement.situations, columns, ticks, near)]
+    occurrences = [*situation_ticks(requirement.situations, columns, ticks, near)]
     return Situations(
-        {each.key: at(each.seen) for each in found if each.seen is not None},
-        {each.key: at(each.perhaps) for each in found if each.perhaps is not None},
+        {each.key: at(each.seen) for each in occurrences if each.seen is not None},
+        {each.key: at(each.perhaps) for each in occurrences if each.perhaps is not None},
     )
 
 

@@ -40,7 +40,7 @@ def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic
         if requirements and not has_errors(project.general)
         else None
     )
-    found = []
+    refused_requirements = []
     for entry in project.requirements:
         requirement = own.get(id(entry))
         why = [*refused.get(id(entry), ())]
@@ -49,8 +49,8 @@ def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic
         elif requirement is not None and project.declarations is not None:
             why.extend(_not_auditable(requirement, project.declarations))
         if why and entry.status != "retired":
-            found.append((entry, tuple(dict.fromkeys(why))))
-    return tuple(found)
+            refused_requirements.append((entry, tuple(dict.fromkeys(why))))
+    return tuple(refused_requirements)
 
 
 def active_requirements(project: Project) -> list[FormalizedRequirement]:

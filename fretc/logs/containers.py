@@ -37,8 +37,8 @@ def part(
         BrokenError: the file does not match its index.
     """
     extend_budget(log.size)
-    found = _read(log, sink, integrity, place, wanted)
-    return log_diagnostics.changed(place) if log.changed() else found
+    contents = _read(log, sink, integrity, place, wanted)
+    return log_diagnostics.changed(place) if log.changed() else contents
 
 
 def only_grows(log: Input) -> bool:
@@ -72,11 +72,11 @@ def _bag(
 ) -> Part | Diagnostic:
     if log.file is None or log.same is None:
         return storage_diagnostics.bag_of_no_file(place)
-    found = bags.read(log.file, log.same, start, sink, place)
-    if isinstance(found, Diagnostic):
-        return found
-    damages = (*found.damages, *_reindexed(log.file, found.span))
-    return Part(log.sha256(), log.size, found.span, damages, found.notes)
+    contents = bags.read(log.file, log.same, start, sink, place)
+    if isinstance(contents, Diagnostic):
+        return contents
+    damages = (*contents.damages, *_reindexed(log.file, contents.span))
+    return Part(log.sha256(), log.size, contents.span, damages, contents.notes)
 
 
 def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None]]:

@@ -102,8 +102,8 @@ class Extract:
         """Record messages, in their order, without any value of an enumeration signal."""
         rows = self.foreign.setdefault(signal.name, np.zeros(len(self.decoded), bool))
         rows[at] = True
-        known, _ = self.texts.get(signal.name, (len(rows), ""))
-        if int(at[0]) < known:
+        first_text, _ = self.texts.get(signal.name, (len(rows), ""))
+        if int(at[0]) < first_text:
             self.texts[signal.name] = int(at[0]), first
 
     def foreign_of(self, name: str, usable: NDArray[np.bool_]) -> UnmappedSamples | None:
@@ -182,12 +182,12 @@ class Extraction:
         for signal in tuple(self.signals):
             if not signal.values or signal.numbers:
                 continue
-            known = constants(stream, signal.path.fields)
-            if known is None:
+            named_numbers = constants(stream, signal.path.fields)
+            if named_numbers is None:
                 continue
-            numbers = tuple(known[word] for word in signal.values if word in known)
+            numbers = tuple(named_numbers[word] for word in signal.values if word in named_numbers)
             if len(set(numbers)) < len(signal.values):
-                self._refuse(signal, log_diagnostics.no_constant(signal, known))
+                self._refuse(signal, log_diagnostics.no_constant(signal, named_numbers))
             else:
                 named = replace(signal, numbers=numbers)
                 self.signals[self.signals.index(signal)] = named
@@ -345,8 +345,8 @@ class Extraction:
         for first in range(0, len(rows), step):
             block = slice(first, first + step)
             gathered = payloads.gathered(rows[block], field.at, field.dtype, field.count)
-            some = {name: numbers[block] for name, numbers in sibling_values.items()}
-            values.append(samples(signal, _matrix(gathered), some))
+            siblings_of_block = {name: numbers[block] for name, numbers in sibling_values.items()}
+            values.append(samples(signal, _matrix(gathered), siblings_of_block))
         return np.concatenate(values)
 
 

@@ -54,8 +54,8 @@ def labels(
 def path_label(name: str, sources: Sequence[LabelSource], run: str) -> tuple[str, ...]:
     """The value of a label in the path of a log."""
     patterns = [source.text for source in sources if source.is_path]
-    found = [name_patterns.match(pattern, run) for pattern in patterns]
-    return tuple(each[name] for each in found if each is not None)
+    matches = [name_patterns.match(pattern, run) for pattern in patterns]
+    return tuple(each[name] for each in matches if each is not None)
 
 
 def _values(
@@ -79,7 +79,7 @@ def with_overrides(before: Labels, given: Labels) -> tuple[Labels, tuple[Diagnos
 
 def given(texts: Sequence[str]) -> Labels | Diagnostic:
     """The labels that a command gives: `version=2.1`."""
-    found: dict[str, str] = {}
+    labels_given: dict[str, str] = {}
     for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not is_label(name) or not 0 < len(value) <= LONGEST:
@@ -88,16 +88,17 @@ def given(texts: Sequence[str]) -> Labels | Diagnostic:
                 f"`--label {_short(text)}` is no label",
                 help=f"write `--label version=2.1`: a name, `=`, up to {LONGEST} characters",
             )
-        if name in found:
+        if name in labels_given:
             return Diagnostic(
                 Code.BAD_LABEL, f"`--label {name}=...` is given twice", help="remove one of them"
             )
-        found[name] = value
-    if len(found) > MOST_LABELS:
+        labels_given[name] = value
+    if len(labels_given) > MOST_LABELS:
         return Diagnostic(
-            Code.BAD_LABEL, f"there are {len(found)} labels; at most {MOST_LABELS} are allowed"
+            Code.BAD_LABEL,
+            f"there are {len(labels_given)} labels; at most {MOST_LABELS} are allowed",
         )
-    return found
+    return labels_given
 
 
 def _conflict(name: str) -> Diagnostic:

@@ -272,10 +272,10 @@ def wrong_type(signal: Signal, actual: str) -> Diagnostic:
 
 def several_types(signal: Signal, types: Sequence[str]) -> Diagnostic:
     """F421: the topic has messages of more than one type, and the signal names none."""
-    *some, last = [f"`{name}`" if name else "no type" for name in types]
+    *names, last = [f"`{name}`" if name else "no type" for name in types]
     return Diagnostic(
         Code.SEVERAL_TYPES,
-        f"`{signal.path.topic}` has messages of {', '.join(some)} and {last}: "
+        f"`{signal.path.topic}` has messages of {', '.join(names)} and {last}: "
         f"`{signal.name}` is read from all of them",
         signal.span,
         "a field of the same name may mean something else there; "

@@ -107,10 +107,10 @@ def _read_log(
     sources = [source for some in declarations.labels.values() for source in some]
     named = {source.text for source in sources if not source.is_path}
     asked = frozenset(named) | watch_records.KEYS
-    found = _opened(path, lambda: Columns(declarations, signals, beside), integrity, asked)
-    if isinstance(found, Diagnostic):
-        return found
-    place, run, columns, examples = found
+    log = _opened(path, lambda: Columns(declarations, signals, beside), integrity, asked)
+    if isinstance(log, Diagnostic):
+        return log
+    place, run, columns, examples = log
     recording = _recording(place, run, columns, examples, signals, beside)
     return _too_long(recording, columns.clock, place) or recording
 
@@ -131,10 +131,10 @@ def look(path: str, *, words: bool = False) -> Overview | Diagnostic:
 def _look(path: str, words: bool) -> Overview | Diagnostic:
     nothing = Declarations(Source("", ""), Clock(None, None), {}, {})
     vocabulary = Vocabulary() if words else None
-    found = _opened(path, lambda: Columns(nothing, ()), Integrity.FULL, vocabulary=vocabulary)
-    if isinstance(found, Diagnostic):
-        return found
-    place, run, columns, examples = found
+    log = _opened(path, lambda: Columns(nothing, ()), Integrity.FULL, vocabulary=vocabulary)
+    if isinstance(log, Diagnostic):
+        return log
+    place, run, columns, examples = log
     streams = columns.streams.items()
     decoders = {topic: decoder(stream) for topic, stream in streams}
     return Overview(

@@ -35,7 +35,7 @@ def _in_order(samples: Samples) -> Values:
     if not samples.words:
         return samples.values
     ranks = np.array([sorted(samples.words).index(word) for word in samples.words], np.float64)
-    known = ~np.isnan(samples.values)
+    is_known = ~np.isnan(samples.values)
     ordered = np.full(len(samples.values), np.nan)
-    ordered[known] = ranks[samples.values[known].astype(np.intp)]
+    ordered[is_known] = ranks[samples.values[is_known].astype(np.intp)]
     return ordered

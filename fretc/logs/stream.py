@@ -149,14 +149,14 @@ class Stream:
         values: list[tuple[_Queue, Value]] = []
         for signal in signals:
             try:
-                found = sampled(signal, read)
+                read_sample = sampled(signal, read)
             except FieldError as error:
                 return log_diagnostics.no_field(signal, error)
             queue = self._queues[signal.name]
-            wrong = queue.refusal(found[1], self._ticking.passed)
+            wrong = queue.refusal(read_sample[1], self._ticking.passed)
             if wrong is not None:
                 return wrong
-            values.append((queue, found))
+            values.append((queue, read_sample))
         self._put(topic, time, values)
         self._ticking.arrive(topic, time)
         return None
@@ -301,9 +301,9 @@ class Stream:
         if (many := _too_many(self._ticking.due(time))) is not None:
             return many
         times = self._ticking.until(time)
-        found = self._ticks(times, self._ticking.passed)
+        ticks = self._ticks(times, self._ticking.passed)
         self._remember(times)
-        return found
+        return ticks
 
     def end(self) -> End | Diagnostic:
         """The remaining ticks if the log ends here: at the last message or the time passed."""
@@ -447,8 +447,8 @@ class _Queue:
             foreign = shown(value)
         if foreign:
             self.first_foreign = time if self.foreign is None else self.first_foreign
-            one = UnmappedSamples(1, self.count, foreign)
-            self.foreign = self.foreign.followed(one) if self.foreign else one
+            unmapped = UnmappedSamples(1, self.count, foreign)
+            self.foreign = self.foreign.followed(unmapped) if self.foreign else unmapped
         self.count += 1
         if kind is not None:
             self.kind = kind if self.kind is None else np.promote_types(self.kind, kind)

@@ -330,12 +330,12 @@ class Columns:
         lateness = self.clock.patience
         if lateness is None or self.clock.time is TimeSource.LOG_TIME:
             return {}
-        found = {
+        late_messages = {
             column.name: late(np.array(column.logs, np.int64), column.stamps(), lateness)
             for column in self.topics.values()
             if column.bound
         }
-        return {name: each for name, each in found.items() if each is not None}
+        return {name: each for name, each in late_messages.items() if each is not None}
 
     def span(self, log: Gap) -> Gap:
         """First and last message of the bound topics, or else of all; without any, `log`.

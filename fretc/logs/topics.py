@@ -22,22 +22,22 @@ def never_stated(
     samples: Mapping[str, Samples], examples: FirstMessages, wanted: Sequence[Signal]
 ) -> list[Diagnostic]:
     """Warnings about JSON fields that no message has, which make their signals unknown."""
-    found = []
+    diagnostics = []
     for signal in wanted:
         values = samples[signal.name].values
         payloads = examples.of(signal.path.topic)
         if not payloads or not len(values) or not np.isnan(values).all():
             continue
         leaves = message_leaves(payloads)
-        known = [p for p, leaf in leaves.items() if signal.values or leaf.kind is not Kind.TEXT]
-        if ".".join(signal.path.fields) not in {path.removesuffix("[:]") for path in known}:
-            found.append(log_diagnostics.never_stated(signal, known))
-    return found
+        paths = [p for p, leaf in leaves.items() if signal.values or leaf.kind is not Kind.TEXT]
+        if ".".join(signal.path.fields) not in {path.removesuffix("[:]") for path in paths}:
+            diagnostics.append(log_diagnostics.never_stated(signal, paths))
+    return diagnostics
 
 
 def clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
     """Warnings about the clocks of the topics that the signals read."""
-    found = list(_unmoved(columns))
+    diagnostics = list(_unmoved(columns))
     ahead: dict[str, int] = {}
     signals = {
         signal.path.topic: signal for signal in wanted if signal.path.topic in columns.topics
@@ -46,15 +46,19 @@ def clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
         column = columns.topics[topic]
         offset = _clock_offset(column)
         if offset is not None and offset.jumps:
-            found.append(log_diagnostics.clock_jumps(signal, offset.jumps, offset.largest_jump))
+            diagnostics.append(
+                log_diagnostics.clock_jumps(signal, offset.jumps, offset.largest_jump)
+            )
         if offset is not None and not column.unstamped:
             ahead[topic] = offset.median
     middle = median(ahead.values()) if ahead else 0
     true = min(ahead, key=lambda topic: (abs(ahead[topic] - middle), abs(ahead[topic])), default="")
     for topic, shift in ahead.items():
         if abs(shift - ahead[true]) > JUMP:
-            found.append(log_diagnostics.mixed_clocks(signals[topic], true, shift - ahead[true]))
-    return found
+            diagnostics.append(
+                log_diagnostics.mixed_clocks(signals[topic], true, shift - ahead[true])
+            )
+    return diagnostics
 
 
 def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
@@ -69,8 +73,8 @@ def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
 
 def _clock_offset(column: Column) -> ClockOffset | None:
     """The offset of the clock, without messages whose time was never set."""
-    known = ~column.unset
-    return clock_offset(np.array(column.logs, np.int64)[known], column.stamps()[known])
+    is_set = ~column.unset
+    return clock_offset(np.array(column.logs, np.int64)[is_set], column.stamps()[is_set])
 
 
 def topic(column: Column) -> Topic:

@@ -34,8 +34,8 @@ class Vocabulary:
 
     def of(self, topic: str) -> Words:
         """The texts of a topic."""
-        found = self._words.get(topic, {})
-        return {path: None if words is None else tuple(words) for path, words in found.items()}
+        texts = self._words.get(topic, {})
+        return {path: None if words is None else tuple(words) for path, words in texts.items()}
 
     def take(self, stream: Stream, payload: memoryview) -> None:
         """One message."""
@@ -61,22 +61,22 @@ class Vocabulary:
         """The decoder of a stream; None: it has no field with few different texts."""
         id, topic = stream.channel.id, stream.channel.topic
         if id not in self._decoders:
-            found = decoder(stream)
-            self._decoders[id] = None if isinstance(found, str) else found
+            decode = decoder(stream)
+            self._decoders[id] = None if isinstance(decode, str) else decode
             self._find(stream, ())
-        known = self._words[topic]
+        texts = self._words[topic]
         is_open = stream.channel.message_encoding == "json" or any(
-            words is not None for words in known.values()
+            words is not None for words in texts.values()
         )
         return self._decoders[id] if is_open else None
 
     def _find(self, stream: Stream, payloads: tuple[bytes, ...]) -> None:
         """Find the text fields of a stream."""
-        known = self._words.setdefault(stream.channel.topic, {})
+        texts = self._words.setdefault(stream.channel.topic, {})
         for path, leaf in (leaves(stream, payloads) or {}).items():
             *above, last = path.split(".")
             if leaf.kind is Kind.TEXT and last not in _NAMES and above[:1] != ["header"]:
-                known.setdefault(path, {})
+                texts.setdefault(path, {})
 
 
 def _add(words: dict[str, None], path: str, message: object) -> bool:

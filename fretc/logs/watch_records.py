@@ -86,10 +86,10 @@ def watched(columns: Columns, described: Mapping[str, tuple[str, ...]], place: S
     stated = {key: described[key] for key in _OF_GRID if key in described}
     if f"{WATCH}.disordered" in described:
         stated.pop(f"{GRID}.origin", None)
-    found = _grid(stated, columns)
-    if isinstance(found, str):
-        return Watched(None, 0, gaps, lost, (*findings, _refused(found, place)))
-    origin, until = found
+    grid = _grid(stated, columns)
+    if isinstance(grid, str):
+        return Watched(None, 0, gaps, lost, (*findings, _refused(grid, place)))
+    origin, until = grid
     if origin is not None or until:
         findings.append(_taken_over(origin, until, columns, place))
     return Watched(origin, until, gaps, lost, tuple(findings))

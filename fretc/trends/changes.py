@@ -84,12 +84,12 @@ def change(rounds: Sequence[Sequence[str]]) -> Change:
 
 def last_known(rounds: Sequence[Sequence[str]]) -> int | None:
     """The index of the last round before the newest with a known outcome; None: none."""
-    known = [
+    known_rounds = [
         i
         for i, one in enumerate(rounds[:-1])
         if one and round_outcome(one) is not RoundOutcome.OPEN
     ]
-    return known[-1] if known else None
+    return known_rounds[-1] if known_rounds else None
 
 
 def is_flaky(rounds: Sequence[Sequence[str]], of_software: Mapping[str, Sequence[str]]) -> bool:
@@ -100,10 +100,10 @@ def is_flaky(rounds: Sequence[Sequence[str]], of_software: Mapping[str, Sequence
         of_software: the verdicts of the runs of each commit.
     """
     round_outcomes = [round_outcome(verdicts) for verdicts in rounds if verdicts]
-    known = [
+    decided = [
         round_outcome for round_outcome in round_outcomes if round_outcome is not RoundOutcome.OPEN
     ]
-    turns = sum(a is not b for a, b in pairwise(known))
+    turns = sum(a is not b for a, b in pairwise(decided))
     return turns > 1 or any(
         {*verdicts} & {*BROKEN} and {*verdicts} & {*SHOWN} for verdicts in of_software.values()
     )

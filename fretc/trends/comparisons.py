@@ -154,12 +154,12 @@ def comparisons(
     tested = [_tested(histories.runs, compared, measure, values) for measure, values in measured]
     family = decidable([tail.least for tail, _ in tested], level)
     adjusted = dict(zip(family, holm([tested[i][0].p for i in family]), strict=True))
-    found = [
+    all_comparisons = [
         _comparison(measure, values, tested[i][1], adjusted.get(i), level)
         for i, (measure, values) in enumerate(measured)
     ]
     order = list(Finding)
-    return tuple(sorted(found, key=lambda one: (order.index(one.finding), one.p or 1.0)))
+    return tuple(sorted(all_comparisons, key=lambda one: (order.index(one.finding), one.p or 1.0)))
 
 
 def _measured(histories: Histories) -> list[tuple[Measure, tuple[Value, ...]]]:
@@ -246,9 +246,9 @@ def _measures(
     same = [outcome for outcome in judged if outcome.basis == basis]
     for kind, number in ((Kind.LONGEST, _longest), (Kind.MEDIAN, _median)):
         values = tuple(_value(histories.runs, one, number(one)) for one in same)
-        known = tuple(value for value in values if value is not None)
-        if known:
-            yield Measure((requirement,), kind, "s"), known
+        known_values = tuple(value for value in values if value is not None)
+        if known_values:
+            yield Measure((requirement,), kind, "s"), known_values
     yield from _margins(histories, requirement, same)
 
 

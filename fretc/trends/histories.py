@@ -147,8 +147,8 @@ def _time(text: str) -> int | None:
     rosbag = _ROSBAG.fullmatch(text)
     try:
         form = "{}-{}-{}T{}:{}:{}".format(*rosbag.groups()) if rosbag else text
-        found = datetime.fromisoformat(form)
-        aware = found if found.tzinfo is not None else found.replace(tzinfo=UTC)
+        moment = datetime.fromisoformat(form)
+        aware = moment if moment.tzinfo is not None else moment.replace(tzinfo=UTC)
         time = round((aware - datetime(1970, 1, 1, tzinfo=UTC)).total_seconds()) * 10**9
     except (ValueError, OverflowError):
         return None
@@ -343,10 +343,10 @@ class _Reader:
 
 def verdicts_of_rounds(judged: Sequence[RunOutcome], rounds: int) -> tuple[tuple[str, ...], ...]:
     """The verdicts of each round."""
-    found: list[list[str]] = [[] for _ in range(rounds)]
+    verdicts: list[list[str]] = [[] for _ in range(rounds)]
     for outcome in judged:
-        found[outcome.round].append(outcome.verdict)
-    return tuple(map(tuple, found))
+        verdicts[outcome.round].append(outcome.verdict)
+    return tuple(map(tuple, verdicts))
 
 
 def counted(verdicts: Sequence[str]) -> Mapping[str, int]:

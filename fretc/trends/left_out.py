@@ -47,9 +47,9 @@ def is_left_out(
         violated = [one for one in before if round_outcome([one.verdict]) is RoundOutcome.VIOLATED]
         last = max((outcome.round for outcome in violated), default=-1)
         names, logs = {run.name for run in now}, {run.content for run in now}
-        known = {runs[one.run].content for one in before}
+        contents = {runs[one.run].content for one in before}
         return any(
-            _may_leave_out(selection, runs[outcome.run], by_date=logs <= known)
+            _may_leave_out(selection, runs[outcome.run], by_date=logs <= contents)
             for outcome in violated
             if outcome.round == last
             and runs[outcome.run].name not in names

@@ -102,9 +102,9 @@ def decidable(least: Sequence[float], level: float) -> list[int]:
         level: the level of all tests together.
     """
     count = 1
-    while len(found := [i for i, each in enumerate(least) if each * count <= level]) > count:
+    while len(indices := [i for i, each in enumerate(least) if each * count <= level]) > count:
         count += 1
-    return found
+    return indices
 
 
 def holm(values: Sequence[float]) -> list[float]:

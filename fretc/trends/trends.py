@@ -192,8 +192,8 @@ def trends(
             f"no run has the label `{by}`",
             help="name a label that `[run.label]` or `--label` gives, or `evidence` or `day`",
         )
-    known = histories(sources, by)
-    items = [_item(known, *key, judged) for key, judged in known.judged.items()]
+    read_histories = histories(sources, by)
+    items = [_item(read_histories, *key, judged) for key, judged in read_histories.judged.items()]
     order = list(Change)
     items.sort(
         key=lambda item: (
@@ -202,17 +202,17 @@ def trends(
             natural(item.scenario.name),
         )
     )
-    compared = compared_runs(known)
+    compared = compared_runs(read_histories)
     return Trends(
-        known.by,
-        known.rounds,
-        known.requirements,
+        read_histories.by,
+        read_histories.rounds,
+        read_histories.requirements,
         tuple(items),
         compared,
-        comparisons(known, compared, level),
+        comparisons(read_histories, compared, level),
         level,
-        tuple(compared.is_after(run) for run in known.runs),
-        known.order,
+        tuple(compared.is_after(run) for run in read_histories.runs),
+        read_histories.order,
     )
 
 

@@ -92,8 +92,8 @@ class Decoder:
         problems += self._refusals(arrival.channel, topic)
         time = self._placed(arrival, extract)
         nothing = dict.fromkeys(topic.names, _NOTHING)
-        known = topic.signals if time != 0 else ()
-        values = {**nothing, **{each.name: _value(extract, each.name) for each in known}}
+        signals = topic.signals if time != 0 else ()
+        values = {**nothing, **{each.name: _value(extract, each.name) for each in signals}}
         name = arrival.channel.topic
         if not bool(extract.decoded[0]) and self._extractions[arrival.channel].reads:
             self.undecoded[name] = self.undecoded.get(name, 0) + 1
@@ -128,10 +128,10 @@ class Decoder:
     def _refusals(self, channel: Channel, topic: _Topic) -> list[Diagnostic]:
         """Diagnostics for signals that the channel does not have."""
         refused = self._extractions[channel].diagnostics
-        found = [signal for signal in topic.signals if signal.name in refused]
-        for signal in found:
+        missing = [signal for signal in topic.signals if signal.name in refused]
+        for signal in missing:
             topic.signals.remove(signal)
-        return [refused[signal.name] for signal in found]
+        return [refused[signal.name] for signal in missing]
 
     def _placed(self, arrival: Arrival, extract: Extract) -> int | None:
         """The time on the declared clock; 0: it was never set; None: it is unknown."""
@@ -150,8 +150,8 @@ def _value(extract: Extract, name: str) -> Value:
     if extract.is_foreign(name, 0):
         return UNKNOWN, None, extract.texts[name][1]
     values = extract.values[name]
-    known = values[0]
-    return (known, values.dtype, "") if not isnan(known) else _NOTHING
+    value = values[0]
+    return (value, values.dtype, "") if not isnan(value) else _NOTHING
 
 
 def stream_of(channel: Channel, id: int = 1) -> Stream:

@@ -103,14 +103,14 @@ class _Lines(Record, frozen=True):
 
 def schema() -> dict[str, Any]:
     """The JSON Schema of a line."""
-    found = json_schema(
+    line_schema = json_schema(
         _Lines,
         SCHEMA,
         "A line of `fretc watch --format jsonl`",
         "Times are nanoseconds. `type` is the kind of a line.",
     )
-    line_ = found["properties"]["lines"]["items"]
-    head = {key: value for key, value in found.items() if key.startswith("$") or key in _HEAD}
+    line_ = line_schema["properties"]["lines"]["items"]
+    head = {key: value for key, value in line_schema.items() if key.startswith("$") or key in _HEAD}
     return {**head, **line_}
 
 
@@ -119,8 +119,8 @@ _HEAD = ("title", "description")
 
 def line(event: WatchEvent) -> dict[str, Any]:
     """The JSON object of one event."""
-    found: dict[str, Any] = plain(_line(event))
-    return found
+    fields: dict[str, Any] = plain(_line(event))
+    return fields
 
 
 def _line(event: WatchEvent) -> Line:

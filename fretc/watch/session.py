@@ -235,12 +235,12 @@ class Session:
     def _pass(self, time: int) -> Diagnostic | None:
         if self.interrupted:
             return None
-        found = self._stream.until(max(time, 0))
-        if isinstance(found, Diagnostic):
-            return found
-        for tick in found:
+        ticks = self._stream.until(max(time, 0))
+        if isinstance(ticks, Diagnostic):
+            return ticks
+        for tick in ticks:
             self._monitors.step(tick)
-        if found:
+        if ticks:
             self._ahead = None
         return None
 
@@ -289,23 +289,23 @@ class Session:
         """The time of a tick, also of a future one."""
         if tick is None:
             return None
-        known = self._monitors.ledger.time(tick)
+        judged_time = self._monitors.ledger.time(tick)
         origin, period = self.origin, self._clock.period
-        if known is not None or origin is None or period is None:
-            return known
+        if judged_time is not None or origin is None or period is None:
+            return judged_time
         return origin + self._clock.phase + tick * period
 
     def end(self) -> EndedRun | Diagnostic:
         """End the run."""
         if self._gap_from is not None:
             self._withdraw(self._stream.miss(self._gap_from, self._now))
-        found = self._stream.end()
-        if not isinstance(found, End):
-            return found
-        for tick in found.ticks:
+        stream_end = self._stream.end()
+        if not isinstance(stream_end, End):
+            return stream_end
+        for tick in stream_end.ticks:
             self._monitors.step(tick)
-        self._final = self._monitors.verdicts(found.cut, intact=not self._missed)
-        return EndedRun(self._final, found.until)
+        self._final = self._monitors.verdicts(stream_end.cut, intact=not self._missed)
+        return EndedRun(self._final, stream_end.until)
 
     def judge_again(self, log: str) -> Mapping[str, str] | Diagnostic:
         """Judge the ended run by a log of it, as an audit does: in the order of times.
@@ -318,11 +318,11 @@ class Session:
         recording = read(log, declarations, signals, self._plan.integrity)
         if isinstance(recording, Diagnostic):
             return recording
-        found = trace(declarations, recording, names)
-        times = found.timeline.times.tolist()
+        columns = trace(declarations, recording, names)
+        times = columns.timeline.times.tolist()
         self._monitors, self._ahead = RequirementMonitors(self._plan), None
-        rows = rows_of([found.columns[name] for name in names], len(times))
+        rows = rows_of([columns.columns[name] for name in names], len(times))
         for time, row in zip(times, rows, strict=True):
             self._monitors.step(Tick(time, dict(zip(names, row, strict=True))))
-        self._final = self._monitors.verdicts(found.cut, intact=recording.intact)
+        self._final = self._monitors.verdicts(columns.cut, intact=recording.intact)
         return self._final

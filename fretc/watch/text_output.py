@@ -110,8 +110,8 @@ def line(event: WatchEvent, start: int | None) -> str | None:
 
 def _changed(state: State, before: State | None, time: int, start: int | None) -> str | None:
     """The line of a changed verdict, or of an obligation that opens or ends, else None."""
-    told = None if before is None else (before.verdict, before.owed)
-    if told == (state.verdict, state.owed):
+    previous = None if before is None else (before.verdict, before.owed)
+    if previous == (state.verdict, state.owed):
         return None
     at = seconds((time - start) / _S) if start is not None else "-"
     owed = f", {_OWED[state.owed]}" if _OWED[state.owed] else ""

@@ -219,21 +219,21 @@ class Watch:
             return
         if self._lost_since is not None:
             self.session.miss(self._lost_since, max(self._lost_since, self.session.received))
-        found = self.session.end()
-        if not isinstance(found, EndedRun):
+        ended = self.session.end()
+        if not isinstance(ended, EndedRun):
             self.failed = True
-            yield DiagnosticEvent(found)
-            found = EndedRun(dict.fromkeys(self._states, "no data"), self.session.now)
+            yield DiagnosticEvent(ended)
+            ended = EndedRun(dict.fromkeys(self._states, "no data"), self.session.now)
         path, session = None, self.session
         if self._recorder is not None:
             path = str(self._recorder.path)
             try:
                 self._recorder.grid(None if session.disordered else session.origin)
-                self._recorder.close(found.until, session.missed, session.disordered)
+                self._recorder.close(ended.until, session.missed, session.disordered)
             except OSError as error:
                 yield from self._not_recorded(error)
             self._recorder = None
-        verdicts = found.verdicts
+        verdicts = ended.verdicts
         if session.disordered:
             log = path or (self._log if not self.runs and not begins_anew else None)
             judged = _no_log() if log is None else session.judge_again(log)

@@ -225,8 +225,12 @@ def _unread(
 
 def durations(project: Project) -> tuple[int, ...]:
     """The durations of the requirements in nanoseconds, without those stated in ticks."""
-    found = [s.duration(requirement.sentence.timing) for requirement in project.formalized]
-    return tuple(d.amount * NANOSECONDS[d.unit] for d in found if d and d.unit in NANOSECONDS)
+    seconds_or_ticks = [
+        s.duration(requirement.sentence.timing) for requirement in project.formalized
+    ]
+    return tuple(
+        d.amount * NANOSECONDS[d.unit] for d in seconds_or_ticks if d and d.unit in NANOSECONDS
+    )
 
 
 def _missing_proposition(

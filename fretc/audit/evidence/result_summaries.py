@@ -411,17 +411,17 @@ def _seconds(result: Result) -> Callable[[int], float]:
     times = {0: 0.0} | {moment.tick: moment.seconds for moment in moments}
     times |= {state.tick: state.seconds for state in result.states}
     times |= {answer.tick: answer.seconds for answer in result.answers}
-    known = sorted(times)
-    rate = times[known[-1]] / known[-1] if known[-1] else _mean_tick(result)
+    known_ticks = sorted(times)
+    rate = times[known_ticks[-1]] / known_ticks[-1] if known_ticks[-1] else _mean_tick(result)
 
     def at(tick: int) -> float:
-        index = bisect_right(known, tick) - 1
-        before = known[index]
+        index = bisect_right(known_ticks, tick) - 1
+        before = known_ticks[index]
         if before == tick:
             return times[tick]
-        if index + 1 == len(known):
+        if index + 1 == len(known_ticks):
             return round(times[before] + (tick - before) * rate, 9)
-        after = known[index + 1]
+        after = known_ticks[index + 1]
         share = (tick - before) / (after - before)
         return round(times[before] + (times[after] - times[before]) * share, 9)
 
@@ -431,10 +431,14 @@ def _seconds(result: Result) -> Callable[[int], float]:
 def _length(result: Result) -> float:
     """The end of the last tick, for a result without intervals."""
     last = [events[-1] for events in (result.triggers, result.states, result.answers) if events]
-    known = max(last, key=lambda event: event.tick, default=None)
-    if known is None or not known.tick:
+    last_event = max(last, key=lambda event: event.tick, default=None)
+    if last_event is None or not last_event.tick:
         return round(result.ticks * _mean_tick(result), 9)
-    return round(known.seconds + (result.ticks - known.tick) * (known.seconds / known.tick), 9)
+    return round(
+        last_event.seconds
+        + (result.ticks - last_event.tick) * (last_event.seconds / last_event.tick),
+        9,
+    )
 
 
 def _mean_tick(result: Result) -> float:

@@ -85,8 +85,8 @@ def _way(drawn: Map, recording: Recording) -> Way | None:
     x = recording.beside[drawn.x.name]
     times = x.times
     places = np.stack([x.base, _at(recording.beside[drawn.y.name], times, limit)], axis=1)
-    known: NDArray[np.bool_] = np.asarray((np.abs(places) < _FAR).all(axis=1))
-    lines = _lines(times, known, limit, recording.gaps)
+    is_known: NDArray[np.bool_] = np.asarray((np.abs(places) < _FAR).all(axis=1))
+    lines = _lines(times, is_known, limit, recording.gaps)
     kept = sorted(sorted(lines, key=lambda line: line[0] - line[-1])[:_MOST_LINES], key=_first)
     if not kept:
         return None

@@ -101,8 +101,8 @@ def _exact(
         return bounds
     if seen is not None and seen == max(certain):
         return bounds
-    found = shown(formula, columns, ticks, counted)
-    return bounds if found is None else (found.by_all, found.by_some)
+    bounds_of_ticks = shown(formula, columns, ticks, counted)
+    return bounds if bounds_of_ticks is None else (bounds_of_ticks.by_all, bounds_of_ticks.by_some)
 
 
 def _first(column: int) -> int | None:

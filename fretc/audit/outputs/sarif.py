@@ -101,13 +101,13 @@ def sarif(
         estimates: the answers of all runs: each gives one more result.
         failed: requirements that could not be formalized.
     """
-    found = [result for result in results if result.level is not Level.NONE]
+    shown_results = [result for result in results if result.level is not Level.NONE]
     of_all = [estimate for estimate in estimates if estimate.level is not Level.NONE]
-    ids = {one.result.requirement for one in found} | {one.requirement for one in of_all}
+    ids = {one.result.requirement for one in shown_results} | {one.requirement for one in of_all}
     named = {r.id: r for r in (*(rule.entry for rule in rules), *failed)}
     occurring = [requirement for id, requirement in named.items() if id in ids]
     by_id = {rule.id: rule for rule in rules}
-    files = _files(found, occurring)
+    files = _files(shown_results, occurring)
     places = _Places(
         {requirement.id: number for number, requirement in enumerate(occurring)},
         {name: number for number, name in enumerate(files)},
@@ -120,7 +120,7 @@ def sarif(
         "artifacts": list(files.values()),
         "columnKind": "unicodeCodePoints",
         "results": [
-            *(_result(one, places) for one in found),
+            *(_result(one, places) for one in shown_results),
             *(_result_of_all(one, places) for one in of_all),
         ],
     }

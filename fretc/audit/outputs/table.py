@@ -86,16 +86,16 @@ def read(paths: Sequence[str]) -> EvidenceTables | Diagnostic:
     """
     import pyarrow
 
-    found = []
+    tables = []
     for path in paths:
-        one = _read(path)
-        if isinstance(one, Diagnostic):
-            return one
-        found.append(one)
+        tables_of_path = _read(path)
+        if isinstance(tables_of_path, Diagnostic):
+            return tables_of_path
+        tables.append(tables_of_path)
     return EvidenceTables(
-        pyarrow.concat_tables([one.results for one in found]),
-        pyarrow.concat_tables([one.violations for one in found]),
-        pyarrow.concat_tables([one.runs for one in found]),
+        pyarrow.concat_tables([tables_of_path.results for tables_of_path in tables]),
+        pyarrow.concat_tables([tables_of_path.violations for tables_of_path in tables]),
+        pyarrow.concat_tables([tables_of_path.runs for tables_of_path in tables]),
     )
 
 

@@ -152,8 +152,8 @@ class VerdictWords:
             for each in run:
                 word = words[-1][each.requirement]
                 if word not in (*SHOWN, COUNTED):
-                    found = (severity(word), -each.violated_ticks), index
-                    first = min(first or found, found)
+                    rank = (severity(word), -each.violated_ticks), index
+                    first = min(first or rank, rank)
                 verdicts.add(each.verdict)
                 if each.requirement not in answers:
                     alone.add(each.verdict)

@@ -25,14 +25,14 @@ def chosen(
     if than is None and sample is None:
         return [*logs], None
     recent = [log for log in logs if than is None or not is_older(log, than)]
-    some = recent if sample is None else _sample(recent, sample, seed)
-    return some, Selection(
+    selected = recent if sample is None else _sample(recent, sample, seed)
+    return selected, Selection(
         named=len(logs),
         since=than.isoformat() if than is not None else None,
         older=len(logs) - len(recent),
         sample_of=None if sample is None else len(recent),
         seed=None if sample is None else seed,
-        audited=len(some),
+        audited=len(selected),
     )
 
 

@@ -81,10 +81,14 @@ def _start_of_file(log: str) -> int | None:
         if isinstance(source, Diagnostic) or source.stream.read(len(MAGIC)) != MAGIC:
             return None
         place = Source(name_of(log), "").span()
-        found = with_budget(source.size, place, lambda: summary(source.stream, source.size))
-        if found is None or isinstance(found, Diagnostic) or found.statistics is None:
+        file_summary = with_budget(source.size, place, lambda: summary(source.stream, source.size))
+        if (
+            file_summary is None
+            or isinstance(file_summary, Diagnostic)
+            or file_summary.statistics is None
+        ):
             return None
-        return int(found.statistics.message_start_time)
+        return int(file_summary.statistics.message_start_time)
 
 
 def _changed(log: str) -> int | None:

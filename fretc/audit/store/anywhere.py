@@ -56,8 +56,10 @@ def source(path: str, *, in_full: bool = False) -> EvidenceSource | Diagnostic:
 
 def required_source(path: str, *, in_full: bool = False) -> EvidenceSource | Diagnostic:
     """An evidence source; an error if the evidence does not exist."""
-    found = source(path, in_full=in_full)
-    return replace(found, severity=Severity.ERROR) if isinstance(found, Diagnostic) else found
+    evidence = source(path, in_full=in_full)
+    return (
+        replace(evidence, severity=Severity.ERROR) if isinstance(evidence, Diagnostic) else evidence
+    )
 
 
 def required(path: str) -> EvidenceFile | Diagnostic:

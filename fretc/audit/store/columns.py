@@ -399,6 +399,6 @@ def _options(kind: Any) -> list[Any]:
     if not isinstance(kind, types.UnionType):
         return [kind]
     options = [option for inner in kind.types for option in _options(inner)]
-    some = [option for option in options if not isinstance(option, types.NoneType)]
-    has_point = any(isinstance(each, types.FloatType) for each in some)
-    return [each for each in some if not (has_point and isinstance(each, types.IntType))]
+    present = [option for option in options if not isinstance(option, types.NoneType)]
+    has_point = any(isinstance(each, types.FloatType) for each in present)
+    return [each for each in present if not (has_point and isinstance(each, types.IntType))]

@@ -157,8 +157,8 @@ def _check(parquet: ParquetFile, file: Table, types: pa.Schema) -> None:
     if about.num_rows != file.rows:
         raise SchemaError("a table does not have as many rows as the manifest says")
     there = parquet.schema_arrow
-    known = [each for each in types if each.name in there.names or each.name not in LATER]
-    if not there.equals(pa.schema(known)):
+    expected = [each for each in types if each.name in there.names or each.name not in LATER]
+    if not there.equals(pa.schema(expected)):
         raise SchemaError("a table does not have the columns of this version of fretc")
     groups = [about.row_group(number) for number in range(about.num_row_groups)]
     chunks = [group.column(number) for group in groups for number in range(group.num_columns)]

@@ -58,10 +58,12 @@ def opened(path: str, name: str = FILE) -> Store | Diagnostic:
         is_begun = os.path.exists(f"{path}/{UNFINISHED}")
         return _wrong(path, "has no manifest: " + _BEGUN if is_begun else "has no manifest")
     try:
-        found = decoded(parsed(source.text), Manifest)
+        store_manifest = decoded(parsed(source.text), Manifest)
     except SchemaError as error:
         return _wrong(path, f"has a manifest that fretc did not write: {error}")
-    store = Store(str(Path(path)), sha256(source.text), found)  # signatures are beside the manifest
+    store = Store(
+        str(Path(path)), sha256(source.text), store_manifest
+    )  # signatures are beside the manifest
     try:
         store.check()
     except StoreError as error:
@@ -125,15 +127,15 @@ class Store(HeadProperties):
     def _details(self, part: Part, start: int, rows: Sequence[int]) -> Iterator[tuple[int, Result]]:
         of_part = {name: self._rows(part, name) for name in TABLES}
         for at in range(0, len(rows), _BATCH):
-            some = rows[at : at + _BATCH]
+            batch = rows[at : at + _BATCH]
             try:
-                counted = of_part[RESULTS].take(pa.array(some, pa.int64()))
-                found = tables.results(of_part, some)
-                if tables.briefs(counted) != [*map(brief, found)]:
+                counted = of_part[RESULTS].take(pa.array(batch, pa.int64()))
+                results = tables.results(of_part, batch)
+                if tables.briefs(counted) != [*map(brief, results)]:
                     raise SchemaError("the counts in `results` differ from the other tables")
             except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
-            yield from zip((start + row for row in some), found, strict=True)
+            yield from zip((start + row for row in batch), results, strict=True)
 
     def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
         """Latencies in seconds of each result of some requirements, with its index, in order."""
@@ -161,12 +163,12 @@ class Store(HeadProperties):
 
     def _nested(self, requirements: Collection[str], column: str) -> Iterator[tuple[int, Any]]:
         for start, part in self._parts():
-            some: dict[TableName, pa.Table] = {
+            tables_of_part: dict[TableName, pa.Table] = {
                 RESULTS: self._table(part, RESULTS, ("requirement", EXACT)),
                 EVENTS: self._table(part, EVENTS, (column,)),
             }
             try:
-                found = tables.nested(some, column, requirements)
+                found = tables.nested(tables_of_part, column, requirements)
             except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
             yield from ((start + row, value) for row, value in found)
@@ -174,20 +176,20 @@ class Store(HeadProperties):
     def tallies(self) -> Iterator[dict[str, Tally]]:
         """The tally of each proposition in each run."""
         for _, part in self._parts():
-            some: dict[TableName, pa.Table] = {
+            tables_of_part: dict[TableName, pa.Table] = {
                 RESULTS: self._table(part, RESULTS, ("run_row",)),
                 EVENTS: self._table(part, EVENTS, ("propositions",)),
                 RUNS: self._table(part, RUNS, ("run",)),
             }
             try:
-                yield from tables.tallies(some)
+                yield from tables.tallies(tables_of_part)
             except (SchemaError, IndexError) as error:
                 raise self._error(f"cannot be read: {error}") from None
 
     def whole(self, name: TableName) -> pa.Table:
         """All rows of a table."""
-        found = [self._table(part, name) for _, part in self._parts()]
-        return pa.concat_tables([tables.schema(name).empty_table(), *found])
+        tables_of_parts = [self._table(part, name) for _, part in self._parts()]
+        return pa.concat_tables([tables.schema(name).empty_table(), *tables_of_parts])
 
     def counts(self) -> Iterator[int]:
         """The number of results of each run."""
@@ -201,9 +203,11 @@ class Store(HeadProperties):
             StoreError: the tables contradict each other.
         """
         for _, part in self._parts():
-            some = {name: self._table(part, name, agreement.COLUMNS[name]) for name in TABLES}
+            tables_of_part = {
+                name: self._table(part, name, agreement.COLUMNS[name]) for name in TABLES
+            }
             try:
-                agreement.check(some)
+                agreement.check(tables_of_part)
             except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
 
@@ -222,9 +226,9 @@ class Store(HeadProperties):
             results = [each for _, each in self.details(range(start, start + part.results))]
             expected = tables.to_tables(results, self.manifest.fretc)
             for name in TABLES:
-                found = self._table(part, name)
-                for column in found.column_names:
-                    if not found[column].equals(expected[name][column]):
+                stored = self._table(part, name)
+                for column in stored.column_names:
+                    if not stored[column].equals(expected[name][column]):
                         what = f"`{column}` of `{name}` does not match the results"
                         raise self._error(f"cannot be read: {what}")
             yield from results

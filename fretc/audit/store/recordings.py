@@ -186,15 +186,15 @@ def _described(recording: Recording) -> tuple[dict[str, Any], list[Array]]:
     places: dict[bytes, int] = {}
 
     def kept(samples: Mapping[str, Samples]) -> dict[str, Any]:
-        found = {}
+        description = {}
         for name, each in samples.items():
             times = each.times.tobytes()
             if times not in places:
                 places[times] = len(arrays)
                 arrays.append(each.times)
-            found[name] = [places[times], len(arrays), str(each.scale), each.words]
+            description[name] = [places[times], len(arrays), str(each.scale), each.words]
             arrays.append(each.values)
-        return found
+        return description
 
     late = {}
     for topic, each in recording.late.items():

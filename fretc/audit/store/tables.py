@@ -308,11 +308,11 @@ def _held(tables: Source, rows: Sequence[int]) -> list[Result]:
         {**flat, **nested, "hashes": hashes, "violations": violations, "health": _NO_HEALTH}
         for flat, nested, hashes, violations in parts
     ]
-    found = decoded(records, list[Result])
+    results = decoded(records, list[Result])
     bare = {row: {**of_run, _COURSE: UNSET} for row, of_run in shared.items()}
     return [
         replace(each, **(shared if is_first else bare)[n])
-        for each, n, is_first in zip(found, run_rows, firsts, strict=True)
+        for each, n, is_first in zip(results, run_rows, firsts, strict=True)
     ]
 
 
@@ -358,19 +358,21 @@ def _of_runs(
 
     Plot data that its column cannot hold is in `exact`, with the first result of its run.
     """
-    known = sorted({row for row in run_rows if row is not None and 0 <= row < table.num_rows})
-    if len(known) != len({*run_rows}):
+    known_rows = sorted({row for row in run_rows if row is not None and 0 <= row < table.num_rows})
+    if len(known_rows) != len({*run_rows}):
         raise SchemaError("`results` names a row that `runs` does not have")
-    some = _taken(table, known)
-    parts = [*zip(_objects(some, _HEALTH), _objects(some, _OF_RUN), strict=True)]
-    for row, (_, more) in zip(known, parts, strict=True):
+    run_table = _taken(table, known_rows)
+    parts = [*zip(_objects(run_table, _HEALTH), _objects(run_table, _OF_RUN), strict=True)]
+    for row, (_, more) in zip(known_rows, parts, strict=True):
         if row not in begun:
             more.pop(_COURSE, None)
-    found = decoded([{**_BLANK, "health": health, **more} for health, more in parts], list[Result])
+    results = decoded(
+        [{**_BLANK, "health": health, **more} for health, more in parts], list[Result]
+    )
     names = ("health", *(field.attribute for field in _OF_RUN))
     return {
         row: {name: getattr(one, name) for name in names}
-        for row, one in zip(known, found, strict=True)
+        for row, one in zip(known_rows, results, strict=True)
     }
 
 
@@ -379,9 +381,9 @@ def _violations(tables: Source, rows: Sequence[int]) -> list[list[Any]]:
     table = tables[VIOLATIONS]
     places = _chosen(table, "result_row", rows, tables[RESULTS].num_rows)
     windows = dict(_windows(tables, places))
-    some = _taken(table, places)
+    chosen = _taken(table, places)
     of_row: dict[int, list[Any]] = {row: [] for row in rows}
-    parts = zip(places, some["result_row"].to_pylist(), _objects(some, _VIOLATION), strict=True)
+    parts = zip(places, chosen["result_row"].to_pylist(), _objects(chosen, _VIOLATION), strict=True)
     for place, row, violation in parts:
         of_row[row].append({**violation, "window": windows.get(place)})
     return [of_row[row] for row in rows]
@@ -391,8 +393,8 @@ def _windows(tables: Source, rows: Sequence[int]) -> Iterator[tuple[int, Any]]:
     """The samples around each of these rows of violations."""
     table = tables[SAMPLES]
     places = _chosen(table, "violation_row", rows, tables[VIOLATIONS].num_rows)
-    some = _taken(table, places)
-    return zip(some["violation_row"].to_pylist(), _objects(some, _WINDOW), strict=True)
+    chosen = _taken(table, places)
+    return zip(chosen["violation_row"].to_pylist(), _objects(chosen, _WINDOW), strict=True)
 
 
 def _chosen(table: TableRows, key: str, rows: Sequence[int], count: int) -> list[int]:
@@ -403,8 +405,8 @@ def _chosen(table: TableRows, key: str, rows: Sequence[int], count: int) -> list
     keys = column.to_numpy()
     if len(keys) and (keys[0] < 0 or keys[-1] >= count or (np.diff(keys) < 0).any()):
         raise SchemaError(f"`{key}` does not increase within its table")
-    found: list[int] = np.flatnonzero(np.isin(keys, np.asarray(rows, np.int64))).tolist()
-    return found
+    matching_rows: list[int] = np.flatnonzero(np.isin(keys, np.asarray(rows, np.int64))).tolist()
+    return matching_rows
 
 
 # Summaries ---------------------------------------------------------------------------------------
@@ -418,17 +420,17 @@ def briefs(table: pa.Table) -> list[ResultSummary]:
     """
     texts = table[EXACT].to_pylist()
     held = [n for n, text in enumerate(texts) if text is None]
-    some = table if len(held) == len(texts) else _taken(table, held)
+    readable = table if len(held) == len(texts) else _taken(table, held)
     flat = [each for each in (*_MAIN, *_COUNTS) if each.name != "clock"]
-    prints = _objects(some, _HASHES, _HASH)
-    rows = zip(_objects(some, flat), prints, strict=True)
-    found = decoded(
+    prints = _objects(readable, _HASHES, _HASH)
+    rows = zip(_objects(readable, flat), prints, strict=True)
+    summaries = decoded(
         [{**row, "trials": row.get("trials"), "fingerprints": p} for row, p in rows],
         list[ResultSummary],
     )
-    if not {each.verdict for each in found} <= {*VERDICTS}:
+    if not {each.verdict for each in summaries} <= {*VERDICTS}:
         raise SchemaError("`results` has an unknown verdict")
-    whole = dict(zip(held, found, strict=True))
+    whole = dict(zip(held, summaries, strict=True))
     return [
         whole[n] if text is None else brief(decoded(parsed(text), Result))
         for n, text in enumerate(texts)
@@ -443,12 +445,12 @@ def facts(table: pa.Table) -> list[RunFacts]:
     """
     texts = table[EXACT].to_pylist()
     held = [n for n, text in enumerate(texts) if text is None]
-    some = _taken(table, held)
+    readable = _taken(table, held)
     labels = tuple(field for field in _OF_RUN if field.name == "labels")
-    rows = zip(*(_objects(some, fields) for fields in (_FACTS, _HEALTH, labels)), strict=True)
+    rows = zip(*(_objects(readable, fields) for fields in (_FACTS, _HEALTH, labels)), strict=True)
     records = [{**facts, "health": health, **labels} for facts, health, labels in rows]
-    found = decoded(records, list[RunFacts])
-    whole = dict(zip(held, found, strict=True))
+    facts_of_runs = decoded(records, list[RunFacts])
+    whole = dict(zip(held, facts_of_runs, strict=True))
     return [
         whole[n] if text is None else decoded(parsed(text), RunFacts)
         for n, text in enumerate(texts)
@@ -520,14 +522,14 @@ def tallies(tables: Tables) -> list[dict[str, Tally]]:
         SchemaError: the tables cannot be read.
     """
     (column,) = (field.column for field in _NESTED if field.name == "propositions")
-    found: list[dict[str, Tally]] = [{} for _ in range(len(tables[RUNS]))]
+    tallies_of_runs: list[dict[str, Tally]] = [{} for _ in range(len(tables[RUNS]))]
     rows = tables[RESULTS]["run_row"].to_pylist()
     values = column.values(_whole(tables[EVENTS], "propositions"))
-    known: dict[tuple[int, ...], Tally] = {}
+    tally_of_numbers: dict[tuple[int, ...], Tally] = {}
     for row, propositions in zip(rows, values, strict=True):
         for name, counts in propositions.items():
             numbers = tuple(counts.values())
-            if numbers not in known:
-                known[numbers] = decoded(counts, Tally)
-            found[row][name] = known[numbers]
-    return found
+            if numbers not in tally_of_numbers:
+                tally_of_numbers[numbers] = decoded(counts, Tally)
+            tallies_of_runs[row][name] = tally_of_numbers[numbers]
+    return tallies_of_runs

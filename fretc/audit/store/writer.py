@@ -40,18 +40,18 @@ def write_part(folder: Path, tables: Tables) -> Part | Diagnostic:
     Returns:
         What the manifest says of them; or why they cannot be written.
     """
-    made = {name: encoded(table) for name, table in tables.items()}
+    encoded_tables = {name: encoded(table) for name, table in tables.items()}
     wrong = write(
         {
             folder / place(name, file): data
-            for name, (data, file) in made.items()
+            for name, (data, file) in encoded_tables.items()
             if not _is_there(folder / place(name, file), file)
         }
     )
     if wrong is not None:
         return wrong
-    known = {name: file for name, (_, file) in made.items()}
-    return Part(known[RUNS].rows, known[RESULTS].rows, known)
+    files_of_tables = {name: file for name, (_, file) in encoded_tables.items()}
+    return Part(files_of_tables[RUNS].rows, files_of_tables[RESULTS].rows, files_of_tables)
 
 
 def _is_there(path: Path, file: Table) -> bool:
@@ -70,15 +70,15 @@ def write_register(folder: Path, entries: Sequence[Entry]) -> Table | Diagnostic
 
 def write_manifest(folder: Path, manifest: Manifest, name: str = FILE) -> str | Diagnostic:
     """Write a manifest; gives its SHA-256."""
-    made = text(manifest)
-    return write({folder / name: made}) or sha256(made)
+    content = text(manifest)
+    return write({folder / name: content}) or sha256(content)
 
 
 def files(folder: Path) -> set[Path]:
     """All table files in a folder, also those that no manifest lists."""
     own = (folder / table for table in (*TABLES, REGISTER) if not (folder / table).is_symlink())
-    found = (path for table in own for path in table.glob("*"))
-    return {path for path in found if _OURS.fullmatch(path.name)}
+    paths = (path for table in own for path in table.glob("*"))
+    return {path for path in paths if _OURS.fullmatch(path.name)}
 
 
 def remove_others(folder: Path, *manifests: Manifest, kept: Collection[Path] = frozenset()) -> None:

@@ -110,10 +110,10 @@ def _identity(stream: BufferedReader, index: Index, crcs: Mapping[int, int]) -> 
     """
     digest = hashlib.sha256()
     for chunk in index.chunks:
-        known = crcs.get(chunk.chunk_start_offset)
-        if known is None:
+        stated_crc = crcs.get(chunk.chunk_start_offset)
+        if stated_crc is None:
             stream.seek(chunk.chunk_start_offset + HEAD.size + _CHUNK_CRC)
-        digest.update(stream.read(4) if known is None else known.to_bytes(4, "little"))
+        digest.update(stream.read(4) if stated_crc is None else stated_crc.to_bytes(4, "little"))
     stream.seek(index.data_end)  # the CRC of the data, if one is stated, is what follows first
     while block := stream.read(BLOCK):
         digest.update(block)

@@ -81,14 +81,14 @@ def indexed(
         or statistics.message_end_time != max(chunk.message_end_time for chunk in chunks)
     ):
         return None
-    found: list[Described] = []
+    metadata: list[Described] = []
     try:
-        end = _between(stream, summary, chunks, wanted, found)
+        end = _between(stream, summary, chunks, wanted, metadata)
     except BrokenError:
         return None
     if end is None:
         return None
-    return Index(chunks, streams, statistics, *end, summary.end, together(found))
+    return Index(chunks, streams, statistics, *end, summary.end, together(metadata))
 
 
 def _is_usual(chunk: ChunkIndex) -> bool:

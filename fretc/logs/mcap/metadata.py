@@ -30,12 +30,12 @@ def described(content: bytes, wanted: Collection[str]) -> Described:
 
 def of_record(name: str, values: Mapping[str, str], wanted: Collection[str]) -> Described:
     """The wanted values of a parsed record."""
-    found = {
+    wanted_values = {
         text: values[key]
         for text in wanted
         if text.startswith(f"{name}.") and (key := text[len(name) + 1 :]) in values
     }
-    return {text: (value,) for text, value in found.items()}
+    return {text: (value,) for text, value in wanted_values.items()}
 
 
 def together(parts: Sequence[Described]) -> Described:

@@ -244,8 +244,8 @@ class Walk:
                 self._declare(parse(Channel.read, content), at)
             case _ if opcode in _PASSED_BY:
                 parse(_PASSED_BY[opcode], content)
-                if opcode == Opcode.METADATA and (some := described(content, self._wanted)):
-                    self._found = [together([*self._found, some])]
+                if opcode == Opcode.METADATA and (metadata := described(content, self._wanted)):
+                    self._found = [together([*self._found, metadata])]
             case _:
                 raise BrokenError("the data section contains a record of the summary")
 

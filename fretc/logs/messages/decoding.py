@@ -179,8 +179,8 @@ def leaves(stream: Stream, payloads: Sequence[bytes] = ()) -> Leaves | None:
     layout = shape(stream)
     if layout is None:
         return {}
-    found = dict(_number(stream, layout, where) for where in layout.numbers())
-    return found | {".".join(where): Leaf(Kind.TEXT) for where in layout.texts()}
+    numbers = dict(_number(stream, layout, where) for where in layout.numbers())
+    return numbers | {".".join(where): Leaf(Kind.TEXT) for where in layout.texts()}
 
 
 def _number(stream: Stream, layout: Shape, where: Where) -> tuple[str, Leaf]:
@@ -197,12 +197,12 @@ def _named(stream: Stream, layout: Shape, where: Where) -> Mapping[str, int]:
 
     Their names begin with the name of the field; or the field is the only whole number of its type.
     """
-    known = constants(stream, where) or {}
+    named_constants = constants(stream, where) or {}
     begins = f"{where[-1].upper()}_"
-    own = {name: number for name, number in known.items() if name.startswith(begins)}
+    own = {name: number for name, number in named_constants.items() if name.startswith(begins)}
     holder = layout.holder(where)
     whole = [field for field in layout.types[holder] if "int" in field.type] if holder else []
-    return own or (known if len(whole) == 1 else {})
+    return own or (named_constants if len(whole) == 1 else {})
 
 
 @lru_cache(_MOST)

@@ -120,11 +120,11 @@ def constants(name: str, definition: str) -> Mapping[str, Mapping[str, int]]:
     Raises:
         DefinitionError: the definition cannot be read.
     """
-    found: dict[str, dict[str, int]] = {}
+    constants_of_types: dict[str, dict[str, int]] = {}
     for full, lines in _sections(short(name), definition):
         matches = filter(None, map(_CONSTANT.fullmatch, lines))
-        found[full] = {match["name"]: _whole(match["value"]) for match in matches}
-    return found
+        constants_of_types[full] = {match["name"]: _whole(match["value"]) for match in matches}
+    return constants_of_types
 
 
 def _whole(text: str) -> int:

@@ -283,10 +283,10 @@ def _same(payloads: Payloads, rows: Places, layout: Layout) -> NDArray[np.bool_]
     same: NDArray[np.bool_] = payloads.sizes[rows] == layout.size
     if len(layout.marks) > _MOST_CHECKS:
         return np.zeros(len(rows), bool)
-    some = rows[same]
-    agree = np.ones(len(some), bool)
+    matching = rows[same]
+    agree = np.ones(len(matching), bool)
     for at, dtype, value in layout.marks:
-        agree &= payloads.gathered(some, at, dtype, None) == value
+        agree &= payloads.gathered(matching, at, dtype, None) == value
     same[same] = agree
     return same
 

@@ -46,8 +46,8 @@ class Message(Sparse):
 
     def constant(self, name: str) -> int | None:
         """A whole constant of the message's type, as in ROS."""
-        found = getattr(type(self._message), name, None)
-        return found if isinstance(found, int) else None
+        value = getattr(type(self._message), name, None)
+        return value if isinstance(value, int) else None
 
     def field(self, name: str) -> object:
         """The value of a field; an `array.array` becomes an array of NumPy."""

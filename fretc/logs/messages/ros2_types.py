@@ -22,10 +22,10 @@ def definitions(name: str) -> Mapping[str, str]:
         ModuleNotFoundError: rosbags is not installed.
     """
     stores = [store for store in _stores() if name in store.fielddefs]
-    found = {store.hash_rihs01(name): store for store in stores}
+    store_of_hash = {store.hash_rihs01(name): store for store in stores}
     return {
         digest: str(store.generate_msgdef(name, ros_version=2)[0])
-        for digest, store in found.items()
+        for digest, store in store_of_hash.items()
     }
 
 
@@ -35,8 +35,8 @@ def standard(name: str) -> str | None:
     Raises:
         ModuleNotFoundError: rosbags is not installed.
     """
-    found = definitions(name)
-    return next(iter(found.values())) if len(found) == 1 else None
+    texts = definitions(name)
+    return next(iter(texts.values())) if len(texts) == 1 else None
 
 
 def latest() -> Any:

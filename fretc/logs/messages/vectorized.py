@@ -58,8 +58,8 @@ def samples(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers
         plain = _plain(signal, values, sibling_values, result)
         if not plain.all():
             rows = ~plain
-            some = {name: numbers[rows] for name, numbers in sibling_values.items()}
-            result[rows] = _samples(signal, values[rows], some)
+            siblings_of_rows = {name: numbers[rows] for name, numbers in sibling_values.items()}
+            result[rows] = _samples(signal, values[rows], siblings_of_rows)
     return result
 
 
@@ -99,10 +99,10 @@ def _ends(reduce: Reduce, values: Values, limits: _Limits) -> tuple[Values, Trut
     measured = limits.hold(ends[:, None])[:, 0]
     rows = np.flatnonzero(~measured)
     if len(rows):
-        some = values[rows]
-        accepted = limits.hold(some, rows)
-        np.copyto(some, np.inf if least else -np.inf, where=~accepted)
-        ends[rows] = some.min(axis=1) if least else some.max(axis=1)
+        values_of_rows = values[rows]
+        accepted = limits.hold(values_of_rows, rows)
+        np.copyto(values_of_rows, np.inf if least else -np.inf, where=~accepted)
+        ends[rows] = values_of_rows.min(axis=1) if least else values_of_rows.max(axis=1)
         measured[rows] = accepted.any(axis=1)
     return ends, measured
 

@@ -96,11 +96,11 @@ def enum_indices(signal: Signal, numbers: Values) -> tuple[Numbers, NDArray[np.b
         numbers: the values of the field, shape (n,).
     """
     double = numbers.astype(np.float64)
-    known = np.array(signal.numbers, np.float64)
-    order = np.argsort(known)
-    nearest = order[np.searchsorted(known[order], double).clip(max=len(known) - 1)]
-    found = known[nearest] == double
-    return np.where(found, nearest, UNKNOWN), ~found & ~np.isnan(double)
+    enum_numbers = np.array(signal.numbers, np.float64)
+    order = np.argsort(enum_numbers)
+    nearest = order[np.searchsorted(enum_numbers[order], double).clip(max=len(enum_numbers) - 1)]
+    is_value = enum_numbers[nearest] == double
+    return np.where(is_value, nearest, UNKNOWN), ~is_value & ~np.isnan(double)
 
 
 def shown(value: object) -> str:

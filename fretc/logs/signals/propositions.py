@@ -72,9 +72,9 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     assert not ticks_back(proposition.expression), "it has a truth at ticks only"
     signals = {name: declarations.signals[name] for name in proposition.signals}
     key = (id(proposition), *_read(signals))
-    known: tuple[Proposition, Steps] | None = recording.derived.get(key)
-    if known is not None:
-        return known[1]
+    cached: tuple[Proposition, Steps] | None = recording.derived.get(key)
+    if cached is not None:
+        return cached[1]
     steps = _steps(proposition.expression, history_of(signals, recording))
     last = max(recording.end_ns, recording.start_ns)
     count = int(np.searchsorted(steps.times, last, "right"))

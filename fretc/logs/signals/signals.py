@@ -335,8 +335,8 @@ def _reduced(reduce: Reduce | None, readings: Values) -> float:
 def mean(readings: Values) -> float:
     """The mean of at least one number; finite for finite numbers, even if their sum is not."""
     with np.errstate(over="ignore", invalid="ignore"):
-        found = float(readings.mean())
-        return found if isfinite(found) else float((readings / len(readings)).sum())
+        average = float(readings.mean())
+        return average if isfinite(average) else float((readings / len(readings)).sum())
 
 
 def _python(value: np.floating[Any]) -> float:

@@ -46,11 +46,11 @@ def forward_fill(times: Times, missing: NDArray[np.bool_]) -> Times:
 
     Missing times before the first known time get that one. If all are missing, they are unchanged.
     """
-    known = np.flatnonzero(~missing)
-    if not len(known):
+    known_rows = np.flatnonzero(~missing)
+    if not len(known_rows):
         return times
-    last_known = np.searchsorted(known, np.arange(len(times)), "right") - 1
-    result: Times = times[known[last_known.clip(0)]]
+    last_known = np.searchsorted(known_rows, np.arange(len(times)), "right") - 1
+    result: Times = times[known_rows[last_known.clip(0)]]
     return result
 
 

@@ -19,11 +19,11 @@ def chosen(words: Sequence[str], source: Source) -> Sequence[Publisher] | Diagno
     publishers: list[Publisher] = []
     with ExitStack() as stack:
         for word in dict.fromkeys(words):
-            found = _publisher(word, source)
-            if isinstance(found, Diagnostic):
-                return found
-            publishers.append(found)
-            stack.callback(found.close)
+            publisher = _publisher(word, source)
+            if isinstance(publisher, Diagnostic):
+                return publisher
+            publishers.append(publisher)
+            stack.callback(publisher.close)
         stack.pop_all()
     return publishers
 

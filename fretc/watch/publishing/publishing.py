@@ -83,7 +83,7 @@ class Publishing:
     def _publish(self, states: tuple[State, ...], watch: Watch) -> None:
         earlier = [run.verdicts for run in watch.runs]
         violated = {id for run in earlier for id, verdict in run.items() if verdict == "violated"}
-        known = statuses(watch.session, states, violated)
+        current = statuses(watch.session, states, violated)
         for publisher in self._publishers:
-            publisher.publish(states, known, watch.session.received)
+            publisher.publish(states, current, watch.session.received)
         self._last, self._states = time.monotonic(), states

@@ -203,17 +203,17 @@ class _Listening:
 
     def _matched(self) -> list[int]:
         """Publishers that match their readers, or never will, for example because of their type."""
-        found = []
+        handles = []
         for handle, since in self._unmatched.items():
             peer = self._peers.get(handle)
             reader = self._kinds[peer.topic, peer.offer].reader if peer is not None else None
             if peer is None or reader is None or reader.matches(handle):
-                found.append(handle)
+                handles.append(handle)
             elif self._mailbox.now - since > _SOON:
-                found.append(handle)
+                handles.append(handle)
                 why = f"its `{peer.offer.type}` has other fields or another encoding"
                 self._tell_once(peer.topic, _not_read(peer.topic, why))
-        return found
+        return handles
 
     def _tell_once(self, topic: str, problem: Diagnostic) -> None:
         if (problem.code, topic) not in self._known:
@@ -250,7 +250,7 @@ def _array(statuses: Sequence[Status], now: int) -> bytes:
     def text(said: str) -> str:
         return said.encode(errors="replace").decode()
 
-    found = [
+    statuses_of_array = [
         own["DiagnosticStatus"](
             level=status.level,
             name=text(status.name),
@@ -262,20 +262,22 @@ def _array(statuses: Sequence[Status], now: int) -> bytes:
     ]
     seconds, rest = divmod(now, 10**9)
     header = own["Header"](stamp=own["Time"](sec=seconds, nanosec=rest), frame_id="")
-    return bytes(store.serialize_cdr(own["DiagnosticArray"](header=header, status=found), _ARRAY))
+    return bytes(
+        store.serialize_cdr(own["DiagnosticArray"](header=header, status=statuses_of_array), _ARRAY)
+    )
 
 
 def _definition(offer: Offer) -> str | None:
     """The definition with the publisher's hash; without a hash the only one, or None."""
-    found = ros2_types.definitions(offer.type)
+    definitions = ros2_types.definitions(offer.type)
     if offer.hash is not None:
-        return found.get(offer.hash)
-    return next(iter(found.values())) if len(found) == 1 else None
+        return definitions.get(offer.hash)
+    return next(iter(definitions.values())) if len(definitions) == 1 else None
 
 
 def _no_definition(topic: str, offer: Offer) -> Diagnostic:
-    found = ros2_types.definitions(offer.type)
-    if not found:
+    definitions = ros2_types.definitions(offer.type)
+    if not definitions:
         why = "is not a type of ROS 2 itself, and DDS does not send definitions"
     elif offer.hash is None:
         why = "differs between releases of ROS 2, and its publisher sends no type hash"

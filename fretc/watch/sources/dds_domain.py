@@ -147,16 +147,16 @@ class Domain:
         """Publishers that appeared, changed, or disappeared since the last call."""
         for _ in range(_AT_ONCE):
             try:
-                found = self._news.take()
+                samples = self._news.take()
             except Exception:  # names of others may be invalid text; each is separate
                 continue
-            if not found:
+            if not samples:
                 return
-            handle, id = found[0].sample_info.instance_handle, str(found[0].key)
-            if not found[0].sample_info.valid_data:
+            handle, id = samples[0].sample_info.instance_handle, str(samples[0].key)
+            if not samples[0].sample_info.valid_data:
                 yield Publisher(handle, id, "", None)
-            elif (topic := ros_topic(found[0].topic_name)) is not None:
-                yield Publisher(handle, id, topic, offered(found[0]))
+            elif (topic := ros_topic(samples[0].topic_name)) is not None:
+                yield Publisher(handle, id, topic, offered(samples[0]))
 
     def reader(self, topic: str, offer: Offer, definition: str | None) -> Reader:
         """A reader for messages of publishers with such an offer, and of others that match.
@@ -237,8 +237,8 @@ class Reader:
 
     def samples(self) -> Iterator[Sample]:
         """All messages since the last call."""
-        while found := self.entity.take(N=_AT_ONCE):
-            for each in found:
+        while samples_of_entity := self.entity.take(N=_AT_ONCE):
+            for each in samples_of_entity:
                 info = each.sample_info
                 if info.valid_data:
                     sent = info.source_timestamp

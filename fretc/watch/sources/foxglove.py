@@ -113,12 +113,12 @@ class _Connection:
         """
         ids = {int(word) for word in re.findall(r"\d{1,10}", text)} & self.of_channel.keys()
         new = {id for id in ids if self.of_channel[id] not in self.heard}
-        found = {id for id in new if self.tries.get(id, 0) < _MOST_TRIES}
-        for id in found - self.again.keys():
+        unknown_ids = {id for id in new if self.tries.get(id, 0) < _MOST_TRIES}
+        for id in unknown_ids - self.again.keys():
             pause = _AGAIN * 2 ** self.tries.get(id, 0)
             self.tries[id] = self.tries.get(id, 0) + 1
             self.again[id] = time.monotonic() + pause
-        return bool(found)
+        return bool(unknown_ids)
 
     @property
     def subscribed(self) -> set[str]:
@@ -202,9 +202,9 @@ class Foxglove(Middleware):
                 message = connection.socket.recv(timeout=_PERIOD)
             except TimeoutError:
                 continue
-            found = read(message, connection.topics)
-            if found is not None:
-                self._take(connection, found)
+            item = read(message, connection.topics)
+            if item is not None:
+                self._take(connection, item)
 
     def _look(self, connection: _Connection) -> None:
         """Check that the server answers, and still offers all its earlier topics."""

@@ -100,15 +100,15 @@ class Log:
         while True:
             # a stream would give again what it has in its buffer, whatever the file has now
             file, size = stream.fileno(), len(self._before)
-            known = os.pread(file, size, at - size)
+            bytes_before = os.pread(file, size, at - size)
             file_size = os.fstat(file).st_size
             is_there = file_size >= at + length
             data = os.pread(file, length, at) if is_there else b""
-            if known == self._before and len(data) == length:
-                self._before = (known + data[-_KNOWN:])[-_KNOWN:]
+            if bytes_before == self._before and len(data) == length:
+                self._before = (bytes_before + data[-_KNOWN:])[-_KNOWN:]
                 return data
             changed = self._changed(stream, at)
-            if changed is None and len(known) == size and known != self._before:
+            if changed is None and len(bytes_before) == size and bytes_before != self._before:
                 changed = "another log was written over it"
             if changed is not None:
                 yield Problem(_broken(at, changed, place))
@@ -151,17 +151,17 @@ class Log:
             yield Missed(self._latest, self._latest, 1)
 
     def _chunk(self, chunk: Chunk, at: int, place: Span) -> Iterator[Arrival | Event]:
-        found: list[Arrival] = []
+        arrivals: list[Arrival] = []
         try:
             data = unpacked(chunk)
             for opcode, start, end in frames(data):
                 arrival = self._single(opcode, data[start:end])
                 if arrival is not None:
-                    found.append(arrival)
+                    arrivals.append(arrival)
         except BrokenError as error:
             yield Problem(_broken(at, str(error), place))
             yield Missed(chunk.message_start_time, chunk.message_end_time, 1)
-        yield from sorted(found, key=_log_time)
+        yield from sorted(arrivals, key=_log_time)
 
     def _single(self, opcode: int, content: bytes) -> Arrival | None:
         match opcode:
