@@ -22,8 +22,8 @@ from compiler.project.paths import requirement_files, sibling_path
 from fretc.audit import dask_executor
 from fretc.audit.evidence.schema import Result
 from fretc.audit.into_store import StoredAudit, StoreWriter
-from fretc.audit.many_logs import Engine, audited, local_executor
-from fretc.audit.outputs.summary import summarized
+from fretc.audit.many_logs import Engine, audit_log, local_executor
+from fretc.audit.outputs.summary import summarize
 from fretc.audit.outputs.table import parquet, read, rows
 from fretc.audit.plan import Plan, planned
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -92,7 +92,7 @@ def table(results: Sequence[Result], path: Path) -> None:
     start = time.perf_counter()
     known = read([str(path)])
     assert not isinstance(known, Diagnostic), known.message
-    summary = summarized(known)
+    summary = summarize(known)
     taken = time.perf_counter() - start
     assert summary.whole["runs"] == RUNS
     size = path.stat().st_size / 1e6
@@ -120,7 +120,7 @@ def main() -> None:
             again, new = timed(judged, logs, engine, place)
             floor = listed(logs)
             print(f"  {'again, unchanged':18} {again:6.2f} s, {new} read; listing {floor:.3f} s")
-        table(audited(judged, logs[0]).results, Path(folder) / "runs.parquet")
+        table(audit_log(judged, logs[0]).results, Path(folder) / "runs.parquet")
 
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ from fretc.audit.evidence.schema import SCHEMA, Document, Result
 from fretc.audit.store.manifest import SCHEMA as STORES
 from fretc.audit.store.manifest import Manifest, Part
 from fretc.audit.store.parts import parts as parts_of
-from fretc.audit.store.tables import tabled
+from fretc.audit.store.tables import to_tables
 from fretc.audit.store.writer import write_manifest, write_part
 from fretc.report.make import make
 
@@ -258,7 +258,7 @@ def written(folder: Path, requirements: int, runs: int, share: float, form: str)
     parts = []
     for some in parts_of([f"runs/{run:04}.mcap" for run in range(runs)]):
         of_part = [each for _ in some for each in decoded(next(of_runs), list[Result])]
-        part = write_part(folder / STORE, tabled(of_part, __version__))
+        part = write_part(folder / STORE, to_tables(of_part, __version__))
         assert isinstance(part, Part), part
         parts.append(part)
     document = decoded({**head(known), "results": []}, Document)

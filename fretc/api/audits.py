@@ -13,7 +13,7 @@ from fretc.audit.log_paths import logs as logs_of
 from fretc.audit.many_logs import Audit as Run
 from fretc.audit.many_logs import audit_logs as audited
 from fretc.audit.many_logs import local_executor
-from fretc.audit.outputs.totals import Marks
+from fretc.audit.outputs.totals import VerdictWords
 from fretc.audit.plan import Plan, planned
 from fretc.logs.signals.integrity import Integrity
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -75,7 +75,7 @@ def audit_logs(
 
 
 def _audit(plan: Plan, run: Run) -> Audit:
-    marks = Marks.of((each for _, each in run.source.briefs()), run.estimates)
+    marks = VerdictWords.of((each for _, each in run.source.briefs()), run.estimates)
     return Audit(
         run.results,
         run.estimates,

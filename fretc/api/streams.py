@@ -12,7 +12,7 @@ from fretc.api.refusal import Refusal, accepted, bounded
 from fretc.audit.plan import Plan, planned
 from fretc.logs.stream import Stream as Truths
 from fretc.logs.stream import Tick as Row
-from fretc.watch.judging import Judges
+from fretc.watch.requirement_monitors import RequirementMonitors
 from fretish.bindings.declarations import Signal
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from monitors.kernel.stepping import Standing
@@ -58,8 +58,8 @@ class Stream:
         """
         plan = _plan(project)
         self._plan, self._declared = plan, project.declarations
-        self._judges = Judges(plan, kept=1)
-        self._truths = Truths(plan.declarations, self._judges.propositions)
+        self._monitors = RequirementMonitors(plan, kept=1)
+        self._truths = Truths(plan.declarations, self._monitors.propositions)
 
     def add(self, signal: str, time_ns: int, value: object) -> None:
         """One sample of a signal.
@@ -122,7 +122,7 @@ class Stream:
         """
         last = accepted(self._truths.end())
         ticks = tuple(map(self._step, last.ticks))
-        return End(ticks, self._judges.verdicts(last.cut, intact=True))
+        return End(ticks, self._monitors.verdicts(last.cut, intact=True))
 
     def _signal(self, name: str) -> Signal | None:
         """The signal, if a requirement reads it."""
@@ -132,8 +132,8 @@ class Stream:
         return self._plan.declarations.signals.get(name)
 
     def _step(self, row: Row) -> Tick:
-        self._judges.step(row)
-        return Tick(self._judges.count - 1, row.time, row.truth, self._judges.standings())
+        self._monitors.step(row)
+        return Tick(self._monitors.count - 1, row.time, row.truth, self._monitors.standings())
 
 
 def _plan(project: Project) -> Plan:

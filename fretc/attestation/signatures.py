@@ -27,7 +27,7 @@ from fretish.reading.limits import with_budget
 if TYPE_CHECKING:
     from fretc.attestation.keys import DsseEnvelope
     from fretc.attestation.signers import Signer, Signers
-    from fretc.audit.evidence.briefs import EvidenceSource
+    from fretc.audit.evidence.result_summaries import EvidenceSource
 
 SUFFIX = ".intoto.jsonl"
 SIGNERS = "allowed_signers"

@@ -22,7 +22,7 @@ from compiler.files.shell_quoting import is_sha256
 from compiler.logic.claims import Proof
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.evidence.basis import KINDS
-from fretc.audit.evidence.briefs import Brief, EvidenceSource
+from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary
 from fretc.report.traceability.lock import Review
 from fretc.report.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
@@ -155,7 +155,7 @@ def evidence(file: EvidenceSource, proofs: Proofs | None) -> Statement:
     )
 
 
-def _requirements(results: Sequence[Brief]) -> list[dict[str, Any]]:
+def _requirements(results: Sequence[ResultSummary]) -> list[dict[str, Any]]:
     """Of each requirement what its verdicts rest on, and the verdicts."""
     verdicts_of: dict[str, dict[str, Any]] = {}
     for result in results:

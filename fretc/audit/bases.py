@@ -1,4 +1,4 @@
-"""The basis of the verdict on each requirement of a project."""
+"""The verdict inputs of each requirement of a project, as fingerprints."""
 
 from __future__ import annotations
 
@@ -32,19 +32,23 @@ def bases(
     topics: frozenset[str] | None = None,
     monitors: Mapping[int, str] = MappingProxyType({}),
 ) -> Mapping[int, Basis]:
-    """What a verdict on each requirement rests on, by its `id()`: those in force and all others.
+    """The verdict inputs of each requirement, retired ones included, by the `id()` of its entry.
 
     Args:
         project: with or without errors.
-        topics: its `audited_topics`, where they are known.
-        monitors: the SHA-256 of those that are known, by the same `id()`.
+        topics: its `audited_topics`, if they are known.
+        monitors: the SHA-256 of the monitors that are known, by the same `id()`.
     """
     declarations = project.declarations
     topics = audited_topics(project) if topics is None else topics
     requirements = {id(requirement.entry): requirement for requirement in project.formalized}
     return {
-        id(each): basis(
-            each, requirements.get(id(each)), declarations, topics, monitors.get(id(each))
+        id(requirement): basis(
+            requirement,
+            requirements.get(id(requirement)),
+            declarations,
+            topics,
+            monitors.get(id(requirement)),
         )
-        for each in project.requirements
+        for requirement in project.requirements
     }

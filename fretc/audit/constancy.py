@@ -1,4 +1,4 @@
-"""Propositions that never change in the logs: what they are bound to may be wrong."""
+"""Propositions that never change in the logs: their bindings may be wrong."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ def totals(runs: Iterable[Mapping[str, Tally]]) -> dict[str, Total]:
 
 def _sum(tallies: Sequence[Tally]) -> Tally:
     return Tally(
-        sum(each.true for each in tallies),
-        sum(each.false for each in tallies),
-        sum(each.unknown for each in tallies),
-        sum(each.changes for each in tallies),
+        sum(tally.true for tally in tallies),
+        sum(tally.false for tally in tallies),
+        sum(tally.unknown for tally in tallies),
+        sum(tally.changes for tally in tallies),
     )
 
 
 def tallies_of(results: Iterable[Result]) -> dict[str, Tally]:
-    """The tally of each proposition in one run, from all its results."""
+    """The tally of each proposition in one run, from all results of the run."""
     return {name: counts for result in results for name, counts in result.propositions.items()}
 
 
@@ -54,10 +54,10 @@ def never_changed(
     """F314 for each proposition that changed in none of the runs.
 
     Args:
-        of_all: of each declared proposition that of all runs.
-        declarations: where it points to.
-        diagnostics: of the runs. Where one is an error in the bindings (no such topic, no such
-            field), propositions that were unknown throughout get no other diagnostic.
+        of_all: the total of each declared proposition over all runs.
+        declarations: the source of the places in the diagnostics.
+        diagnostics: the diagnostics of the runs. If one is an error in the bindings (a missing
+            topic or field), propositions that were unknown throughout get no second diagnostic.
     """
     source = declarations.source.name
     explained = any(d.is_error and d.span and d.span.source.name == source for d in diagnostics)

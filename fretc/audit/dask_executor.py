@@ -1,4 +1,4 @@
-"""Audit on many machines, by Dask: each log is a task, none is lost and none is counted twice.
+"""Audit on many machines with Dask: each log is a task, and its result counts exactly once.
 
 The only module that imports dask. The workers need the fretc that asks them, exactly, and
 must find the logs under the same names.
@@ -19,7 +19,14 @@ from urllib.parse import urlsplit
 
 from compiler.files.build_id import build_id
 from compiler.files.processes import isolate_imports
-from fretc.audit.many_logs import EVALUATIONS, Engine, LogAudits, LogResult, audited, given_up
+from fretc.audit.many_logs import (
+    EVALUATIONS,
+    Engine,
+    LogAudits,
+    LogResult,
+    audit_log,
+    results_of_killed_process,
+)
 from fretc.audit.plan import Plan, packed, unpacked
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import unless_installed
@@ -29,21 +36,22 @@ if TYPE_CHECKING:
 
 SCHEME = "dask"
 PATIENCE = 10
-"""Seconds after which a scheduler, or a worker, that is not there is not waited for."""
+"""Seconds to wait for a scheduler or a worker."""
 
 
 def engine(name: str, jobs: int) -> Engine | Diagnostic:
-    """The engine of a name.
+    """The executor with a given name.
 
     Args:
-        name: `dask`: a cluster of this machine; `dask://HOST:PORT`: that of the scheduler there.
-        jobs: how many processes of this machine.
+        name: `dask`: a cluster of processes on this machine; `dask://HOST:PORT`: an existing
+            scheduler.
+        jobs: the number of processes on this machine.
     """
     place = urlsplit(name)
     if name != SCHEME and not (place.scheme == SCHEME and _is_address(place.netloc)):
         return _bad_engine(name)
     encrypts = ["cryptography"] if name == SCHEME else []
-    missing = unless_installed("a fleet needs", ["distributed", *encrypts], "fleet")
+    missing = unless_installed("the engine `dask` needs", ["distributed", *encrypts], "fleet")
     if missing is not None:
         return missing
     if name == SCHEME:
@@ -57,7 +65,7 @@ def _is_address(netloc: str) -> bool:
 
 
 def _audit(connected: Any, plan: Plan, logs: Sequence[str]) -> LogAudits:
-    """An engine, but for its first parameter: gives a context with a client."""
+    """Audit the tasks with a client of the given context."""
     if not logs:
         return
     try:
@@ -68,7 +76,7 @@ def _audit(connected: Any, plan: Plan, logs: Sequence[str]) -> LogAudits:
 
 
 class _FleetError(Exception):
-    """The fleet cannot do it."""
+    """The Dask cluster cannot audit."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
@@ -92,13 +100,13 @@ def _own_cluster(jobs: int) -> Iterator[Client]:
     isolate_imports()
     _be_quiet()
     with contextlib.ExitStack() as stack:
-        # One death may be chance; what has died twice is tried once more, alone.
+        # One death may be random; a log whose worker died twice is tried once more, alone.
         stack.enter_context(config.set({"distributed.scheduler.allowed-failures": 1, **_NO_PAGES}))
         with _deaf():
             cluster = LocalCluster(
                 n_workers=jobs,
                 threads_per_worker=1,
-                memory_limit=0,  # the machine decides, as it does without Dask
+                memory_limit=0,  # the machine sets the limit, as without Dask
                 dashboard_address="127.0.0.1:0",
                 silence_logs=logging.CRITICAL,
                 security=Security.temporary(),
@@ -117,14 +125,14 @@ _NO_PAGES: dict[str, list[str]] = {
 
 @contextlib.contextmanager
 def _cluster_at(address: str) -> Iterator[Client]:
-    """The cluster of a scheduler that is there already, with one worker at least."""
+    """The cluster of an existing scheduler with at least one worker."""
     from distributed import Client
 
     _be_quiet()
     try:
         client = Client(address, timeout=PATIENCE)
     except (OSError, ValueError) as error:
-        raise _FleetError(_unreachable(address, "no scheduler of Dask answers")) from error
+        raise _FleetError(_unreachable(address, "no Dask scheduler answers")) from error
     with client:
         try:
             client.wait_for_workers(1, timeout=PATIENCE)
@@ -134,7 +142,7 @@ def _cluster_at(address: str) -> Iterator[Client]:
 
 
 def _be_quiet() -> None:
-    """What Dask logs on its own behalf (a worker has died, a connection is closed) we tell."""
+    """Silence the log messages of Dask about dead workers and closed connections."""
     for name in ("distributed", "tornado", *logging.root.manager.loggerDict):
         if name.partition(".")[0] in ("distributed", "tornado"):
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
@@ -142,7 +150,7 @@ def _be_quiet() -> None:
 
 @contextlib.contextmanager
 def _deaf() -> Iterator[None]:
-    """Processes that begin in here hear no Ctrl-C: it goes to all, and the first one decides."""
+    """Ignore Ctrl-C in processes started within the context: the main process handles it."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -154,7 +162,7 @@ def _deaf() -> Iterator[None]:
 
 
 def _deaf_worker() -> WorkerPlugin:
-    """The same for workers that begin later, in place of one that died."""
+    """Ignore Ctrl-C in workers that start later, to replace one that died."""
     from distributed import WorkerPlugin
 
     class Deaf(WorkerPlugin):  # type: ignore[misc]
@@ -168,8 +176,8 @@ def _deaf_worker() -> WorkerPlugin:
 
 
 def _tasks(client: Client, plan: Plan, logs: Sequence[str]) -> LogAudits:
-    """Each log as a task; one whose workers died runs once more when nothing else does."""
-    # A task, not scattered data: Dask makes it anew when all who have it are dead.
+    """Run each log as a task; if its workers died, run it once more, alone."""
+    # A task, not scattered data: Dask computes it again when all workers that have it are dead.
     remote_plan = client.submit(bytes, packed(plan), key=f"fretc-plan-{secrets.token_hex(8)}")
     again: list[str] = []
     with contextlib.closing(_results(client, remote_plan, logs)) as done:
@@ -181,20 +189,24 @@ def _tasks(client: Client, plan: Plan, logs: Sequence[str]) -> LogAudits:
     for log in again:
         with contextlib.closing(_results(client, remote_plan, [log])) as done:
             for _, result in done:
-                yield log, result or given_up(plan, log, "all workers of Dask that tried it died")
+                yield (
+                    log,
+                    result
+                    or results_of_killed_process(plan, log, "all Dask workers that tried it died"),
+                )
 
 
 def _results(
     client: Client, plan: Future, logs: Sequence[str]
 ) -> Generator[tuple[str, LogResult | None], None, None]:
-    """Logs as they are done; None for one whose workers died.
+    """Logs as they are finished; None: the workers of the log died.
 
     Raises:
         _FleetError: the fleet is not able to.
     """
     from distributed import as_completed
 
-    batch = f"fretc-audit-{secrets.token_hex(8)}"  # results of another audit are not for us
+    batch = f"fretc-audit-{secrets.token_hex(8)}"  # not shared with another audit
     waiting = {
         client.submit(_work, plan, log, os.getcwd(), build_id(), key=f"{batch}-{number}"): log
         for number, log in enumerate(logs)
@@ -214,32 +226,34 @@ def _result(future: Future) -> LogResult | None:
         result = future.result()
         if isinstance(result, LogResult):
             return result
-        raise _FleetError(_other_edition(f"the worker {result} has another fretc than this one"))
+        raise _FleetError(_other_edition(f"the worker {result} has another version of fretc"))
     if future.status in ("lost", "pending"):  # its worker died before the result was fetched
         return None
     if future.status != "error":
-        raise _FleetError(_unreachable(future.client.scheduler_info()["address"], "it has gone"))
+        raise _FleetError(
+            _unreachable(future.client.scheduler_info()["address"], "the connection was lost")
+        )
     error = future.exception()
     if isinstance(error, KilledWorker):
         return None
     if isinstance(error, ImportError | AttributeError):
-        raise _FleetError(_other_edition(f"a worker has no fretc, or another one: {error}"))
+        raise _FleetError(_other_edition(f"a worker has no fretc, or another version: {error}"))
     assert error is not None
     raise error
 
 
 _ALONE = threading.Lock()
-"""A worker may have many threads; a monitor has a state, and the current folder is of all."""
+"""A worker may have several threads, but a monitor has state and the current folder is shared."""
 
 
 def _work(plan: bytes, log: str, folder: str, client_edition: str) -> LogResult | str:
-    """Audit a log, in a worker; the worker's address, where its edition is another one."""
+    """Audit a log in a worker; the address of the worker if its version of fretc differs."""
     from distributed import get_worker
 
     if build_id() != client_edition:
         return str(get_worker().address)
     with _ALONE, _in(folder):
-        return audited(_plan(plan), log)
+        return audit_log(_plan(plan), log)
 
 
 @lru_cache(maxsize=4)
@@ -249,10 +263,10 @@ def _plan(data: bytes) -> Plan:
 
 @contextlib.contextmanager
 def _in(folder: str) -> Iterator[None]:
-    """In the folder of the one who asks, where there is one of that name: logs keep their names."""
+    """Change to the caller's folder, if it exists on this machine, so that log names stay valid."""
     try:
         before = os.getcwd()
-    except OSError:  # the worker began in a folder that is no more
+    except OSError:  # the worker's folder was deleted
         before = "/"
     with contextlib.suppress(OSError):
         os.chdir(folder)
@@ -274,14 +288,14 @@ def _bad_engine(name: str) -> Diagnostic:
         f"`{name}` is no engine",
         help=f"write `--evaluation {name}`"
         if name in EVALUATIONS
-        else "it is `local`, `dask`, or `dask://HOST:PORT`",
+        else "write `local`, `dask` or `dask://HOST:PORT`",
     )
 
 
 def _unreachable(address: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.NO_FLEET,
-        f"the fleet at `{address.replace('tcp', SCHEME, 1)}` cannot be reached: {why}",
+        f"the Dask cluster at `{address.replace('tcp', SCHEME, 1)}` cannot be reached: {why}",
         help="start `dask scheduler` there, and `dask worker HOST:PORT --nthreads 1` on each "
         "machine; `--engine dask` needs neither",
     )
@@ -291,6 +305,6 @@ def _other_edition(what: str) -> Diagnostic:
     return Diagnostic(
         Code.OTHER_EDITION,
         what,
-        help="install the same fretc, Python and libraries on all machines: "
-        "verdicts of another one are not mixed in",
+        help="install the same fretc, Python and libraries on all machines: verdicts of "
+        "different versions are not mixed",
     )

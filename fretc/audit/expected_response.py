@@ -1,4 +1,4 @@
-"""What is missing where a requirement is violated: its response, in words and with its deadline."""
+"""The text of the response that is missing when a requirement is violated, and its deadline."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from fretish.printer import expression, timing
 
 
 def demand(requirement: FormalizedRequirement) -> Demand:
-    """What the sentence demands at each trigger.
+    """The demand of the sentence at each trigger.
 
-    The response alone where it is all that can be missing; with its timing where more can be.
+    It is the response alone if nothing else can be missing, and the response with its timing
+    otherwise.
     """
     sentence = requirement.sentence
     response = expression(sentence.response)
@@ -32,6 +33,6 @@ def demand(requirement: FormalizedRequirement) -> Demand:
         case s.Immediately() | s.Next() | s.Within():
             return Demand(response, requirement.watch.horizon)
         case s.Finally() | s.Eventually() | s.Always() | s.For():
-            return Demand(response)  # what must hold all the time has no latest tick
+            return Demand(response)  # a response that must always hold has no deadline
         case _:
             assert_never(sentence.timing)

@@ -1,4 +1,4 @@
-"""An audit whose results go into a store as they are found; a log that is known is not read again.
+"""An audit into a store: results are written as they are found, and unchanged logs are reused.
 
 In memory are only the logs of the parts that are being filled. Whatever ends the audit early, what
 is finished is in the store (`unfinished.json`), and the next audit takes it over.
@@ -26,7 +26,7 @@ from fretc.audit.many_logs import (
     diagnostics_of_all,
     document,
     estimates_of,
-    labelled,
+    with_command_labels,
 )
 from fretc.audit.plan import Plan, keys
 from fretc.audit.store.errors import StoreError
@@ -42,7 +42,7 @@ from fretc.audit.store.register import (
     vouched,
     vouches,
 )
-from fretc.audit.store.tables import Tables, joined, tabled
+from fretc.audit.store.tables import Tables, joined, to_tables
 from fretc.audit.store.writer import (
     files,
     is_store,
@@ -56,77 +56,79 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
 _HEAVY = 2_000
-"""Events of a log that become columns at once, and do not wait for the other logs of its part."""
+"""Events of a log from which on its results become columns at once, without waiting for the other
+logs of its part."""
 _PATIENCE = 2.0
-"""Seconds after which what is finished is kept."""
+"""Seconds after which finished results are written."""
 _SHARE = 20
-"""Keeping takes one of so many seconds at most."""
+"""The inverse of the largest share of the time that writing unfinished results may take."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredAudit:
-    """The outcome of an audit, whose results are in a store."""
+    """The outcome of an audit with its results in a store."""
 
     source: Store
     diagnostics: tuple[Diagnostic, ...]
     read: int
-    """How many of the logs could be read."""
+    """Number of logs that could be read."""
     estimates: tuple[Estimated, ...]
 
 
-# What is known -----------------------------------------------------------------------------------
+# Reusable results --------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
-class _Known:
-    """A log of an earlier audit by the same plan."""
+class _ReusableLog:
+    """A log of an earlier audit with the same plan."""
 
     store: Store
     entry: Entry
     by: KnownBy
     part: int
-    place: int
-    """Of its first result."""
+    index: int
+    """The index of its first result."""
     results: int
 
 
 @dataclass(frozen=True, slots=True)
-class _Some:
-    """A log of an audit by a plan that has some of the claims."""
+class _PartlyReusableLog:
+    """A log of an audit with a plan that has some of the same requirements."""
 
     store: Store
     claims: Collection[str]
     part: range
-    """The places of all results of its part."""
+    """The indices of all results of its part."""
     first: int
-    """Where in these its own begin."""
+    """The position of its first result in the part."""
     count: int
 
 
 class ReusableResults:
-    """What earlier audits of this plan have shown, and this user's key vouches for."""
+    """Reusable results of earlier audits: those that this user's key authenticates."""
 
     def __init__(self, folder: Path, plan: Plan, key: bytes | None, *, rehash: bool) -> None:
-        """Read the manifests and registers that are there.
+        """Read the existing manifests and registers.
 
         Args:
             folder: of the store.
-            plan: what logs are judged by.
-            key: of the user; None: nothing is known.
-            rehash: know a log by its SHA-256 alone.
+            plan: the plan of the present audit.
+            key: the key of the user; None: no earlier result is reused.
+            rehash: identify logs by their SHA-256 alone, not by size and times.
         """
         self.stale = False
-        """Whether a store of another plan is there."""
+        """Whether a store with another plan exists."""
         self.foreign = False
-        """Whether a store is there for which this user's key does not vouch."""
+        """Whether a store exists that this user's key does not authenticate."""
         self._plan, self._rehash = plan, rehash
         self._logs: dict[str, tuple[Store, Entry, int, int, int]] = {}
         self._parts: dict[tuple[str, ...], tuple[Store, Part]] = {}
         self.claims: set[str] = set()
-        """Those of another plan that are claims of this one, exactly."""
-        self._some: dict[str, _Some] = {}
+        """The keys of requirements of another plan that are also in this one."""
+        self._some: dict[str, _PartlyReusableLog] = {}
         self._last: tuple[Store, range, list[Result]] | None = None
-        """The results of one part: its logs are asked for one after the other."""
+        """The results of the last part that was read, because logs of one part are asked for in
+        sequence."""
         for name in (FILE, UNFINISHED) if key is not None else ():
             assert key is not None
             self._read(folder, name, key)
@@ -150,92 +152,98 @@ class ReusableResults:
             self._add(store, alike=about["labels"] == dict(self._plan.labels))
 
     def _add_some(self, store: Store, same: Collection[str]) -> None:
-        """Results by claims that are what they were, though others are not."""
+        """Add results of unchanged requirements from an audit with another plan."""
         entries, counts = store.register(), [*store.counts()]
         if not same or len(entries) != len(counts):
             return
         self.claims |= {*same}
-        row = place = 0
+        row = index = 0
         for part in store.manifest.parts:
-            stop, at = place + part.results, place
+            stop, at = index + part.results, index
             for entry, count in zip(
                 entries[row : row + part.runs], counts[row : row + part.runs], strict=True
             ):
-                self._some[entry.log] = _Some(store, same, range(place, stop), at - place, count)
+                self._some[entry.log] = _PartlyReusableLog(
+                    store, same, range(index, stop), at - index, count
+                )
                 at += count
-            row, place = row + part.runs, stop
+            row, index = row + part.runs, stop
 
     def _add(self, store: Store, *, alike: bool) -> None:
         entries, counts = store.register(), [*store.counts()]
         if len(entries) != len(counts):
             return
-        row = place = 0
+        row = index = 0
         for number, part in enumerate(store.manifest.parts):
             of_part = entries[row : row + part.runs]
             for entry, count in zip(of_part, counts[row : row + part.runs], strict=True):
-                self._logs[entry.log] = (store, entry, number, place, count)
-                place += count
+                self._logs[entry.log] = (store, entry, number, index, count)
+                index += count
             row += part.runs
             if alike:
                 self._parts[tuple(entry.log for entry in of_part)] = (store, part)
 
     def missing(self, logs: Sequence[str]) -> int:
-        """How many logs that are known are not among these."""
+        """The number of known logs that are not among the given ones."""
         return len({*self._logs, *self._some}.difference(logs))
 
-    def find(self, log: str) -> _Known | None:
-        """What is known of a log that is as it was."""
+    def find(self, log: str) -> _ReusableLog | None:
+        """The reusable results of a log that is unchanged."""
         if log not in self._logs:
             return None
-        store, entry, part, place, count = self._logs[log]
+        store, entry, part, index, count = self._logs[log]
         by = entry.known_by_now(rehash=self._rehash)
-        return None if by is None else _Known(store, entry, by, part, place, count)
+        return None if by is None else _ReusableLog(store, entry, by, part, index, count)
 
     def results(self, log: str) -> tuple[Result, ...]:
-        """Those of a log by claims that are what they were, though the plan is not."""
-        some = self._some.get(log)
-        if some is None:
+        """The reusable results of a log from an audit with another plan."""
+        partial = self._some.get(log)
+        if partial is None:
             return ()
-        if self._last is None or self._last[0] is not some.store or self._last[1] != some.part:
+        if (
+            self._last is None
+            or self._last[0] is not partial.store
+            or self._last[1] != partial.part
+        ):
             try:
-                found = [each for _, each in some.store.details(some.part)]
+                results_of_part = [each for _, each in partial.store.details(partial.part)]
             except StoreError:
-                found = []
-            self._last = some.store, some.part, found
-        of_log = self._last[2][some.first : some.first + some.count]
-        return tuple(each for each in of_log if each.requirement in some.claims)
+                results_of_part = []
+            self._last = partial.store, partial.part, results_of_part
+        of_log = self._last[2][partial.first : partial.first + partial.count]
+        return tuple(each for each in of_log if each.requirement in partial.claims)
 
-    def part(self, logs: Sequence[str], known: Mapping[str, _Known]) -> Part | None:
-        """A part that has just these logs, with all that all runs have."""
+    def part(self, logs: Sequence[str], known: Mapping[str, _ReusableLog]) -> Part | None:
+        """A part that has exactly these logs, with the facts that all its runs share."""
         store, part = self._parts.get(tuple(logs), (None, None))
         is_same = all(log in known and known[log].store is store for log in logs)
         return part if is_same else None
 
 
-def _results(plan: Plan, known: _Known) -> tuple[Result, ...]:
-    """The results of a known log, with the labels that this audit gives."""
-    places = range(known.place, known.place + known.results)
+def _results(plan: Plan, known: _ReusableLog) -> tuple[Result, ...]:
+    """The results of a known log, with the labels of the present audit."""
+    indices = range(known.index, known.index + known.results)
     own = known.entry.labels or UNSET
-    results = (replace(one, labels=own) for _, one in known.store.details(places))
-    return labelled(plan, LogResult(tuple(results), (), read=True)).results
+    results = (replace(one, labels=own) for _, one in known.store.details(indices))
+    return with_command_labels(plan, LogResult(tuple(results), (), read=True)).results
 
 
-# What is written ---------------------------------------------------------------------------------
+# The writer ------------------------------------------------------------------------------------
 
 
 @dataclass(slots=True)
 class _Log:
-    """A log that is finished, until its part is written."""
+    """A finished log, until its part is written."""
 
     entry: Entry
     results: tuple[Result, ...] = ()
     tables: Tables | None = None
-    known: _Known | None = None
+    known: _ReusableLog | None = None
 
 
 @dataclass(slots=True)
 class _Draft:
-    """A part that is being filled, or is written."""
+    """A part that is being filled or written."""
 
     logs: Sequence[str]
     found: dict[str, _Log] = field(default_factory=dict)
@@ -252,19 +260,19 @@ class _WriteError(Exception):
 
 
 class StoreWriter:
-    """An audit into a store, from its beginning to its end."""
+    """The writer of an audit's results into a store, from the beginning to the end of the audit."""
 
     def __init__(
         self, folder: Path, plan: Plan, logs: Sequence[str], key: bytes | None, *, rehash: bool
     ) -> None:
-        """Lock the folder, and find out what is known of the logs.
+        """Lock the folder and find the logs with reusable results.
 
         Args:
             folder: of the store.
-            plan: what the logs are judged by.
+            plan: the plan of the audit.
             logs: each once.
-            key: of the user; None: nothing is taken over, now or later.
-            rehash: know a log by its SHA-256 alone.
+            key: the key of the user; None: no result is reused, now or later.
+            rehash: identify logs by their SHA-256 alone, not by size and times.
 
         Raises:
             OSError: the folder cannot be used.
@@ -281,16 +289,18 @@ class StoreWriter:
             os.close(self._lock)
             raise
         self._before = files(folder)
-        """What was there: an earlier manifest that is damaged may need it."""
+        """Files that existed before: an earlier manifest that is damaged may need them."""
         self._is_finished = False
-        self._drafts = [_Draft([logs[n] for n in places]) for places in parts(logs)]
+        self._drafts = [_Draft([logs[n] for n in indices]) for indices in parts(logs)]
         self._draft_of = {log: draft for draft in self._drafts for log in draft.logs}
-        self.known = {log: one for log in logs if (one := self.earlier.find(log)) is not None}
+        self.known = {
+            log: reusable for log in logs if (reusable := self.earlier.find(log)) is not None
+        }
         self.new = [log for log in logs if log not in self.known]
         self.missing = self.earlier.missing(logs)
-        """How many logs of the store are not among those of this audit."""
+        """The number of logs of the store that are not among those of this audit."""
         self.kept = 0
-        """Logs that were audited by this session and that an audit after it takes over."""
+        """The number of logs that were audited here and whose results a later audit can reuse."""
         self._diagnostics: dict[Diagnostic, Diagnostic] = {}
         self._of_log: dict[str, tuple[Diagnostic, ...]] = {}
         self._read = 0
@@ -301,30 +311,30 @@ class StoreWriter:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Remove what no manifest names, and let another audit have the folder."""
+        """Remove the files that no manifest lists, and release the folder."""
         try:
             names = [name for name in (FILE, UNFINISHED) if (self.folder / name).exists()]
-            found = [manifest(self.folder, name) for name in names]
-            if not any(each is None or each.parts for each in found):
+            manifests = [manifest(self.folder, name) for name in names]
+            if not any(each is None or each.parts for each in manifests):
                 remove(self.folder)
                 if self._new_folder is not None:
-                    with suppress(OSError):  # something else is in it by now
+                    with suppress(OSError):  # the folder is not empty
                         self._new_folder.rmdir()
             else:
                 others = set() if self._is_finished else self._before
-                remove_others(self.folder, *filter(None, found), kept=others)
+                remove_others(self.folder, *filter(None, manifests), kept=others)
         finally:
             os.close(self._lock)
 
     def run(self, engine: Engine, tell: Callable[[str], None]) -> StoredAudit | Diagnostic:
-        """Audit what is not known, and write all.
+        """Audit the logs without reusable results, and write all results.
 
         Args:
-            engine: where; the results do not depend on it.
+            engine: the executor; the results do not depend on it.
             tell: is called with each log that was audited.
         """
         try:
-            if not is_store(self.folder):  # marked, so that what is in it is known to be ours
+            if not is_store(self.folder):  # a marker, so that only files of fretc are removed
                 self._write(self._manifest([], UNFINISHED), UNFINISHED)
             self._take_over()
             with closing(engine(self._plan, self.new)) as items:
@@ -332,8 +342,8 @@ class StoreWriter:
                     if isinstance(item, Diagnostic):
                         self._keep()
                         return item
-                    log, audited = item
-                    self._take(log, audited)
+                    log, log_result = item
+                    self._take(log, log_result)
                     tell(log)
                     self._keep_in_time()
             return self._finish()
@@ -346,7 +356,7 @@ class StoreWriter:
             return error.diagnostic
 
     def _take_over(self) -> None:
-        """Everything that is known."""
+        """Reuse the results of all known logs."""
         for log, known in self.known.items():
             entry = replace(known.entry, known_by=known.by)
             source = self._plan.declarations.source
@@ -364,8 +374,8 @@ class StoreWriter:
                 self._complete(draft)
 
     def _take(self, log: str, own: LogResult) -> None:
-        """A log that was audited."""
-        audited = labelled(self._plan, own)
+        """Add the results of a log that was audited."""
+        labelled_result = with_command_labels(self._plan, own)
         source = self._plan.declarations.source
         first = own.results[0]
         entry = Entry(
@@ -376,19 +386,21 @@ class StoreWriter:
             sha256=first.fingerprints.log or "",
             **marks(own.stamp if own.read else None),
             labels=first.labels or {},
-            diagnostics=tuple(diagnostic_text(each, source) for each in own.diagnostics),
+            diagnostics=tuple(
+                diagnostic_text(diagnostic, source) for diagnostic in own.diagnostics
+            ),
         )
         self._note(log, tuple(map(self._one, own.diagnostics)))
         self._read += own.read
-        one = _Log(entry, audited.results)
-        if sum(map(_events, audited.results)) > _HEAVY:
-            one = _Log(entry, tables=tabled(audited.results, __version__))
+        finished_log = _Log(entry, labelled_result.results)
+        if sum(map(_events, labelled_result.results)) > _HEAVY:
+            finished_log = _Log(entry, tables=to_tables(labelled_result.results, __version__))
         draft = self._draft_of[log]
-        draft.found[log] = one
+        draft.found[log] = finished_log
         self._complete(draft)
 
     def _one(self, found: Diagnostic) -> Diagnostic:
-        """The same diagnostic once in memory: logs share them."""
+        """The diagnostic, or an equal one that is already in memory."""
         return self._diagnostics.setdefault(found, found)
 
     def _note(self, log: str, notes: tuple[Diagnostic, ...]) -> None:
@@ -396,7 +408,7 @@ class StoreWriter:
             self._of_log[log] = notes
 
     def _complete(self, draft: _Draft) -> None:
-        """Write a part, if all its logs are finished."""
+        """Write a part if all its logs are finished."""
         if len(draft.found) == len(draft.logs):
             draft.part = self._written(draft, draft.logs)
             draft.entries = tuple(draft.found[log].entry for log in draft.logs)
@@ -407,25 +419,25 @@ class StoreWriter:
         return _right(write_part(self.folder, joined(groups)))
 
     def _grouped(self, found: Iterator[_Log]) -> Iterator[Tables]:
-        """Tables of all of them, in their order."""
+        """The joined tables of all logs, in their order."""
         waiting: list[Result] = []
         for one in found:
             if one.tables is None:
                 waiting += one.results if one.known is None else _results(self._plan, one.known)
                 continue
             if waiting:
-                yield tabled(waiting, __version__)
+                yield to_tables(waiting, __version__)
                 waiting = []
             yield one.tables
         if waiting:
-            yield tabled(waiting, __version__)
+            yield to_tables(waiting, __version__)
 
     # Manifests
 
     def _manifest(self, drafts: Sequence[tuple[Part, Sequence[Entry]]], name: str) -> Manifest:
         entries = [entry for _, some in drafts for entry in some]
         about = document(self._plan, (), ())
-        made = Manifest(
+        new_manifest = Manifest(
             schema=SCHEMA,
             fretc=about.fretc,
             bindings=about.bindings,
@@ -436,13 +448,13 @@ class StoreWriter:
             selection=about.selection,
         )
         if name == UNFINISHED:
-            return made
-        provisional = Store(str(self.folder), "", made)
+            return new_manifest
+        provisional = Store(str(self.folder), "", new_manifest)
         estimates = estimates_of(self._plan, (each for _, each in provisional.briefs()))
-        return replace(made, probabilities=estimates or UNSET)
+        return replace(new_manifest, probabilities=estimates or UNSET)
 
     def _write(self, made: Manifest, name: str) -> str:
-        """Write a manifest, and what vouches for it."""
+        """Write a manifest and the register that authenticates it."""
         digest = _right(write_manifest(self.folder, made, name))
         if self._key is not None:
             plan = self._plan
@@ -461,32 +473,32 @@ class StoreWriter:
             self._next = time.monotonic() + max(_PATIENCE, _SHARE * took)
 
     def _keep(self) -> None:
-        """Keep what is finished, for an audit that takes it over."""
+        """Write the finished results, so that a later audit can reuse them."""
         if self._key is None:
             return
-        found: list[tuple[Part, Sequence[Entry]]] = []
+        finished_parts: list[tuple[Part, Sequence[Entry]]] = []
         for draft in self._drafts:
             if draft.part is not None:
-                found.append((draft.part, draft.entries))
+                finished_parts.append((draft.part, draft.entries))
                 continue
             logs = [log for log in draft.logs if log in draft.found]
             if logs:
                 part = self._written(draft, logs)
-                found.append((part, [draft.found[log].entry for log in logs]))
-        self._write(self._manifest(found, UNFINISHED), UNFINISHED)
-        entries = (entry for _, some in found for entry in some)
-        self.kept = sum(each.size is not None and each.log not in self.known for each in entries)
+                finished_parts.append((part, [draft.found[log].entry for log in logs]))
+        self._write(self._manifest(finished_parts, UNFINISHED), UNFINISHED)
+        entries = (entry for _, some in finished_parts for entry in some)
+        self.kept = sum(entry.size is not None and entry.log not in self.known for entry in entries)
 
     def _finish(self) -> StoredAudit:
-        found: list[tuple[Part, Sequence[Entry]]] = []
+        finished_parts: list[tuple[Part, Sequence[Entry]]] = []
         for draft in self._drafts:
             assert draft.part is not None, "every log is finished"
-            found.append((draft.part, draft.entries))
-        made = self._manifest(found, FILE)
-        entries = [entry for _, some in found for entry in some]
-        store = Store(str(self.folder), "", made)
+            finished_parts.append((draft.part, draft.entries))
+        final_manifest = self._manifest(finished_parts, FILE)
+        entries = [entry for _, some in finished_parts for entry in some]
+        store = Store(str(self.folder), "", final_manifest)
         if self._read:  # a mistyped name must not cost the evidence of the last audit
-            store = Store(str(self.folder), self._write(made, FILE), made)
+            store = Store(str(self.folder), self._write(final_manifest, FILE), final_manifest)
             self._is_finished = True
             for name in (UNFINISHED, REUSE[UNFINISHED]):
                 (self.folder / name).unlink(missing_ok=True)
@@ -514,7 +526,7 @@ def busy(folder: Path) -> Diagnostic:
     """F912."""
     return Diagnostic(
         Code.BUSY,
-        f"another audit is at work on `{folder}`",
+        f"another audit is writing to `{folder}`",
         Source(str(folder), "").span(),
-        help="wait for it, or name another place with `-o`",
+        help="wait until it ends, or name another folder with `-o`",
     )

@@ -1,4 +1,4 @@
-"""Which logs are meant: files, folders of them, patterns, standard input, URLs, stores."""
+"""The logs that paths stand for: files, folders, patterns, standard input, URLs, object stores."""
 
 from __future__ import annotations
 
@@ -16,19 +16,20 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
 _LOGS = (".mcap", ".bag", ".db3", ACTIVE, ".bag.orig.active")
-"""How the names of logs end; below a folder, other files are passed by."""
+"""Suffixes of logs; other files in folders are skipped."""
 ANNOTATIONS = ".fretc.mcap"
-"""How the names of annotations end: below a folder of logs, they are no logs."""
+"""Suffixes of annotation files; they are skipped in folders of logs."""
 
 
 def logs(paths: Sequence[str]) -> list[str] | Diagnostic:
-    """The logs, with those below a folder in its place; each once, folders in order of names.
+    """The logs of some paths, each once; those of a folder are in order of names.
 
-    A folder of rosbag2 with several files is one log, and so are these files when all of them are
+    A folder of rosbag2 with several files is one log, and so are these files if all of them are
     named. So are the files of `rosbag record --split`.
 
     Args:
-        paths: as the user names them; what is no folder and no pattern is taken for a file.
+        paths: as the user names them; a path that is neither a folder nor a pattern is taken for a
+            file.
     """
     by_real_path: dict[str, str] = {}
     for path in paths:
@@ -47,7 +48,7 @@ def logs(paths: Sequence[str]) -> list[str] | Diagnostic:
 
 
 def files_of(logs: Iterable[str]) -> list[str]:
-    """All files that the logs are made of."""
+    """All files of the logs."""
     files: list[str] = []
     for log in logs:
         run = None if _elsewhere(log) or os.path.lexists(log) else split(log)
@@ -61,12 +62,12 @@ def files_of(logs: Iterable[str]) -> list[str]:
 
 
 def _elsewhere(path: str) -> bool:
-    """Whether it is no path of a file."""
+    """Whether the path is not that of a local file."""
     return path == STDIN or is_url(path)
 
 
 def _named(path: str) -> Iterator[str | Diagnostic]:
-    """What one path stands for."""
+    """The logs that one path stands for."""
     if is_store(path):
         yield from _stored(path)
     elif not path or _elsewhere(path) or not (glob.has_magic(path) or os.path.isdir(path)):
@@ -87,25 +88,25 @@ def _named(path: str) -> Iterator[str | Diagnostic]:
 
 
 def _stored(path: str) -> Iterator[str | Diagnostic]:
-    """The logs below a folder of a store, or what a pattern matches in it."""
-    found = below(path, lambda name: name.endswith(_LOGS) and not name.endswith(ANNOTATIONS))
-    if found is None or isinstance(found, Diagnostic):
-        yield path if found is None else found
-    elif not found:
+    """The logs below a folder of an object store, or those that a pattern matches."""
+    addresses = below(path, lambda name: name.endswith(_LOGS) and not name.endswith(ANNOTATIONS))
+    if addresses is None or isinstance(addresses, Diagnostic):
+        yield path if addresses is None else addresses
+    elif not addresses:
         yield _empty(path) if path.endswith("/") else _no_match(path)
     else:
-        yield from found
+        yield from addresses
 
 
 def _below(path: Path, visited: dict[str, None] | None = None) -> Iterator[str | Diagnostic]:
-    """The logs in a folder; a link that leads to none is one that cannot be read, and never lost.
+    """The logs in a folder; a broken link counts as a log that cannot be read.
 
-    A link may lead to a folder elsewhere, but not to one that the named folder lies in: that would
-    be all of a disk.
+    A link may lead to a folder elsewhere, but not to one that contains the named folder: the search
+    could cover the whole disk.
 
     Args:
         path: the folder.
-        visited: folders that have been listed, the named one first: links may lead in circles.
+        visited: folders that have been listed, the named one first, because links may form cycles.
     """
     real = os.path.realpath(path)
     if visited is None:
@@ -136,7 +137,7 @@ def _below(path: Path, visited: dict[str, None] | None = None) -> Iterator[str |
 
 
 def _whole(by_real_path: dict[str, str]) -> list[str]:
-    """The logs, with a folder of rosbag2 in place of its files where all of them are there."""
+    """The logs, with a rosbag2 folder instead of its files if all of them are named."""
     runs = {
         os.path.dirname(real): os.path.dirname(file) or "." for real, file in by_real_path.items()
     }
@@ -155,7 +156,7 @@ def _whole(by_real_path: dict[str, str]) -> list[str]:
 
 
 def _joined(by_real_path: dict[str, str]) -> Iterator[str]:
-    """The logs, with the run in place of its bags where all of them are there."""
+    """The logs, with one run instead of its split bags if all of them are named."""
     passed: set[str] = set()
     for real, log in by_real_path.items():
         if real in passed:
@@ -174,7 +175,7 @@ def _empty(path: str) -> Diagnostic:
         Code.NO_SUCH_FILE,
         f"no log (`*.mcap`, `*.bag`, `*.db3`) is in `{name_of(path)}`",
         Source(name_of(path), "").span(),
-        help="name the folder that your logs are in",
+        help="name the folder that contains the logs",
     )
 
 
@@ -183,5 +184,5 @@ def _no_match(path: str) -> Diagnostic:
         Code.NO_SUCH_FILE,
         f"no file matches `{name_of(path)}`",
         Source(name_of(path), "").span(),
-        help="`*` stands for any part of one name, `**` for folders below each other",
+        help="`*` matches any part of one name, `**` any number of nested folders",
     )

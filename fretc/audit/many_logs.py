@@ -1,4 +1,4 @@
-"""From a plan and logs to verdicts: read each log, run the monitors, gather the evidence."""
+"""The audit of many logs: read each log, run the monitors, collect the evidence."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from compiler.files.records import replace as record_with
 from compiler.files.text_files import Stamp, file_sha256, stamp
 from fretc.audit.constancy import never_changed, tallies_of, totals
 from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
-from fretc.audit.evidence.briefs import Brief, EvidenceSource, brief
 from fretc.audit.evidence.claim import AuditedRequirement
-from fretc.audit.evidence.courses import course, no_way
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import EvidenceFile
+from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary, brief
+from fretc.audit.evidence.run_plot_data import map_diagnostics, plot_data
 from fretc.audit.evidence.schema import (
     SCHEMA,
     Bindings,
@@ -29,7 +29,7 @@ from fretc.audit.evidence.schema import (
     Result,
     Situation,
 )
-from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged, unread
+from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged_result, unread_result
 from fretc.audit.evidence.writer import text as written
 from fretc.audit.measurements.judgement import Engine as Evaluation
 from fretc.audit.measurements.tallies import Tally
@@ -43,9 +43,17 @@ from fretc.audit.one_log import (
 )
 from fretc.audit.phases.advice import findings
 from fretc.audit.plan import Plan, monitored_requirements
-from fretc.audit.pool import ENDLESS, Limits, TimedOut, WorkerDied, each, was_killed, was_late
+from fretc.audit.pool import (
+    ENDLESS,
+    Limits,
+    TimedOut,
+    WorkerDied,
+    killed_diagnostic,
+    map_processes,
+    time_limit_diagnostic,
+)
 from fretc.audit.store.recordings import KnownBy, SampleCache
-from fretc.logs.labels import NO_METADATA, labels, over
+from fretc.logs.labels import NO_METADATA, labels, with_overrides
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.storage.log_names import STDIN, name_of
@@ -56,21 +64,21 @@ from monitors import kernel
 
 @dataclass(frozen=True, slots=True)
 class Audit:
-    """The outcome of an audit: one result for each run and requirement, runs in their order."""
+    """The outcome of an audit: a result for each run and requirement, ordered by run."""
 
     document: Document
     diagnostics: tuple[Diagnostic, ...]
     read: int = 0
-    """How many of the logs could be read."""
+    """Number of logs that could be read."""
 
     @property
     def results(self) -> tuple[Result, ...]:
-        """Each of a run and a requirement."""
+        """One result for each run and requirement."""
         return self.document.results
 
     @property
     def estimates(self) -> tuple[Estimated, ...]:
-        """What all runs say of each requirement with a probability."""
+        """The answer of all runs for each requirement with a probability."""
         return self.document.probabilities or ()
 
     @property
@@ -80,12 +88,12 @@ class Audit:
 
     @property
     def source(self) -> EvidenceSource:
-        """The results, to be read from."""
+        """The results as an `EvidenceSource`."""
         return EvidenceFile("", "", self.document)
 
 
 EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": kernel.stepped}
-"""How monitors are run: whole traces at once, or step by step."""
+"""The ways to run monitors: on whole traces at once, or step by step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,21 +101,21 @@ class LogResult:
     """The outcome of the audit of one log."""
 
     results: tuple[Result, ...]
-    """The record of each claim, in their order."""
+    """The result of each requirement, in order."""
     diagnostics: tuple[Diagnostic, ...]
     read: bool
     """Whether the log could be read."""
     stamp: Stamp | None = None
-    """The file's before its audit; None where it is no file, or has changed since."""
+    """The stamp of the file before its audit; None: it is not a file, or has changed since."""
     known_by: KnownBy = field(default="read", compare=False)
-    """Whether the log was read, or by what it is known to be what it was when it was."""
+    """Whether the log was read, or how it was identified as unchanged."""
 
 
 LogAudits = Generator[tuple[str, LogResult] | Diagnostic, None, None]
-"""Each log with its audit, as soon as that is complete; a diagnostic where the engine gives up."""
+"""Each log with its result, as soon as it is complete; a diagnostic if the executor gives up."""
 
 Engine = Callable[[Plan, Sequence[str]], LogAudits]
-"""Where logs are audited. Closing what it gives ends all work at once."""
+"""The executor of the audits of logs. Closing its iterator ends all work at once."""
 
 
 def _nothing(_: str) -> Sequence[Result]:
@@ -120,30 +128,30 @@ def local_executor(
     known: Callable[[str], Sequence[Result]] = _nothing,
     limits: Limits = ENDLESS,
 ) -> Engine:
-    """On this machine, in some processes.
+    """The executor on this machine, with several processes.
 
     Args:
-        jobs: how many.
-        kept: where the samples of logs are kept.
-        known: of a log, the results that `audited` may take over.
-        limits: of time; standard input only where there are none.
+        jobs: the number of processes.
+        kept: the cache of the samples of logs.
+        known: the reusable results of a log, by requirement.
+        limits: limits of time; a process for standard input has none.
     """
 
     def judged(plan: Plan, log: str) -> LogResult:
-        return audited(plan, log, known(log), kept)
+        return audit_log(plan, log, known(log), kept)
 
     def engine(plan: Plan, logs: Sequence[str]) -> LogAudits:
-        monitored_requirements(plan)  # before the processes are born: they inherit it
-        if STDIN in logs:  # another process does not have it
-            yield STDIN, audited(plan, STDIN)
+        monitored_requirements(plan)  # loaded before the fork, so that processes inherit it
+        if STDIN in logs:  # only this process can read standard input
+            yield STDIN, audit_log(plan, STDIN)
         files = [log for log in logs if log != STDIN]
-        with closing(each(partial(judged, plan), files, jobs, limits)) as done:
-            for place, result in done:
-                log = files[place]
+        with closing(map_processes(partial(judged, plan), files, jobs, limits)) as done:
+            for index, result in done:
+                log = files[index]
                 if isinstance(result, WorkerDied):
-                    yield log, given_up(plan, log, str(result))
+                    yield log, results_of_killed_process(plan, log, str(result))
                 elif isinstance(result, TimedOut):
-                    yield log, _unaudited(plan, log, was_late(log, result, limits))
+                    yield log, _unaudited(plan, log, time_limit_diagnostic(log, result, limits))
                 else:
                     yield log, result
 
@@ -151,7 +159,7 @@ def local_executor(
 
 
 SEQUENTIAL = local_executor(1)
-"""One after the other."""
+"""The executor that audits one log after the other."""
 
 
 def audit_logs(
@@ -159,15 +167,15 @@ def audit_logs(
     logs: Sequence[str],
     engine: Engine = SEQUENTIAL,
     finished: Mapping[str, LogResult] = MappingProxyType({}),
-    tell: Callable[[str, LogResult], None] = lambda log, audited: None,
+    tell: Callable[[str, LogResult], None] = lambda log, result: None,
 ) -> Audit | Diagnostic:
-    """Audit every log against every claim.
+    """Audit every log against every requirement.
 
     Args:
-        plan: what the logs are judged by.
+        plan: the requirements, and how they are judged.
         logs: files, folders of rosbag2, URLs, or `-` for standard input, each once.
-        engine: where; the results do not depend on it.
-        finished: logs that have been audited by this plan already.
+        engine: the executor; the results do not depend on it.
+        finished: the results of logs that were audited with this plan before.
         tell: is called with each other log when it is done.
 
     Returns:
@@ -183,26 +191,26 @@ def audit_logs(
             assert log not in done
             done[log] = one
             tell(log, one)
-    return gathered(plan, [labelled(plan, done[log]) for log in logs])
+    return combined_audit(plan, [with_command_labels(plan, done[log]) for log in logs])
 
 
-def gathered(plan: Plan, audits: Sequence[LogResult]) -> Audit:
-    """One audit of the audits of single logs, in their order."""
-    results = [result for one in audits for result in one.results]
+def combined_audit(plan: Plan, audits: Sequence[LogResult]) -> Audit:
+    """One audit from the results of single logs, in their order."""
+    results = [result for audit in audits for result in audit.results]
     of_all_runs = estimates_of(plan, map(brief, results))
-    tallies = (tallies_of(one.results) for one in audits)
-    of_logs = [(one.results[0].run, one.diagnostics) for one in audits]
+    tallies = (tallies_of(audit.results) for audit in audits)
+    of_logs = [(audit.results[0].run, audit.diagnostics) for audit in audits]
     return Audit(
         document(plan, results, of_all_runs),
         diagnostics_of_all(plan, of_logs, tallies, of_all_runs),
-        sum(one.read for one in audits),
+        sum(audit.read for audit in audits),
     )
 
 
-def estimates_of(plan: Plan, results: Iterable[Brief]) -> tuple[Estimated, ...]:
-    """What all runs say of each requirement with a probability."""
+def estimates_of(plan: Plan, results: Iterable[ResultSummary]) -> tuple[Estimated, ...]:
+    """The answer of all runs for each requirement with a probability."""
     ids = {claim.id for claim in plan.claims if claim.chance is not None}
-    counted = [each for each in results if each.requirement in ids] if ids else []
+    counted = [result for result in results if result.requirement in ids] if ids else []
     return estimates(plan.claims, counted, plan.confidence)
 
 
@@ -212,13 +220,13 @@ def diagnostics_of_all(
     tallies: Iterable[Mapping[str, Tally]],
     of_all_runs: Sequence[Estimated],
 ) -> tuple[Diagnostic, ...]:
-    """What there is to say of all logs together.
+    """The diagnostics of all logs together.
 
     Args:
-        plan: what they were judged by.
-        of_logs: the name of each run, and what there is to say of its log.
-        tallies: of each run, by proposition.
-        of_all_runs: what all say of each requirement with a probability.
+        plan: the plan of the audit.
+        of_logs: the name of each run, and the diagnostics of its log.
+        tallies: the tally of each proposition in each run.
+        of_all_runs: the answer of all runs for each requirement with a probability.
     """
     diagnostics = _shared(of_logs)
     constant = never_changed(totals(tallies), plan.declarations, diagnostics)
@@ -226,7 +234,7 @@ def diagnostics_of_all(
 
 
 def _shared(of_logs: Sequence[tuple[str, Sequence[Diagnostic]]]) -> tuple[Diagnostic, ...]:
-    """The diagnostics of all logs. One that several logs share is given once."""
+    """The diagnostics of all logs. A diagnostic that several logs share is given once."""
     runs: dict[Diagnostic, list[str]] = {}
     for run, diagnostics in of_logs:
         for diagnostic in diagnostics:
@@ -235,25 +243,24 @@ def _shared(of_logs: Sequence[tuple[str, Sequence[Diagnostic]]]) -> tuple[Diagno
 
 
 def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
-    """The diagnostic. Unless its place is in one log, the message says in which logs it is."""
+    """The diagnostic with the names of its logs, unless its place is in one log."""
     if count == 1 or (diagnostic.span and diagnostic.span.source.name == runs[0]):
         return diagnostic
     which = f"in {len(runs)} of {count} logs, first in `{runs[0]}`"
     return replace(diagnostic, message=f"{diagnostic.message} ({which})")
 
 
-def audited(
+def audit_log(
     plan: Plan, log: str, known: Sequence[Result] = (), kept: SampleCache | None = None
 ) -> LogResult:
-    """Audit one log; all that is needed for it is in the plan.
+    """Audit one log; all other inputs are in the plan.
 
     Args:
-        plan: what it is judged by.
+        plan: the requirements, and how they are judged.
         log: its path.
-        known: results of an earlier audit of it, by claims whose `keys` were what they are now.
-            They are taken over where the log still is what they were found in; what the log shows
-            to all claims alike is found again.
-        kept: where the samples of logs are kept: an unchanged one is not read again.
+        known: results of an earlier audit of the log, by requirements whose `keys` are unchanged.
+            They are reused if the log is unchanged; facts about the log itself are computed again.
+        kept: the cache of the samples of logs: an unchanged log is not read again.
     """
     declarations, requirements = plan.declarations, monitored_requirements(plan)
     before = stamp(log)
@@ -263,15 +270,23 @@ def audited(
         return _unread(plan, log, recording, before)
     recording = examined(recording, declarations, names)
     taken = {each.requirement: each for each in _taken_over(known, recording)}
-    new = [each for each in requirements if each.monitor.REQUIREMENTS[0].id not in taken]
+    new = [
+        requirement
+        for requirement in requirements
+        if requirement.monitor.REQUIREMENTS[0].id not in taken
+    ]
     evidence = audit(recording, declarations, new, EVALUATIONS[plan.evaluation]) if new else ()
     of_claim = {e.requirement: as_record(e) for e in evidence} | taken
     first, *others = (of_claim[claim.id] for claim in plan.claims)
-    records = (record_with(first, course=course(recording, declarations) or UNSET), *others)
-    phased = {each.requirement: phases_of(each.phases) for each in records if each.phases}
+    records = (record_with(first, course=plot_data(recording, declarations) or UNSET), *others)
+    phased = {record.requirement: phases_of(record.phases) for record in records if record.phases}
     own = LogResult(
         (*records, *_refused_results(plan, first)),
-        (*recording.findings, *findings(phased, declarations), *no_way(recording, declarations)),
+        (
+            *recording.findings,
+            *findings(phased, declarations),
+            *map_diagnostics(recording, declarations),
+        ),
         read=True,
         stamp=before if before == stamp(log) else None,
         known_by=by,
@@ -281,18 +296,20 @@ def audited(
 
 @cache_by_identity
 def _propositions(requirements: Sequence[MonitoredRequirement]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
+    return tuple(
+        dict.fromkeys(name for requirement in requirements for name in requirement.propositions)
+    )
 
 
 def _read(
     plan: Plan, log: str, names: Sequence[str], kept: SampleCache | None, before: Stamp | None
 ) -> tuple[Recording | Diagnostic, KnownBy]:
-    """The recording of a log with all signals of the propositions, read or kept."""
+    """The recording of a log with all signals of the propositions, read or from the cache."""
     declarations, integrity = plan.declarations, plan.integrity
     signals = signals_of(declarations, names)
-    known = kept.recording(log, declarations, signals, integrity) if kept else None
-    if known is not None:
-        return known
+    cached = kept.recording(log, declarations, signals, integrity) if kept else None
+    if cached is not None:
+        return cached
     drawn = declarations.map
     beside = (drawn.x, drawn.y) if drawn else ()
     recording = read(log, declarations, signals, integrity, beside)
@@ -304,8 +321,8 @@ def _read(
 def _taken_over(known: Sequence[Result], recording: Recording) -> Iterator[Result]:
     """The results that an audit of the recording would give again.
 
-    Why there is no data may be the fault of another claim's topic: such a result is taken over only
-    where everything that was found in the log is the same.
+    The topic of another requirement may be the reason for missing data: such a result is reused
+    only if all diagnostics of the log are equal.
     """
     if not known:
         return
@@ -327,21 +344,21 @@ def _taken_over(known: Sequence[Result], recording: Recording) -> Iterator[Resul
 def _with_own_labels(
     plan: Plan, one: LogResult, described: Mapping[str, tuple[str, ...]] = NO_METADATA
 ) -> LogResult:
-    """The audit of a log with the labels that the bindings ask for."""
+    """The result of a log, with the labels that the bindings ask for."""
     declared = plan.declarations.labels
     if not declared:
         return one
-    found, notes = labels(declared, one.results[0].run, described)
-    return _with_labels(one, found, notes)
+    own_labels, notes = labels(declared, one.results[0].run, described)
+    return _with_labels(one, own_labels, notes)
 
 
-def labelled(plan: Plan, one: LogResult) -> LogResult:
-    """The audit of a log with the labels that the command gives all runs."""
+def with_command_labels(plan: Plan, one: LogResult) -> LogResult:
+    """The result of a log, with the labels that the command gives all runs."""
     if not plan.labels:
         return one
     first = one.results[0]
-    found, notes = over(first.labels or {}, plan.labels)
-    return _with_labels(one, found, notes)
+    all_labels, notes = with_overrides(first.labels or {}, plan.labels)
+    return _with_labels(one, all_labels, notes)
 
 
 def _with_labels(
@@ -356,15 +373,15 @@ def _with_labels(
 
 
 def _refused_results(plan: Plan, sibling: Result) -> Iterator[Result]:
-    """The result of each refused requirement in a run: no data, and the reason.
+    """The result of each requirement that cannot be judged, in a run: no data, with the reason.
 
     Args:
-        plan: which requirements it refuses.
+        plan: the plan with the refused requirements.
         sibling: the result of a judged requirement in the same run.
     """
     log = {name: sha for name, sha in sibling.hashes.items() if name.startswith("log")}
     for refused in plan.refused:
-        yield unjudged(
+        yield unjudged_result(
             sibling.run,
             refused.id,
             f"not judged: {'; '.join(f'{d.code.number} {d.message}' for d in refused.why)}",
@@ -373,68 +390,74 @@ def _refused_results(plan: Plan, sibling: Result) -> Iterator[Result]:
         )
 
 
-def given_up(plan: Plan, log: str, how: str) -> LogResult:
+def results_of_killed_process(plan: Plan, log: str, how: str) -> LogResult:
     """The results of a log whose audit killed its process twice: no data.
 
     Args:
-        plan: what it was to be judged by.
+        plan: the plan of the audit.
         log: its path.
-        how: the process ended.
+        how: how the process ended.
     """
-    return _unread(plan, log, was_killed(log, how), None)
+    return _unread(plan, log, killed_diagnostic(log, how), None)
 
 
 def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogResult:
     """The results of a log that cannot be read.
 
     Args:
-        plan: what it was to be judged by.
+        plan: the plan of the audit.
         log: its path.
-        why: what keeps it from being read.
-        before: its stamp before that was tried; None: it is not known.
+        why: the diagnostic that says why the log cannot be read.
+        before: the stamp of the log before the attempt; None: it is unknown.
     """
     hashes = _hash_of(log, before)
-    records = [unread(name_of(log), each.id, why, {**hashes, **each.basis}) for each in plan.named]
+    records = [
+        unread_result(name_of(log), requirement.id, why, {**hashes, **requirement.basis})
+        for requirement in plan.named
+    ]
     return _with_own_labels(plan, LogResult(tuple(records), (why,), read=False))
 
 
 def _unaudited(plan: Plan, log: str, why: Diagnostic) -> LogResult:
-    """The results of a log for which there was no time: no data. It is not even hashed."""
-    records = [unread(name_of(log), each.id, why, each.basis) for each in plan.named]
+    """The results of a log that was not audited before the time limit: no data, and no hash."""
+    records = [
+        unread_result(name_of(log), requirement.id, why, requirement.basis)
+        for requirement in plan.named
+    ]
     return _with_own_labels(plan, LogResult(tuple(records), (why,), read=False))
 
 
 def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
-    """SHA-256 of a log that could not be read as one, where it is still what was tried."""
+    """SHA-256 of a file that could not be read as a log, if it is unchanged since the attempt."""
     digest = file_sha256(log)
     changed = before is not None and stamp(log) != before
     return {} if digest is None or changed else {"log": digest}
 
 
 def named_situations(claim: AuditedRequirement) -> tuple[Situation, ...]:
-    """What evidence says of the situations of a claim."""
-    return tuple(Situation(each.key, each.words) for each in claim.situations)
+    """The situations of a requirement, as evidence lists them."""
+    return tuple(Situation(situation.key, situation.words) for situation in claim.situations)
 
 
 def document(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estimated]) -> Document:
-    """The evidence of an audit."""
+    """The evidence document of an audit."""
     return Document(
         schema=SCHEMA,
         fretc=__version__,
         bindings=Bindings(
             plan.declarations.source.name,
-            of_all({each.id: each.basis[BINDINGS] for each in plan.named}),
+            of_all({requirement.id: requirement.basis[BINDINGS] for requirement in plan.named}),
         ),
         requirements=tuple(
             Requirement(
-                each.id,
-                each.sentence,
-                each.basis[SENTENCE],
-                situations=named_situations(each)
-                if isinstance(each, AuditedRequirement)
+                requirement.id,
+                requirement.sentence,
+                requirement.basis[SENTENCE],
+                situations=named_situations(requirement)
+                if isinstance(requirement, AuditedRequirement)
                 else UNSET,
             )
-            for each in plan.named
+            for requirement in plan.named
         ),
         results=tuple(results),
         probabilities=tuple(of_all_runs) or UNSET,

@@ -1,4 +1,4 @@
-"""Run generated monitors over one recorded log and gather the evidence."""
+"""The audit of one log: run the monitors on its recording and collect the evidence."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from compiler.situations.situations import Situation
 from compiler.situations.thresholds import ThresholdPosition
 from fretc.audit.evidence.schema import Health, Situations
 from fretc.audit.evidence.writer import RunResult, health
-from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judged
+from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judge
 from fretc.audit.measurements.margins import Margin, margins, worst
-from fretc.audit.measurements.situations import Near, encounters, nowhere_known
+from fretc.audit.measurements.situations import Near, nowhere_known, situation_ticks
 from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
@@ -23,11 +23,11 @@ from fretc.audit.measurements.violations import Demand, Moment, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
 from fretc.logs.sample_fingerprint import fingerprint
+from fretc.logs.signals.enum_values import UnmappedSamples, shown
 from fretc.logs.signals.rates import late_topics, slow_topics
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.signals import blind_zones
 from fretc.logs.signals.traces import Timeline, Trace, timeline, trace
-from fretc.logs.signals.words import UnmappedSamples, shown
 from fretc.logs.watch_records import clock_text
 from fretish import expressions as e
 from fretish.bindings.amounts import duration, scaled, seconds, shared_unit
@@ -44,21 +44,21 @@ from monitors.kernel.verdicts import Verdict
 
 @dataclass(frozen=True, slots=True)
 class MonitoredRequirement:
-    """A requirement with its monitor, and the hashes of what the monitor was made from."""
+    """A requirement with its monitor, and the hashes of the inputs of the monitor."""
 
     monitor: Monitor
     hashes: Mapping[str, str]
     demand: Demand = field(default_factory=Demand)
     count: Count | None = None
-    """Of a requirement with a probability: what its triggers came to."""
+    """The counter of trigger outcomes, for a requirement with a probability."""
     counted: tuple[str, ...] = ()
-    """The propositions that `count` needs; the monitor may do without some of them."""
+    """The propositions that `count` reads; the monitor may need fewer."""
     situations: tuple[Situation, ...] = ()
-    """In which runs are looked at; none: that is not measured."""
+    """The situations to look for in runs; empty: they are not measured."""
 
     @property
     def propositions(self) -> tuple[str, ...]:
-        """All that are needed, each once."""
+        """All propositions that the requirement needs, each once."""
         return _needed(self)
 
 
@@ -87,9 +87,10 @@ def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple
 def examined(
     recording: Recording, declarations: Declarations, propositions: Sequence[str]
 ) -> Recording:
-    """The recording, with further findings about the signals that the propositions read.
+    """The recording with further diagnostics about the signals that the propositions read.
 
-    What sensors cannot see, which topics are too slow, and which samples are no truth value.
+    They are about obstacles that sensors cannot detect, slow topics, and samples that are not a
+    truth value.
     """
     signals = signals_of(declarations, propositions)
     slow = slow_topics(declarations, recording, signals)
@@ -101,14 +102,14 @@ def examined(
         for finding in blind_zones(declarations.propositions[name], declarations, recording.nearest)
     )
     expressions = [declarations.propositions[name].expression for name in propositions]
-    flags = dict.fromkeys(name.id for each in expressions for name in e.truths(each))
+    flags = dict.fromkeys(name.id for expression in expressions for name in e.truths(expression))
     untrue = (_untrue(declarations.signals[name], recording) for name in flags)
-    found = (*recording.findings, *filter(None, untrue), *blind, *slow, *late)
-    return replace(recording, findings=found)
+    all_findings = (*recording.findings, *filter(None, untrue), *blind, *slow, *late)
+    return replace(recording, findings=all_findings)
 
 
 def _untrue(signal: Signal, recording: Recording) -> Diagnostic | None:
-    """F424 where samples of a signal that stands for a truth value are neither 0 nor 1."""
+    """F424 if samples of a signal that is read as a truth value are neither 0 nor 1."""
     samples = recording.samples.get(signal.name)
     if samples is None:
         return None
@@ -127,15 +128,15 @@ def audit(
     requirements: Sequence[MonitoredRequirement],
     engine: Engine = kernel.evaluate,
 ) -> tuple[RunResult, ...]:
-    """The evidence of one run for each requirement, in their order.
+    """The result of one run for each requirement, in their order.
 
     Args:
-        recording: read with all signals of all the monitors' propositions.
+        recording: the recording with all signals of all the monitors' propositions.
         declarations: every proposition of the monitors is declared.
-        requirements: with their monitors.
-        engine: how the monitors are run; the verdicts are the same.
+        requirements: the requirements with their monitors.
+        engine: the evaluator of the monitors; the verdicts do not depend on it.
     """
-    names = dict.fromkeys(name for each in requirements for name in each.propositions)
+    names = dict.fromkeys(name for requirement in requirements for name in requirement.propositions)
     truths = trace(declarations, recording, tuple(names))
     margins_of = {
         name: margins(
@@ -144,17 +145,21 @@ def audit(
         for name in names
     }
     near = _near(recording, declarations, len(truths.timeline.times))
-    phases_of = phases(declarations, recording, [each.monitor for each in requirements])
-    found, at = health(recording), _moments(truths.timeline)
+    phases_of = phases(
+        declarations, recording, [requirement.monitor for requirement in requirements]
+    )
+    run_health, at = health(recording), _moments(truths.timeline)
     evidence = [
-        _evidence(recording, declarations, truths, at, margins_of, near, each, engine, found)
-        for each in requirements
+        _evidence(
+            recording, declarations, truths, at, margins_of, near, requirement, engine, run_health
+        )
+        for requirement in requirements
     ]
-    return tuple(_phased(each, phases_of.get(each.requirement)) for each in evidence)
+    return tuple(_phased(result, phases_of.get(result.requirement)) for result in evidence)
 
 
 def _phased(evidence: RunResult, phases: Phases | None) -> RunResult:
-    """The evidence, with what other phases of the ticks make of the run."""
+    """The results, with the verdicts of the run at other phases of the ticks."""
     if phases is None:
         return evidence
     probabilistic = evidence.trials is not None
@@ -177,7 +182,7 @@ def _evidence(
     monitor = requirement.monitor
     columns = {name: truths.columns[name] for name in requirement.propositions}
     ticks = len(truths.timeline.times)
-    judgement = judged(
+    judgement = judge(
         monitor,
         columns,
         truths.cut,
@@ -223,7 +228,7 @@ def _evidence(
 
 
 def _near(recording: Recording, declarations: Declarations, ticks: int) -> Near:
-    """Where numbers of the recording are: of the samples of a tick the last one counts."""
+    """The positions of the numbers of the recording; the last sample of a tick counts."""
     nowhere = nowhere_known(ticks)
 
     @cache
@@ -246,18 +251,18 @@ def _situations(
 ) -> Situations | None:
     if not requirement.situations:
         return None
-    found = [*encounters(requirement.situations, columns, ticks, near)]
+    occurrences = [*situation_ticks(requirement.situations, columns, ticks, near)]
     return Situations(
-        {each.key: at(each.seen) for each in found if each.seen is not None},
-        {each.key: at(each.perhaps) for each in found if each.perhaps is not None},
+        {each.key: at(each.seen) for each in occurrences if each.seen is not None},
+        {each.key: at(each.perhaps) for each in occurrences if each.perhaps is not None},
     )
 
 
 def _counted(evidence: RunResult, trials: Trials) -> RunResult:
-    """The evidence, where one run decides nothing: the triggers of it are counted.
+    """The result with its triggers counted, if one run alone decides nothing.
 
-    A trigger may have failed where the monitor still waits: `finally` asks nothing of an endless
-    run, so its monitor gives up at the end only, even what no end can meet.
+    A trigger may have failed although the monitor still waits: `finally` demands nothing of an
+    endless run, so its monitor gives a verdict only at the end.
     """
     if evidence.verdict == kernel.VACUOUS:
         return replace(evidence, trials=trials)
@@ -277,18 +282,18 @@ def _trials(count: Count, columns: Mapping[str, Column], truths: Trace) -> Trial
 
 
 def hash_of(recording: Recording) -> Mapping[str, str]:
-    """SHA-256 of the log, by what it is of."""
+    """SHA-256 of the log, by the kind of its content."""
     return {"log" if recording.checked.hashed else "log_summary": recording.sha256}
 
 
 def hash_of_messages(recording: Recording) -> Mapping[str, str]:
-    """SHA-256 of all that was read of the messages, where there are any."""
+    """SHA-256 of all messages that were read, if there are any."""
     messages = fingerprint(recording)
     return {} if messages is None else {"messages": messages}
 
 
 def _moments(timeline: Timeline) -> Callable[[int], Moment]:
-    """The moment of each tick; triggers, answers and states ask for the same ones."""
+    """The moment of each tick, cached for triggers, answers and states."""
     times: list[int] = timeline.times.tolist()
 
     @cache
@@ -299,7 +304,7 @@ def _moments(timeline: Timeline) -> Callable[[int], Moment]:
 
 
 def _reason(evidence: RunResult, recording: Recording, declarations: Declarations) -> str:
-    """Why the verdict is what it is, in one sentence."""
+    """The reason of the verdict, in one sentence."""
     outcome = evidence.outcome
     match evidence.verdict:
         case kernel.VIOLATED:
@@ -350,7 +355,7 @@ def _unknown(evidence: RunResult, recording: Recording) -> str:
 
 
 def _of_whom(evidence: RunResult) -> str:
-    """The propositions that were unknown at all."""
+    """The propositions that were unknown at some tick."""
     parts = [
         f"`{name}` at {_times(tally.unknown, 'tick')}"
         for name, tally in evidence.propositions.items()
@@ -370,7 +375,7 @@ def _latency(evidence: RunResult) -> str:
 
 
 def _margin(evidence: RunResult, signals: Mapping[str, Signal]) -> str:
-    """The threshold that was nearest, as a part of its bound; those that were crossed have none."""
+    """The threshold that was nearest, as a fraction of its bound; crossed thresholds have none."""
     least = worst(evidence.margins)
     if least is None:
         return ""

@@ -21,7 +21,7 @@ from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.schema import SCHEMA, Selection
 from fretc.audit.expected_response import demand
-from fretc.audit.measurements import confidence_intervals as odds
+from fretc.audit.measurements import confidence_intervals as intervals
 from fretc.audit.measurements.count_trials import chance, trials
 from fretc.audit.one_log import MonitoredRequirement
 from fretc.audit.refusals import RefusedRequirement, active_requirements, refusals
@@ -35,39 +35,40 @@ from monitors.loading import load
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """The claims and what their propositions mean: all that an audit depends on beside the logs."""
+    """The audited requirements and their bindings: all inputs of an audit except the logs."""
 
     claims: tuple[AuditedRequirement, ...]
     declarations: Declarations = field(compare=False, repr=False)
-    """Only the signals that the claims read: no log is judged by another one."""
+    """The declarations, with only the signals that the requirements read."""
     evaluation: str
-    """How the monitors are run: a key of `fretc.audit.many_logs.EVALUATIONS`."""
+    """The evaluation of monitors: a key of `fretc.audit.many_logs.EVALUATIONS`."""
     integrity: Integrity
-    """How closely a log is read."""
+    """How thoroughly a log is checked."""
     digest: str
-    """SHA-256 of all of it exactly that one log is judged by."""
-    confidence: float = odds.CONFIDENCE
-    """Of the bounds of a probability over all logs."""
+    """SHA-256 of everything in the plan by which a single log is judged, byte for byte."""
+    confidence: float = intervals.CONFIDENCE
+    """The confidence of bounds of a probability over all logs."""
     refused: tuple[RefusedRequirement, ...] = field(default=(), compare=False, repr=False)
-    """The requirements in force that are not among the claims."""
+    """The requirements in force that cannot be audited."""
     labels: Mapping[str, str] = field(default_factory=dict, compare=False)
-    """What the command says of all runs. No audit of a log depends on it: the key does not."""
+    """The labels that the command gives all runs. They are not part of the key, because no audit of
+    a log depends on them."""
     selection: Selection | None = field(default=None, compare=False, repr=False)
-    """Which of the named logs are audited, for the evidence; None: all."""
+    """The selection of the named logs, for the evidence; None: all."""
 
     @property
     def key(self) -> str:
-        """SHA-256 of that, and of the fretc that judges by it."""
+        """SHA-256 of the digest and the version of fretc."""
         return sha256(f"{build_id()} {self.digest}")
 
     @property
     def named(self) -> tuple[AuditedRequirement | RefusedRequirement, ...]:
-        """Every requirement in force: those that are judged, then those that cannot be."""
+        """All requirements in force: those that are audited, then those that cannot be."""
         return (*self.claims, *self.refused)
 
     @property
     def refusals(self) -> tuple[Diagnostic, ...]:
-        """Everything that keeps a requirement from being judged."""
+        """The diagnostics that keep requirements from being judged."""
         return tuple(dict.fromkeys(reason for each in self.refused for reason in each.why))
 
 
@@ -75,18 +76,18 @@ def planned(
     project: Project,
     evaluation: str = "columns",
     integrity: Integrity = Integrity.HASH,
-    confidence: float = odds.CONFIDENCE,
+    confidence: float = intervals.CONFIDENCE,
 ) -> Plan | tuple[Diagnostic, ...]:
-    """The plan to audit every requirement that is not retired, or why there can be none.
+    """The plan to audit every requirement that is not retired, or the diagnostics that prevent it.
 
-    A requirement that cannot be judged is among the `refused` of the plan. There is a plan where
-    at least one can be.
+    A requirement that cannot be judged is among the `refused` of the plan. There is a plan if at
+    least one can be judged.
 
     Args:
-        project: without errors but for those of single requirements.
-        evaluation: how the monitors are run: `columns` or `online`; the verdicts are the same.
-        integrity: how closely a log is read, beyond the messages in question.
-        confidence: of the bounds of a probability, between 0.5 and 1.
+        project: a project without errors, except those of single requirements.
+        evaluation: `columns` or `online`; the verdicts do not depend on it.
+        integrity: how thoroughly a log is checked beyond the bound messages.
+        confidence: the confidence of bounds of a probability, between 0.5 and 1.
     """
     declarations = project.declarations
     unauditable = refusals(project)
@@ -140,7 +141,7 @@ def _digest(
     evaluation: str,
     integrity: Integrity,
 ) -> str:
-    """The places in the bindings count too, because findings name their lines."""
+    """SHA-256 of the plan, with positions in the bindings: diagnostics name their lines."""
     digest = hashlib.sha256(pickle.dumps(declarations, protocol=5))
     texts = [(c.id, c.sentence, dict(c.basis), c.monitor, astuple(c.demand)) for c in claims]
     reasons = [(r.id, r.sentence, dict(r.basis), [d.message for d in r.why]) for r in refused]
@@ -152,10 +153,10 @@ def _digest(
 @lru_cache(maxsize=4)
 @with_recursion_limit
 def keys(plan: Plan) -> Mapping[str, str]:
-    """Of each claim SHA-256 of all that its result in a log rests on beside the log, exactly.
+    """For each requirement, SHA-256 of all inputs of its result other than the log, byte for byte.
 
-    Left out is what a log shows to all claims alike (its health, its labels), and where something
-    stands in the bindings: no result says that.
+    Not included are facts about the log that all requirements share (its health, its labels), and
+    positions in the bindings: no result depends on them.
     """
     clock, signals = plan.declarations.clock, plan.declarations.signals.values()
     topics = sorted({signal.path.topic for signal in signals})
@@ -168,7 +169,7 @@ def keys(plan: Plan) -> Mapping[str, str]:
 
 
 def _letters(plan: Plan, claim: AuditedRequirement, propositions: Sequence[str]) -> list[object]:
-    """All that a claim says, and what its propositions mean; places have no part in `repr`."""
+    """The text of a requirement and of its propositions; `repr` leaves out positions."""
     read = plan.declarations.restricted_to(propositions)
     return [
         claim.id,
@@ -191,7 +192,7 @@ def packed(plan: Plan) -> bytes:
 
 @with_recursion_limit
 def unpacked(data: bytes) -> Plan:
-    """The plan again."""
+    """The plan from its bytes."""
     plan = pickle.loads(data)
     assert isinstance(plan, Plan)
     return plan
@@ -199,7 +200,7 @@ def unpacked(data: bytes) -> Plan:
 
 @lru_cache(maxsize=4)
 def monitored_requirements(plan: Plan) -> tuple[MonitoredRequirement, ...]:
-    """The claims with their monitors, in their order: loaded once in each process."""
+    """The requirements with their monitors, in order; loaded once in each process."""
     return tuple(
         MonitoredRequirement(
             load(f"{claim.id}_monitor", claim.monitor),

@@ -1,6 +1,6 @@
-"""Work on many things in several processes; one that is killed costs no other thing its result.
+"""Map a function over items in several processes; a killed process costs no other item its result.
 
-Each process has a pipe of its own, so that it is certain which thing it worked on when it died.
+Each process has a pipe of its own, so that it is certain which item it worked on when it died.
 """
 
 from __future__ import annotations
@@ -28,123 +28,123 @@ R = TypeVar("R")
 
 @dataclass(frozen=True, slots=True)
 class WorkerDied:
-    """The process that worked on a thing was killed, twice: the second time it was alone."""
+    """The process of an item was killed twice, the second time while it worked alone."""
 
     status: int
-    """How it ended, as `Process.exitcode` tells it: negative is a signal."""
+    """The exit status, as in `Process.exitcode`: a negative one is a signal."""
 
     def __str__(self) -> str:
-        """In words."""
+        """The exit status in words."""
         return f"signal {-self.status}" if self.status < 0 else f"exit status {self.status}"
 
 
 class TimedOut(Enum):
-    """There was no time for a thing: its process was ended, or never began."""
+    """There was no time for an item: its process was stopped, or never began."""
 
     OWN = "own"
-    """It took longer than a thing may."""
+    """The item took longer than the limit for one."""
     ALL = "all"
-    """The time for all things was over."""
+    """The time limit for all items was reached."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Seconds of the clock that work may take."""
+    """Time limits in seconds."""
 
     each: float | None = None
-    """Of a thing; None: any."""
+    """The limit for one item; None: none."""
     all: float | None = None
-    """Of all things together, from their beginning."""
+    """The limit for all items together, from the start; None: none."""
 
 
 ENDLESS = Limits()
 
 
-def was_late(log: str, how: TimedOut, limits: Limits) -> Diagnostic:
-    """F440, F441: a log that was not audited to its end, for want of time.
+def time_limit_diagnostic(log: str, how: TimedOut, limits: Limits) -> Diagnostic:
+    """F440 or F441: a log that was not audited to its end because of a time limit.
 
     Args:
         log: its path.
-        how: which time was over.
-        limits: those of the audit.
+        how: the limit that was reached.
+        limits: the limits of the audit.
     """
     if how is TimedOut.OWN and limits.each is not None:
         return Diagnostic(
             Code.LOG_OUT_OF_TIME,
             f"the audit of `{name_of(log)}` was ended after {exact_duration(limits.each)}",
             Source(name_of(log), "").span(),
-            help="give it more time by `--log-time`, or audit it alone",
+            help="allow more time with `--log-time`, or audit this log alone",
             severity=Severity.WARNING,
         )
     assert limits.all is not None
     return Diagnostic(
         Code.AUDIT_OUT_OF_TIME,
         f"the {exact_duration(limits.all)} of the audit were over: no data",
-        help="audit the logs that are left, or give more time by `--time`",
+        help="audit the remaining logs, or allow more time with `--time`",
         severity=Severity.WARNING,
     )
 
 
-def was_killed(log: str, how: str) -> Diagnostic:
+def killed_diagnostic(log: str, how: str) -> Diagnostic:
     """F419.
 
     Args:
         log: its path.
-        how: the process ended.
+        how: how the process ended.
     """
     return Diagnostic(
         Code.PROCESS_KILLED,
         f"the process that audited `{name_of(log)}` was killed, and again when it ran alone: {how}",
         Source(name_of(log), "").span(),
-        help="was there memory enough? audit this log on a machine that has more",
+        help="it may have run out of memory: audit this log on a machine with more memory",
     )
 
 
 @overload
-def each(
-    function: Callable[[T], R], things: Sequence[T], jobs: int
+def map_processes(
+    function: Callable[[T], R], items: Sequence[T], jobs: int
 ) -> Generator[tuple[int, R | WorkerDied], None, None]: ...
 
 
 @overload
-def each(
-    function: Callable[[T], R], things: Sequence[T], jobs: int, limits: Limits
+def map_processes(
+    function: Callable[[T], R], items: Sequence[T], jobs: int, limits: Limits
 ) -> Generator[tuple[int, R | WorkerDied | TimedOut], None, None]: ...
 
 
-def each(
-    function: Callable[[T], R], things: Sequence[T], jobs: int, limits: Limits = ENDLESS
+def map_processes(
+    function: Callable[[T], R], items: Sequence[T], jobs: int, limits: Limits = ENDLESS
 ) -> Generator[tuple[int, R | WorkerDied | TimedOut], None, None]:
-    """The function of each thing with the thing's place, in the order in which they are done.
+    """The result of the function for each item with the item's index, in the order of completion.
 
     The processes end when the caller stops iterating.
 
     Args:
-        function: of anything, to what can be sent between processes.
-        things: in any number; a single one without limits is worked on by this process.
-        jobs: processes.
-        limits: of time; a thing that takes longer is late, and so is each one after all the time.
+        function: a function whose results can be sent between processes.
+        items: any number of items; a single one without limits is processed by this process.
+        jobs: the number of processes.
+        limits: the time limits; an item over a limit gives `TimedOut`.
 
     Raises:
-        Exception: what the function raises.
+        Exception: an exception that the function raises.
     """
-    if len(things) < 2 and limits == ENDLESS:
-        yield from ((place, function(thing)) for place, thing in enumerate(things))
+    if len(items) < 2 and limits == ENDLESS:
+        yield from ((index, function(thing)) for index, thing in enumerate(items))
         return
     clock = _Clock(limits)
     again: list[int] = []
-    with closing(_shared(function, things, range(len(things)), jobs, clock)) as done:
-        for place, result in done:
+    with closing(_shared(function, items, range(len(items)), jobs, clock)) as completed:
+        for index, result in completed:
             if isinstance(result, WorkerDied):
-                again.append(place)
+                again.append(index)
             else:
-                yield place, result
-    for place in again:
-        yield from _shared(function, things, [place], 1, clock)
+                yield index, result
+    for index in again:
+        yield from _shared(function, items, [index], 1, clock)
 
 
 class _Clock:
-    """What is left of the time of all things, and of each."""
+    """The time that is left for all items, and for one."""
 
     def __init__(self, limits: Limits) -> None:
         self._each = limits.each
@@ -152,15 +152,15 @@ class _Clock:
 
     @property
     def is_over(self) -> bool:
-        """Whether there is no time for any thing."""
+        """Whether the limit for all items is reached."""
         return self._end is not None and time.monotonic() >= self._end
 
     def is_late(self, since: float) -> bool:
-        """Whether a thing that began then takes too long."""
+        """Whether an item that began then is over its limit."""
         return self._each is not None and time.monotonic() - since >= self._each
 
     def patience(self, begun: Iterable[float]) -> float | None:
-        """Seconds until one of the things that began then is late, or all are; None: never."""
+        """Seconds until the next limit is reached, for items that began then; None: never."""
         ends = [] if self._each is None else [since + self._each for since in begun]
         ends += [] if self._end is None else [self._end]
         return max(0.0, min(ends) - time.monotonic()) if ends else None
@@ -168,88 +168,86 @@ class _Clock:
 
 def _shared(
     function: Callable[[T], R],
-    things: Sequence[T],
-    places: Sequence[int],
+    items: Sequence[T],
+    indices: Sequence[int],
     jobs: int,
     clock: _Clock,
 ) -> Generator[tuple[int, R | WorkerDied | TimedOut], None, None]:
-    crew = _WorkerPool(function, things, clock)
-    waiting = deque(places)
+    pool = _WorkerPool(function, items, clock)
+    waiting = deque(indices)
     try:
-        while waiting or crew.busy:
+        while waiting or pool.busy:
             if clock.is_over:
-                for place in (*crew.places, *waiting):
-                    yield place, TimedOut.ALL
+                for index in (*pool.indices, *waiting):
+                    yield index, TimedOut.ALL
                 return
-            while waiting and len(crew.busy) < jobs:
-                crew.hire(waiting.popleft())
-            done = list(crew.done())
-            while waiting and len(crew.busy) < jobs and not clock.is_over:
-                crew.hire(waiting.popleft())  # they work while this process takes what is done
-            yield from done
+            while waiting and len(pool.busy) < jobs:
+                pool.submit(waiting.popleft())
+            completed = list(pool.completed())
+            while waiting and len(pool.busy) < jobs and not clock.is_over:
+                pool.submit(waiting.popleft())  # workers continue while this process takes results
+            yield from completed
     finally:
-        crew.dismiss()
+        pool.terminate()
 
 
 class _WorkerPool:
-    """Processes, each at one thing or idle."""
+    """Processes that work on one item each, or are idle."""
 
-    def __init__(
-        self, function: Callable[[Any], Any], things: Sequence[Any], clock: _Clock
-    ) -> None:
-        self._function, self._things, self._clock = function, things, clock
+    def __init__(self, function: Callable[[Any], Any], items: Sequence[Any], clock: _Clock) -> None:
+        self._function, self._things, self._clock = function, items, clock
         self._idle: list[tuple[Connection, ForkProcess]] = []
         self.busy: dict[Connection, tuple[ForkProcess, int, float]] = {}
-        """Each with the place of its thing, and when that began."""
+        """Each connection with its process, the index of its item, and its start time."""
 
     @property
-    def places(self) -> list[int]:
-        """Of the things that are worked on."""
-        return [place for _, place, _ in self.busy.values()]
+    def indices(self) -> list[int]:
+        """The indices of the items in progress."""
+        return [index for _, index, _ in self.busy.values()]
 
-    def hire(self, place: int) -> None:
-        """Let an idle process, or a new one, work on a thing."""
-        connection, process = self._idle.pop() if self._idle else self._born()
-        with suppress(OSError):  # it has died meanwhile: `done` will tell
-            connection.send(place)
-        self.busy[connection] = process, place, time.monotonic()
+    def submit(self, index: int) -> None:
+        """Let an idle process, or a new one, work on an item."""
+        connection, process = self._idle.pop() if self._idle else self._spawn()
+        with suppress(OSError):  # the process has died, which `done` reports
+            connection.send(index)
+        self.busy[connection] = process, index, time.monotonic()
 
-    def done(self) -> Iterator[tuple[int, Any]]:
-        """Wait for results, and for what is late; the processes of results are free again."""
+    def completed(self) -> Iterator[tuple[int, Any]]:
+        """Wait for results or for time limits; the processes of results become idle."""
         patience = self._clock.patience(since for _, _, since in self.busy.values())
         for connection in wait(list(self.busy), patience):
             assert isinstance(connection, Connection)
-            process, place, _ = self.busy.pop(connection)
+            process, index, _ = self.busy.pop(connection)
             try:
                 fine, result = connection.recv()
             except (EOFError, OSError):
                 connection.close()
                 process.join()
-                yield place, WorkerDied(process.exitcode or 0)
+                yield index, WorkerDied(process.exitcode or 0)
                 continue
             self._idle.append((connection, process))
             if not fine:
                 raise result
-            yield place, result
-        for connection, (process, place, since) in list(self.busy.items()):
+            yield index, result
+        for connection, (process, index, since) in list(self.busy.items()):
             if self._clock.is_late(since):
                 del self.busy[connection]
                 _end(connection, process)
-                yield place, TimedOut.OWN
+                yield index, TimedOut.OWN
 
-    def dismiss(self) -> None:
-        """End all processes at once: they only read."""
+    def terminate(self) -> None:
+        """Terminate all processes at once: they only read."""
         working = [(connection, process) for connection, (process, *_) in self.busy.items()]
         for _, process in (*working, *self._idle):
             process.kill()
         for connection, process in (*working, *self._idle):
             _end(connection, process)
 
-    def _born(self) -> tuple[Connection, ForkProcess]:
-        # Forked: the function may be what cannot be sent, and what is loaded need not be again.
+    def _spawn(self) -> tuple[Connection, ForkProcess]:
+        # Forked, because some functions cannot be pickled, and loaded modules are inherited.
         context = multiprocessing.get_context("fork")
         ours, theirs = context.Pipe()
-        # A pipe ends when all its ends are closed: a child must not keep those of the others.
+        # A pipe ends when all its ends are closed: a child must close those of other children.
         inherited = [ours, *self.busy, *(connection for connection, _ in self._idle)]
         arguments = (self._function, self._things, theirs, inherited)
         process = context.Process(target=_serve, args=arguments, daemon=True)
@@ -267,14 +265,14 @@ def _end(connection: Connection, process: ForkProcess) -> None:
 
 def _serve(
     function: Callable[[Any], Any],
-    things: Sequence[Any],
+    items: Sequence[Any],
     connection: Connection,
     inherited: Sequence[Connection],
 ) -> None:
-    """Work on the things whose places are sent, until nobody is there to send one."""
+    """Work on the items whose indices are sent, until the connection is closed."""
     ignore_interrupts()
     for other in inherited:
         other.close()
     with suppress(EOFError, OSError):
         while True:
-            connection.send(reply(function, things[connection.recv()]))
+            connection.send(reply(function, items[connection.recv()]))

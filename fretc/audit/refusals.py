@@ -16,20 +16,21 @@ from fretish.documents import RequirementEntry
 
 @dataclass(frozen=True, slots=True)
 class RefusedRequirement:
-    """A requirement that no log can be judged by: it is in every result, and never satisfied."""
+    """A requirement that no log can be judged by: all its results are *no data*."""
 
     id: str
     sentence: str
     basis: Basis = field(compare=False)
-    """As that of a claim; of the wording as it is, where that cannot be formalized."""
+    """The verdict inputs, as of an audited requirement; of the wording as it is if it cannot be
+    formalized."""
     why: tuple[Diagnostic, ...]
 
 
 def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic, ...]], ...]:
-    """Every requirement in force that an audit cannot judge, and why: errors, in their order.
+    """Every requirement in force that an audit cannot judge, with its errors, in order.
 
-    Those of the project, and what a log needs beside: a binding of each proposition, a clock, and
-    a monitor.
+    The reasons are errors of the project, and what a log needs in addition: a binding of each
+    proposition, a clock, and a monitor.
     """
     requirements = active_requirements(project)
     own = {id(requirement.entry): requirement for requirement in requirements}
@@ -39,7 +40,7 @@ def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic
         if requirements and not has_errors(project.general)
         else None
     )
-    found = []
+    refused_requirements = []
     for entry in project.requirements:
         requirement = own.get(id(entry))
         why = [*refused.get(id(entry), ())]
@@ -48,24 +49,24 @@ def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic
         elif requirement is not None and project.declarations is not None:
             why.extend(_not_auditable(requirement, project.declarations))
         if why and entry.status != "retired":
-            found.append((entry, tuple(dict.fromkeys(why))))
-    return tuple(found)
+            refused_requirements.append((entry, tuple(dict.fromkeys(why))))
+    return tuple(refused_requirements)
 
 
 def active_requirements(project: Project) -> list[FormalizedRequirement]:
-    """The requirements of all requirements that are not retired."""
+    """The requirements that are not retired."""
     return [
         requirement for requirement in project.formalized if requirement.entry.status != "retired"
     ]
 
 
 def _unusable(project: Project, first: FormalizedRequirement) -> Diagnostic | None:
-    """Why the bindings cannot be used for any requirement, given once; None where they can."""
+    """The reason why the bindings cannot be used for any requirement; None: they can."""
     declarations = project.declarations
     if declarations is None:
         return Diagnostic(
             Code.UNBOUND,
-            "no bindings say what the propositions mean in the messages",
+            "no bindings map the propositions to messages",
             first.entry.wording,
             help="write `bindings.toml` beside the requirements, or name it with `--bindings`",
         )
@@ -82,6 +83,6 @@ def _unusable(project: Project, first: FormalizedRequirement) -> Diagnostic | No
 def _not_auditable(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> tuple[Diagnostic, ...]:
-    """Why no log can be judged by a requirement; empty where one can."""
+    """The reasons why no log can be judged by a requirement; empty: one can."""
     refused = monitors.refuse(replace(requirement, pctl=None))
     return (*([refused] if refused else []), *unbound_propositions(requirement, declarations))

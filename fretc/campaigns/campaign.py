@@ -11,10 +11,10 @@ from pathlib import Path
 
 from compiler.files.build_id import __version__
 from compiler.targets.interceptor_options import ticks
-from fretc.audit.many_logs import audited
+from fretc.audit.many_logs import audit_log
 from fretc.audit.measurements.binomial import highest, lowest
 from fretc.audit.plan import monitored_requirements
-from fretc.audit.pool import WorkerDied, each
+from fretc.audit.pool import WorkerDied, map_processes
 from fretc.campaigns.experiment import interceptor, plan, safety_function
 from monitors import kernel
 from monitors.interceptor import Options
@@ -75,7 +75,7 @@ def simulated(scenario: Scenario, seed: int, out: Path) -> Run:
 
 def assessed(mission: Mission) -> Run:
     """Audit the log of a mission."""
-    audit = audited(plan(), str(mission.path))
+    audit = audit_log(plan(), str(mission.path))
     return _run(mission, {r.requirement: r.verdict for r in audit.results})
 
 
@@ -149,7 +149,7 @@ def campaign(
     runs: dict[int, Run] = {}
     with _place(folder, things) as logs:
         function = partial(_one, logs, folder is not None)
-        with closing(each(function, things, jobs)) as done:
+        with closing(map_processes(function, things, jobs)) as done:
             for place, run in done:
                 if isinstance(run, WorkerDied):
                     raise RuntimeError(f"the process of a mission was killed: {run}")

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 
     from fretc.audit.into_store import ReusableResults, StoreWriter
     from fretc.audit.many_logs import Engine
-    from fretc.audit.outputs.totals import Marks
+    from fretc.audit.outputs.totals import VerdictWords
     from fretc.audit.plan import Plan
     from fretc.audit.pool import Limits
     from fretc.audit.store.recordings import SampleCache
@@ -260,7 +260,7 @@ def audit(
     from compiler.project.folder import load
     from compiler.project.paths import companions, requirement_files, sibling_path
     from fretc.audit.log_paths import files_of
-    from fretc.audit.outputs.totals import Marks
+    from fretc.audit.outputs.totals import VerdictWords
     from fretc.audit.plan import Plan, planned
     from fretc.commands import audit_outputs as outputs
     from fretc.logs.labels import given
@@ -307,7 +307,7 @@ def audit(
         elif os.path.lexists(target.path):
             say_line(visible(f"no log could be read: `{target.path}` stays as it was"))
         source, not_judged = result.source, {one.id for one in plan.refused}
-        marks = Marks.of((each for _, each in source.briefs()), result.estimates, not_judged)
+        marks = VerdictWords.of((each for _, each in source.briefs()), result.estimates, not_judged)
         is_bad = plan.refused or has_errors((*project.diagnostics, *diagnostics))
         status = BAD if is_bad else _status(marks)
         from fretc.commands.audit_text import Places, Subject, lines
@@ -334,7 +334,7 @@ def audit(
     raise SystemExit(status)
 
 
-def _status(marks: Marks) -> int:
+def _status(marks: VerdictWords) -> int:
     return VIOLATION if marks.violated else SHOWN if marks.shown else NOT_SHOWN
 
 

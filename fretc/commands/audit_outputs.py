@@ -13,8 +13,8 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 if TYPE_CHECKING:
     from compiler.project.project import Project
-    from fretc.audit.evidence.briefs import EvidenceSource
     from fretc.audit.evidence.probabilities import Estimated
+    from fretc.audit.evidence.result_summaries import EvidenceSource
     from fretc.audit.evidence.schema import Result
 
 _BATCH = 256

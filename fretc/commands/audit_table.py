@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from fretc.audit.evidence.verdicts import SHOWN
-from fretc.audit.outputs.totals import COUNTED, Marks, severity, sign_of
+from fretc.audit.outputs.totals import COUNTED, VerdictWords, severity, sign_of
 from fretc.terminal.output import Piece
 from fretc.terminal.screen import Screen, fitted, padded, titled, width
 
@@ -28,7 +28,7 @@ _BLANK: Line = (("", None),)
 
 
 def table(
-    grid: Marks, screen: Screen, titles: Mapping[str, str] = MappingProxyType({})
+    grid: VerdictWords, screen: Screen, titles: Mapping[str, str] = MappingProxyType({})
 ) -> Iterator[Line]:
     """The lines of the table, and below it the runs in which something is not shown.
 
@@ -55,7 +55,7 @@ def _badness(counts: Counter[str]) -> tuple[tuple[int, int], ...]:
 
 
 def _blocks(
-    grid: Marks,
+    grid: VerdictWords,
     rows: Sequence[str],
     columns: Sequence[int],
     screen: Screen,
@@ -84,7 +84,7 @@ def _numbers(block: Sequence[int]) -> str:
     return " ".join(padded(first, _GROUP) for first in firsts).rstrip()
 
 
-def _marks(grid: Marks, id: str, block: Sequence[int]) -> Iterator[Piece]:
+def _marks(grid: VerdictWords, id: str, block: Sequence[int]) -> Iterator[Piece]:
     for place, run in enumerate(block):
         gap = " " if place % _GROUP == 0 else ""
         word = grid.words[run].get(id)
@@ -92,7 +92,7 @@ def _marks(grid: Marks, id: str, block: Sequence[int]) -> Iterator[Piece]:
         yield (f"{gap}{sign.glyph}", sign.colour) if sign else (f"{gap} ", None)
 
 
-def _left_out(grid: Marks, rows: Sequence[str], columns: Sequence[int]) -> Iterator[Line]:
+def _left_out(grid: VerdictWords, rows: Sequence[str], columns: Sequence[int]) -> Iterator[Line]:
     """What the table does not have, in one line; none of it is worse than what it has."""
     kept_runs, kept_ids = {*columns}, {*rows}
     words = Counter(
@@ -116,7 +116,7 @@ def _left_out(grid: Marks, rows: Sequence[str], columns: Sequence[int]) -> Itera
     yield ((line, sign_of(min(words, key=severity)).colour),)
 
 
-def _legend(grid: Marks, bad: Sequence[int], screen: Screen) -> Iterator[Line]:
+def _legend(grid: VerdictWords, bad: Sequence[int], screen: Screen) -> Iterator[Line]:
     """The names of the worst runs, and how many more there are."""
     if bad:
         yield _BLANK

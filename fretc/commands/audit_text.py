@@ -10,16 +10,16 @@ from typing import Any
 
 from compiler.formalization.record import wording
 from compiler.project.project import Project
-from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.declared_units import without_samples
 from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Result, Threshold, Violation
 from fretc.audit.evidence.verdicts import SHOWN, VERDICTS
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretc.audit.outputs.totals import (
     COUNTED,
-    Marks,
     Total,
+    VerdictWords,
     longest,
     runs,
     totals,
@@ -75,7 +75,7 @@ class Subject:
     """An audit, and what its text needs beside it."""
 
     source: EvidenceSource
-    marks: Marks
+    marks: VerdictWords
     estimates: Sequence[Estimated]
     project: Project
     refused: Collection[str]

@@ -82,7 +82,7 @@ def check(
     from compiler.project.paths import sibling_path
     from compiler.project.stated_numbers import first_unit
     from fretc.analysis.evidence import known as known_analysis
-    from fretc.audit.evidence.briefs import Briefs
+    from fretc.audit.evidence.result_summaries import ResultSummaries
     from fretc.audit.refusals import refusals
     from fretc.audit.store.anywhere import required_source, source
     from fretc.report.diagnostics import idle_waivers, stale_evidence
@@ -113,7 +113,7 @@ def check(
         diagnostics.append(analyzed)
         analyzed = None
     results = None if isinstance(audited, Diagnostic) else audited
-    briefs = Briefs.of(results) if results else None
+    briefs = ResultSummaries.of(results) if results else None
     lock, path = None, sibling_path(requirements, "fretc.lock")
     if path is not None:
         known = read_lock(path)

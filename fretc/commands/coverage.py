@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from compiler.project.project import Project
-    from fretc.audit.evidence.briefs import EvidenceSource
+    from fretc.audit.evidence.result_summaries import EvidenceSource
     from fretc.audit.plan import Plan
     from fretc.coverage.coverage import Coverage
     from fretc.coverage.directions import Directions

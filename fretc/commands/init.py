@@ -32,7 +32,7 @@ def init(folder: str, log: str | None) -> None:
     Example: fretc init my-robot --from run.mcap
     """
     from compiler.files.settings import NAME as SETTINGS
-    from fretc.audit.bindings.beginning import from_log, without_log
+    from fretc.audit.bindings.starter_files import from_log, without_log
 
     requirements = Path(folder) / REQUIREMENTS_FOLDER
     if os.path.lexists(requirements) and not _is_empty_folder(requirements):

@@ -29,7 +29,7 @@ from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
 
 if TYPE_CHECKING:
     from compiler.project.project import Project
-    from fretc.audit.evidence.briefs import EvidenceSource
+    from fretc.audit.evidence.result_summaries import EvidenceSource
     from fretc.report.model.views import Report
     from fretc.report.page.html import Inset
 

@@ -237,7 +237,7 @@ def _chains(
     """
     from compiler.project.folder import load_folder
     from fretc.analysis.evidence import known as known_analysis
-    from fretc.audit.evidence.briefs import Briefs
+    from fretc.audit.evidence.result_summaries import ResultSummaries
     from fretc.audit.measurements.confidence_intervals import REFUTED
     from fretc.audit.store.anywhere import required_source, source
     from fretc.report.traceability.chain import chains
@@ -261,7 +261,7 @@ def _chains(
         return project, chains(project, None, proofs=proofs, analyzed=analyzed), ()
     say_briefly(project.diagnostics, requirements)
     refuted = {one.requirement for one in audited.probabilities if one.answer == REFUTED}
-    of_all = chains(project, Briefs.of(audited), proofs=proofs, analyzed=analyzed)
+    of_all = chains(project, ResultSummaries.of(audited), proofs=proofs, analyzed=analyzed)
     return project, of_all, refuted
 
 

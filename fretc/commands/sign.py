@@ -22,7 +22,7 @@ from fretish.reading.natural_order import natural
 if TYPE_CHECKING:
     from fretc.attestation.keys import PrivateKey
     from fretc.attestation.statement import Statement, Subject
-    from fretc.audit.evidence.briefs import EvidenceSource
+    from fretc.audit.evidence.result_summaries import EvidenceSource
     from fretc.report.traceability.lock import Review
     from fretc.report.traceability.waivers import Waiver
     from fretc.verification.reader import Proofs

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def summarize(paths: Sequence[str], query: str | None, form: str) -> NoReturn:
     """Print what tables or evidence say, or the answer to a query; exit as their audit did."""
-    from fretc.audit.outputs.summary import answered, summarized
+    from fretc.audit.outputs.summary import run_query, summarize
     from fretc.audit.outputs.table import read
 
     if form not in ("text", "json"):
@@ -28,12 +28,12 @@ def summarize(paths: Sequence[str], query: str | None, form: str) -> NoReturn:
     if isinstance(table, Diagnostic):
         stop(table)
     if query is not None:
-        answer = answered(table, query)
+        answer = run_query(table, query)
         if isinstance(answer, Diagnostic):
             stop(answer)
         click.echo(_json(answer.records) if form == "json" else _listed(answer), nl=False)
         raise SystemExit(SHOWN)
-    summary = summarized(table)
+    summary = summarize(table)
     say(summary.remarks)
     click.echo(_json(summary.as_record) if form == "json" else _text(summary), nl=False)
     raise SystemExit(VIOLATION if summary.violated else SHOWN if summary.shown else NOT_SHOWN)

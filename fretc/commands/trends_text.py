@@ -11,7 +11,7 @@ from fretc.audit.selection.choice import in_words
 from fretc.report.model import phrases
 from fretc.terminal.output import Piece
 from fretc.terminal.screen import Screen, fitted, padded
-from fretc.trends.changes import Change, Tone
+from fretc.trends.changes import Change, RoundOutcome
 from fretc.trends.comparisons import Finding
 from fretc.trends.trends import Group, Item, Trends, arrived, gone, not_selected
 from fretish.diagnostics import status_symbols as signs
@@ -131,8 +131,8 @@ def _more(items: Sequence[Item]) -> Iterator[Line]:
 
 
 def _line(item: Item, screen: Screen) -> Line:
-    rounds = zip(item.tones[-_MARKS:], item.rounds[-_MARKS:], strict=True)
-    marks = [_mark(tone, verdicts) for tone, verdicts in rounds]
+    rounds = zip(item.round_outcomes[-_MARKS:], item.rounds[-_MARKS:], strict=True)
+    marks = [_mark(round_outcome, verdicts) for round_outcome, verdicts in rounds]
     return (
         (f"    {_column(item.requirement, _ID, screen)}  ", None),
         (f"{_column(str(item.scenario), _NAME, screen)}  ", None),
@@ -141,12 +141,12 @@ def _line(item: Item, screen: Screen) -> Line:
     )
 
 
-def _mark(tone: Tone | None, verdicts: Sequence[str]) -> Piece:
+def _mark(round_outcome: RoundOutcome | None, verdicts: Sequence[str]) -> Piece:
     """The sign of a round: of an open one that of its worst verdict."""
-    if tone is None:
+    if round_outcome is None:
         return " ", None
     word = min(verdicts, key=severity)
-    sign = signs.GOOD if tone is Tone.SHOWN else VERDICTS[word].sign
+    sign = signs.GOOD if round_outcome is RoundOutcome.SHOWN else VERDICTS[word].sign
     return sign.glyph, sign.colour
 
 
@@ -188,14 +188,14 @@ def _groups(groups: Sequence[Group], sign: StatusSymbol, title: str) -> Iterator
 
 
 def _regressions(trends: Trends, screen: Screen) -> Iterator[Line]:
-    found = trends.found(Finding.REGRESSED)
+    found = trends.with_finding(Finding.REGRESSED)
     if not found:
         return
     yield _BLANK
     yield _title(
         signs.BAD,
         len(found),
-        f"regressed in {trends.held.after} (medians), statistically significant",
+        f"regressed in {trends.compared.after} (medians), statistically significant",
     )
     for one in found[:6]:
         ids = _column(one.measure.ids, _ID, screen)
@@ -209,12 +209,13 @@ def _rest(trends: Trends) -> Iterator[Line]:
     steady, never = len(trends.of(Change.STEADY)), len(trends.of(Change.NEVER_SHOWN))
     flaky = sum(item.flaky for item in trends.items)
     yield ((f"{steady} shown as before, {never} never shown; {flaky} flaky in all", None),)
-    chance = len(trends.found(Finding.CHANCE))
-    few = len(trends.found(Finding.TOO_FEW))
-    held = f"{trends.held.after} against {trends.held.before}"
+    chance = len(trends.with_finding(Finding.CHANCE))
+    few = len(trends.with_finding(Finding.TOO_FEW))
+    compared = f"{trends.compared.after} against {trends.compared.before}"
     yield (
         (
-            f"latencies and margins, {held}: {len(trends.found(Finding.REGRESSED))} regressed, "
+            f"latencies and margins, {compared}: {len(trends.with_finding(Finding.REGRESSED))} "
+            "regressed, "
             f"{chance} no worse than chance, {few} with too few runs to tell",
             None,
         ),

@@ -211,7 +211,7 @@ def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tup
 def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict[str, str]:
     """Run → where its log is, of those that may be opened; of the others it is said."""
     from fretc.logs.storage.log_names import is_url, name_of
-    from fretc.logs.storage.places import Places
+    from fretc.logs.storage.places import AllowedLocations
     from fretc.reproduction.results import located
 
     folders = [name for name in named if not is_url(name)]
@@ -224,7 +224,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
         places = {**located(runs, folder), **places}
     if not folders or len(folders) < len(named):
         places = {**located(runs, None), **places}
-    policy = Places(named, offline)
+    policy = AllowedLocations(named, offline)
     refusals = {run: why for run, place in places.items() if (why := policy.refusal(place))}
     fix = "name its folder, or the beginning of its URL, with `--logs`, if you trust it"
     say(

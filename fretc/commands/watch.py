@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from compiler.project.project import Project
     from fretc.audit.plan import Plan
-    from fretc.watch.news import RunEnded
+    from fretc.watch.events import RunEnded
     from fretc.watch.publishing.publishing import Publisher
     from fretc.watch.sources.source import Source
 

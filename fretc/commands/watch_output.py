@@ -16,8 +16,8 @@ import click
 
 from fretc.terminal.output import coloured, painted, say
 from fretc.terminal.screen import screen
+from fretc.watch.events import DiagnosticEvent, StateChange, WatchEvent
 from fretc.watch.json_lines import line as json_line
-from fretc.watch.news import Changed, Found, News
 from fretc.watch.publishing.publishing import Publishing
 from fretc.watch.reaction import Reaction
 from fretc.watch.session import Session
@@ -33,7 +33,7 @@ _PERIOD = 0.2
 class Output(Protocol):
     """Where a watch is shown."""
 
-    def tell(self, news: News, session: Session) -> None:
+    def tell(self, news: WatchEvent, session: Session) -> None:
         """Something has happened."""
 
     def refresh(self, session: Session) -> None:
@@ -46,7 +46,7 @@ class Output(Protocol):
 class JsonLines:
     """An object for each piece of news."""
 
-    def tell(self, news: News, session: Session) -> None:
+    def tell(self, news: WatchEvent, session: Session) -> None:
         """A line, at once."""
         click.echo(json.dumps(json_line(news), sort_keys=True))
         sys.stdout.flush()
@@ -64,10 +64,10 @@ class Lines:
     def __init__(self) -> None:
         self._start: int | None = None
 
-    def tell(self, news: News, session: Session) -> None:
+    def tell(self, news: WatchEvent, session: Session) -> None:
         """What there is to say of it."""
         self._start = self._start if self._start is not None else session.first_tick
-        if isinstance(news, Found):
+        if isinstance(news, DiagnosticEvent):
             say([news.diagnostic])
             return
         text = line(news, self._start)
@@ -90,9 +90,9 @@ class Board:
         self._titles, self._lines = titles, Lines()
         self._height, self._drawn = 0, 0.0
 
-    def tell(self, news: News, session: Session) -> None:
+    def tell(self, news: WatchEvent, session: Session) -> None:
         """News scrolls by above the rows; what the rows show is no news."""
-        if isinstance(news, Changed) and news.before is None:
+        if isinstance(news, StateChange) and news.before is None:
             return
         self._clear()
         self._lines.tell(news, session)
@@ -184,7 +184,7 @@ def _watched(
             publishing.take(item, watch)
             if reaction is not None:
                 for problem in reaction.problems():
-                    output.tell(Found(problem), watch.session)
+                    output.tell(DiagnosticEvent(problem), watch.session)
             output.refresh(watch.session)
             if watch.ended or stopped.is_set():
                 break
@@ -202,15 +202,15 @@ def _watched(
     if reaction is not None:
         reaction.wait()
         for problem in reaction.problems():
-            output.tell(Found(problem), watch.session)
+            output.tell(DiagnosticEvent(problem), watch.session)
 
 
-def _tell(news: News, watch: Watch, output: Output, reaction: Reaction | None) -> None:
-    if reaction is not None and isinstance(news, Changed) and _is_violation(news):
+def _tell(news: WatchEvent, watch: Watch, output: Output, reaction: Reaction | None) -> None:
+    if reaction is not None and isinstance(news, StateChange) and _is_violation(news):
         reaction.start(json_line(news))
     output.tell(news, watch.session)
 
 
-def _is_violation(news: Changed) -> bool:
+def _is_violation(news: StateChange) -> bool:
     before = None if news.before is None else news.before.verdict
     return news.state.verdict == "violated" and before != "violated"

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from compiler.files.records import UnsetType
-from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Moment, Requirement, Situations
 from fretc.audit.evidence.schema import Situation as Named
 from fretc.coverage.least_runs import LeastRuns, least_runs

@@ -17,9 +17,9 @@ from compiler.formalization.resolution import with_propositions
 from compiler.project.project import Project
 from compiler.situations.mutants import Mutant, mutants
 from compiler.targets.python import monitor as monitors
-from fretc.audit.measurements.judgement import Judgement, each_judged
+from fretc.audit.measurements.judgement import Judgement, judge_each
 from fretc.audit.plan import Plan
-from fretc.audit.pool import WorkerDied, each, was_killed
+from fretc.audit.pool import WorkerDied, killed_diagnostic, map_processes
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.traces import Trace, trace
@@ -114,19 +114,19 @@ def _is_told(declarations: Declarations, name: str) -> bool:
 
 def suspects(requirement: FormalizedRequirement) -> MutantBatch:
     """The mutants of a requirement in one monitor, with the requirement itself."""
-    judged: list[Mutant] = []
+    judge: list[Mutant] = []
     refused: list[tuple[Mutant, str]] = []
     for mutant in mutants(requirement):
         why = monitors.refuse(without_probability(mutant.requirement))
         if why is None:
-            judged.append(mutant)
+            judge.append(mutant)
         else:
             refused.append((mutant, why.message))
-    numbered = [_called(each.requirement, f"M{n}") for n, each in enumerate(judged)]
+    numbered = [_called(each.requirement, f"M{n}") for n, each in enumerate(judge)]
     text = monitors.text(_called(requirement, "R"), *numbered)
     watching = load(f"{requirement.id}_mutants", text)
     return MutantBatch(
-        requirement.id, requirement.fingerprint, tuple(judged), tuple(refused), watching
+        requirement.id, requirement.fingerprint, tuple(judge), tuple(refused), watching
     )
 
 
@@ -181,7 +181,7 @@ def judgements(
     columns = {name: truths.columns.get(name, unknown) for name in monitor.PROPOSITIONS}
     if cut is not None:
         cut = {name: cut.get(name) for name in columns}
-    return each_judged(monitor, columns, cut, ticks, intact=intact, end=end)
+    return judge_each(monitor, columns, cut, ticks, intact=intact, end=end)
 
 
 def difference(own: Judgement, other: Judgement) -> Difference | None:
@@ -298,8 +298,10 @@ def _each_run(
     files = [place for place, log in enumerate(logs) if log != STDIN]
     if STDIN in logs:  # another process does not have it
         yield logs.index(STDIN), of_run(asked, STDIN)
-    with closing(each(partial(of_run, asked), [logs[place] for place in files], jobs)) as done:
+    with closing(
+        map_processes(partial(of_run, asked), [logs[place] for place in files], jobs)
+    ) as done:
         for number, one in done:
             place = files[number]
             log = name_of(logs[place])
-            yield place, was_killed(log, str(one)) if isinstance(one, WorkerDied) else one
+            yield place, killed_diagnostic(log, str(one)) if isinstance(one, WorkerDied) else one

@@ -1,4 +1,4 @@
-"""The containers of logs, by the bytes with which a file begins: MCAP, and the bags of ROS."""
+"""The container formats of logs, recognized by the first bytes of a file: MCAP and ROS bags."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ from fretish.reading.limits import extend_budget
 def part(
     log: Input, sink: Sink, integrity: Integrity, place: Span, wanted: Collection[str] = ()
 ) -> Part | Diagnostic:
-    """The messages of one file; or what keeps the whole file from being read.
+    """The messages of one file, or the diagnostic that says why the file cannot be read.
 
     Args:
         log: the file.
         sink: receives the messages.
-        integrity: what is looked at beyond them.
-        place: the file, as the user named it.
-        wanted: what is asked for of its metadata records.
+        integrity: how thoroughly the file is checked beyond the messages.
+        place: the file, as named on the command line.
+        wanted: the keys of its metadata records that are wanted.
 
     Raises:
-        BrokenError: the file is not as its index says.
+        BrokenError: the file does not match its index.
     """
     extend_budget(log.size)
-    found = _read(log, sink, integrity, place, wanted)
-    return log_diagnostics.changed(place) if log.changed() else found
+    contents = _read(log, sink, integrity, place, wanted)
+    return log_diagnostics.changed(place) if log.changed() else contents
 
 
 def only_grows(log: Input) -> bool:
@@ -72,20 +72,20 @@ def _bag(
 ) -> Part | Diagnostic:
     if log.file is None or log.same is None:
         return storage_diagnostics.bag_of_no_file(place)
-    found = bags.read(log.file, log.same, start, sink, place)
-    if isinstance(found, Diagnostic):
-        return found
-    damages = (*found.damages, *_reindexed(log.file, found.span))
-    return Part(log.sha256(), log.size, found.span, damages, found.notes)
+    contents = bags.read(log.file, log.same, start, sink, place)
+    if isinstance(contents, Diagnostic):
+        return contents
+    damages = (*contents.damages, *_reindexed(log.file, contents.span))
+    return Part(log.sha256(), log.size, contents.span, damages, contents.notes)
 
 
 def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None]]:
-    """What a bag has lost that was fixed by `rosbag reindex`."""
+    """The loss of a bag that was fixed by `rosbag reindex`."""
     backup = unclosed_backup(file)
     if backup is not None and span is not None:
         what = (
-            f"it was reindexed, and the chunk that was being written when its recording broke off "
-            f"is not in it (`{backup}` is beside it)"
+            f"the bag was reindexed: the chunk that was being written when the recording "
+            f"stopped is missing (`{backup}` is beside it)"
         )
         yield Damage(NOWHERE, what, code=Code.REINDEXED), (span[1], span[1])
 
@@ -111,7 +111,7 @@ def _mcap(
 
 
 _BEGINNING = 16
-"""Bytes that tell what a file is; enough for each magic, and for saying what else it may be."""
+"""The first bytes of a file; enough to recognize every format."""
 Container = Callable[[Input, bytes, Sink, Integrity, Span, Collection[str]], Part | Diagnostic]
-"""What reads a file of one kind; it gets the first bytes, too."""
+"""The reader of one container format; its last argument is the first bytes of the file."""
 CONTAINERS: Mapping[bytes, Container] = {MAGIC: _mcap, bags.BAG: _bag, bags.DB3: _bag}

@@ -1,8 +1,8 @@
-"""Payloads of one stream → the numbers of its signals, many messages at once.
+"""The numbers of the signals of one stream from its payloads, many messages at once.
 
-Fields are read from their places in the payloads. The official decoder, slower and the reference,
-also decodes made-up messages, and of the first real ones some whose numbers are compared with those
-that were read of all at once; where it disagrees, it reads the whole stream.
+Fields are read at their positions in the payloads. The official decoder, slower and the reference,
+also decodes generated messages, and some of the first real ones, and their numbers are compared; if
+the decoder disagrees, it reads the whole stream.
 """
 
 from __future__ import annotations
@@ -22,27 +22,28 @@ from fretc.logs.messages.decoding import Decode, constants, decoder, is_single, 
 from fretc.logs.messages.layouts import Layout, Layouts, Location, Shape, Where
 from fretc.logs.messages.probes import trusted
 from fretc.logs.messages.vectorized import nearest, samples, siblings
+from fretc.logs.signals.enum_values import UnmappedSamples, enum_index, enum_indices, shown
 from fretc.logs.signals.samples import EXACT, Numbers, Times, Values, widest
 from fretc.logs.signals.signals import RANGE_MIN, FieldError, is_chosen, sample
 from fretc.logs.signals.signals import nearest as nearest_of_one
-from fretc.logs.signals.words import UnmappedSamples, shown, word, words
 from fretish.bindings.declarations import Reduce, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 
 _CHECKED = 8
-"""Layouts of a stream that are compared with the official decoder on three messages."""
+"""The number of layouts of a stream that are compared with the official decoder on three
+messages."""
 _FEW_ROWS, _LARGE = 128, 1024
-"""Of fewer messages of a layout that have more bytes one is compared: decoding three would cost
-more than the rest."""
+"""If a layout has fewer messages, and they have more bytes, one is compared: decoding three would
+cost more than the rest."""
 _BLOCK = 2**17
-"""Numbers of an array field in one block: the passes over them stay within the cache."""
+"""Numbers of an array field in one block, so that the passes over them stay within the cache."""
 _FEW = 512
-"""Bytes; decoding fewer is faster than reading places. Two channels of one topic may send by turns,
-and then each message comes alone."""
+"""Bytes up to which the official decoder is faster. Two channels of one topic may alternate, and
+then each message comes alone."""
 _SECONDS = ("int32", "uint32")
 """Types of a stamp's fields for which no sum of seconds and nanoseconds overflows."""
 _STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
-"""Names of the fields of a stamp, in ROS 2 and in ROS 1."""
+"""Names of the fields of a stamp in ROS 2 and in ROS 1."""
 
 
 @dataclass(slots=True)
@@ -56,9 +57,9 @@ class Extract:
     stamped: NDArray[np.bool_]
     nearest: dict[str, float] = field(default_factory=dict)
     foreign: dict[str, NDArray[np.bool_]] = field(default_factory=dict)
-    """Of a signal of words in which messages it is none of them; absent: in none."""
+    """For each enumeration signal, the messages without any of its values; absent: none."""
     texts: dict[str, tuple[int, str]] = field(default_factory=dict)
-    """The first such message, and what it holds."""
+    """The first such message, and its text."""
 
     @classmethod
     def empty(cls, count: int, signals: Iterable[Signal], single: Container[str] = ()) -> Extract:
@@ -83,47 +84,47 @@ class Extract:
             self.values[signal.name] = self.values[signal.name].astype(EXACT, copy=False)
         self.values[signal.name][at] = numbers
 
-    def put_word(self, signal: Signal, at: int, word: float | str) -> None:
-        """Store the place of a word, or note a value that is none."""
+    def put_enum_value(self, signal: Signal, at: int, word: float | str) -> None:
+        """Store the index of an enumeration value, or record a text without one."""
         if isinstance(word, str):
             self._note(signal, np.array([at]), word)
         else:
             self.values[signal.name][at] = word
 
-    def put_words(self, signal: Signal, at: Places, numbers: Values) -> None:
-        """Store the words that some numbers mean."""
-        places, foreign = words(signal, numbers)
+    def put_enum_values(self, signal: Signal, at: Places, numbers: Values) -> None:
+        """Store the enumeration values of some numbers."""
+        places, foreign = enum_indices(signal, numbers)
         self.values[signal.name][at] = places
         if foreign.any():
             self._note(signal, at[foreign], shown(numbers[foreign][0]))
 
     def _note(self, signal: Signal, at: Places, first: str) -> None:
-        """Note messages, in their order, that hold none of the words of a signal."""
+        """Record messages, in their order, without any value of an enumeration signal."""
         rows = self.foreign.setdefault(signal.name, np.zeros(len(self.decoded), bool))
         rows[at] = True
-        known, _ = self.texts.get(signal.name, (len(rows), ""))
-        if int(at[0]) < known:
+        first_text, _ = self.texts.get(signal.name, (len(rows), ""))
+        if int(at[0]) < first_text:
             self.texts[signal.name] = int(at[0]), first
 
     def foreign_of(self, name: str, usable: NDArray[np.bool_]) -> UnmappedSamples | None:
-        """The values of a signal that are none of its words, among the usable messages."""
+        """The samples of an enumeration signal outside its values, in the usable messages."""
         rows = self.foreign[name][usable] if name in self.foreign else np.zeros(0, bool)
         if not rows.any():
             return None
         return UnmappedSamples(int(rows.sum()), int(rows.argmax()), self.texts[name][1])
 
     def is_foreign(self, name: str, row: int) -> bool:
-        """Whether one message holds none of the words of a signal."""
+        """Whether one message has none of the values of an enumeration signal."""
         return name in self.foreign and bool(self.foreign[name][row])
 
     def near(self, signal: Signal, least: float | None) -> None:
-        """Note the least distance that some messages state."""
+        """Record the least distance that some messages state."""
         if least is not None:
             self.nearest[signal.name] = min(least, self.nearest.get(signal.name, least))
 
 
 class Extraction:
-    """Reads one stream."""
+    """The reader of one stream."""
 
     def __init__(self, stream: Stream, signals: Sequence[Signal]) -> None:
         self.signals = list(signals)
@@ -139,16 +140,16 @@ class Extraction:
             self._name_numbers(stream)
         self._shape = _shape(stream, self._decode)
         self._sought: tuple[str, ...] | None = None
-        """The signals of the present layouts: fewer, once one was refused."""
+        """The signals of the present layouts; fewer after one was refused."""
         self._layouts: Layouts | None = None
-        """None where not every wanted field has a place."""
+        """None: some wanted field has no fixed position."""
         if isinstance(decode, str):
             for signal in signals:
                 self._refuse(signal, log_diagnostics.unknown_encoding(signal, decode))
 
     @property
     def reads(self) -> bool:
-        """Whether anything can be decoded."""
+        """Whether any signal or time can be decoded."""
         return self._decode is not None
 
     def extract(self, payloads: Payloads) -> Extract:
@@ -158,7 +159,9 @@ class Extraction:
             return extract
         slow: Sequence[int] = range(len(payloads))
         if self._shape is not None and payloads.sizes.sum() >= _FEW:
-            if not self._placed(self._shape):  # one message shows which signals have no place
+            if not self._placed(
+                self._shape
+            ):  # one message shows which signals have no fixed position
                 self._one_by_one(0, bytes(payloads.payload(0)), extract)
                 slow = slow[1:]
             if self._placed(self._shape):
@@ -175,16 +178,16 @@ class Extraction:
         self.diagnostics[signal.name] = diagnostic
 
     def _name_numbers(self, stream: Stream) -> None:
-        """Find the number of each word of a field of numbers, by its message's definition."""
+        """Look up the number of each enumeration value in the definition of the messages."""
         for signal in tuple(self.signals):
             if not signal.values or signal.numbers:
                 continue
-            known = constants(stream, signal.path.fields)
-            if known is None:
+            named_numbers = constants(stream, signal.path.fields)
+            if named_numbers is None:
                 continue
-            numbers = tuple(known[word] for word in signal.values if word in known)
+            numbers = tuple(named_numbers[word] for word in signal.values if word in named_numbers)
             if len(set(numbers)) < len(signal.values):
-                self._refuse(signal, log_diagnostics.no_constant(signal, known))
+                self._refuse(signal, log_diagnostics.no_constant(signal, named_numbers))
             else:
                 named = replace(signal, numbers=numbers)
                 self.signals[self.signals.index(signal)] = named
@@ -203,7 +206,7 @@ class Extraction:
         for signal in tuple(self.signals):
             try:
                 if signal.values:
-                    extract.put_word(signal, row, word(signal, message))
+                    extract.put_enum_value(signal, row, enum_index(signal, message))
                 else:
                     number = sample(signal, message, single=signal.name in self._single)
                     extract.put(signal, row, number)
@@ -219,10 +222,10 @@ class Extraction:
         except Exception:  # the decoder trusts each byte, and each may be wrong
             return None
 
-    # By places
+    # By positions
 
     def _placed(self, shape: Shape) -> bool:
-        """Whether every wanted field has a place; if not, each message must be decoded."""
+        """Whether every wanted field has a position; if not, each message must be decoded."""
         names = tuple(signal.name for signal in self.signals)
         if names != self._sought:
             self._sought = names
@@ -237,9 +240,10 @@ class Extraction:
         )
 
     def _at_once(self, payloads: Payloads, extract: Extract) -> Sequence[int]:
-        """Read all messages that fit a layout; returns the remaining rows.
+        """Read all messages that fit a layout; return the remaining rows.
 
-        Where the official decoder reads one of them otherwise, there is no shape any more.
+        If the official decoder reads one of them differently, all messages are decoded from then
+        on.
         """
         assert self._layouts is not None
         rest: list[int] = []
@@ -267,7 +271,7 @@ class Extraction:
         return tuple(wanted)
 
     def _agrees(self, row: int, payloads: Payloads, layout: Layout, extract: Extract) -> bool:
-        """Whether the official decoder reads of one message what the extract has of it."""
+        """Whether the official decoder reads the same values of one message as the extract has."""
         official = Extract.empty(1, self.signals, self._single)
         before = len(self.diagnostics)
         self._one_by_one(0, bytes(payloads.payload(row)), official)
@@ -316,7 +320,7 @@ class Extraction:
             else:
                 values = self._reduced(signal, payloads, rows, field, sibling_values)
             if signal.values:
-                extract.put_words(signal, rows, values)
+                extract.put_enum_values(signal, rows, values)
             else:
                 extract.put(signal, rows, values)
         if (RANGE_MIN,) in single:
@@ -341,13 +345,13 @@ class Extraction:
         for first in range(0, len(rows), step):
             block = slice(first, first + step)
             gathered = payloads.gathered(rows[block], field.at, field.dtype, field.count)
-            some = {name: numbers[block] for name, numbers in sibling_values.items()}
-            values.append(samples(signal, _matrix(gathered), some))
+            siblings_of_block = {name: numbers[block] for name, numbers in sibling_values.items()}
+            values.append(samples(signal, _matrix(gathered), siblings_of_block))
         return np.concatenate(values)
 
 
 def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
-    """The layout of the messages; None where it is not certain."""
+    """The layout of the messages; None: it is not certain."""
     layout = shape(stream) if decode is not None else None
     return layout if decode and layout and trusted(layout, decode) else None
 
@@ -355,8 +359,8 @@ def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
 def _telling(rows: Places, payloads: Payloads) -> set[int]:
     """The rows to compare: the first, the middle and the last.
 
-    Of few large ones only that of the three which has most different bytes: two places that hold
-    the same byte are not told apart.
+    Of few large ones, only the row of these three with the most different bytes: equal bytes do not
+    distinguish two positions.
     """
     chosen = {int(rows[i]) for i in (0, (len(rows) - 1) // 2, -1)}
     if len(rows) >= _FEW_ROWS or payloads.sizes[rows[0]] <= _LARGE:
@@ -389,7 +393,7 @@ def _numbers(numbers: NDArray[np.generic]) -> Numbers:
 
 
 def _stamp_places(shape: Shape) -> tuple[Where, ...]:
-    """Seconds and nanoseconds of `header.stamp`, where the messages have one."""
+    """The seconds and nanoseconds of `header.stamp`, if the messages have one."""
     for names in _STAMPS:
         places = tuple(("header", "stamp", name) for name in names)
         if all(map(shape.has, places)):

@@ -1,4 +1,4 @@
-"""The first messages of topics in JSON: only they show which fields such messages have."""
+"""The first messages of JSON topics, which show the fields that such messages have."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MOST, _MOST_BYTES = 20, 2**20
 class FirstMessages:
     """A sink that passes every message on, and keeps the first ones of topics in JSON.
 
-    Where a vocabulary is given it takes every message, too.
+    If a vocabulary is given, it gets every message too.
     """
 
     def __init__(self, sink: Sink, vocabulary: Vocabulary | None = None) -> None:
@@ -22,7 +22,7 @@ class FirstMessages:
         self._examples: dict[str, list[bytes]] = {}
 
     def of(self, topic: str) -> tuple[bytes, ...]:
-        """Payloads of a topic; none of one that is not in JSON."""
+        """The payloads of a topic; none if it is not in JSON."""
         return tuple(self._examples.get(topic, ()))
 
     def declare(self, stream: Stream) -> None:
@@ -57,11 +57,11 @@ class FirstMessages:
         return self._sink.wants(topic)
 
     def count(self, stream: Stream, count: int) -> None:
-        """So many messages of a stream that is not wanted."""
+        """Count messages of a stream that is not wanted."""
         self._sink.count(stream, count)
 
     def _open(self, stream: Stream) -> list[bytes] | None:
-        """The list for further messages of a stream; None where it is full or not wanted."""
+        """The list for further messages of a stream; None: it is full or not wanted."""
         examples = self._examples.get(stream.channel.topic)
         full = examples is None or len(examples) >= _MOST or sum(map(len, examples)) >= _MOST_BYTES
         return None if full else examples

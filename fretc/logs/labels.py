@@ -1,8 +1,8 @@
-"""Labels of a run: what is known of it beside its messages, as `[run.label]` of the bindings says.
+"""Labels of a run, such as robot and version, from the sources in `[run.label]` of the bindings.
 
-The first source that says something counts; others that say something else are F552, and a label
-without a value is F553. `--label` of a command comes before all sources. Values are texts of
-untrusted sources: they are bounded here, and escaped wherever they are shown.
+The first source with a value counts; a source with another value is F552, and a label without a
+value is F553. `--label` of a command takes precedence over all sources. Values are texts of
+untrusted sources: their length is limited here, and they are escaped wherever they are shown.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.reading import name_patterns
 
 LONGEST = 200
-"""Characters of a value; a longer one is none, for half of it could be that of another run."""
+"""The most characters of a value; a longer one is ignored, because a cut one could be that of
+another run."""
 _SHOWN = 60
 """Characters of a value that a message shows."""
 NO_METADATA: Mapping[str, tuple[str, ...]] = MappingProxyType({})
@@ -29,12 +30,12 @@ def labels(
     run: str,
     described: Mapping[str, tuple[str, ...]] = NO_METADATA,
 ) -> tuple[Labels, tuple[Diagnostic, ...]]:
-    """The labels of a run, and what there is to say of them.
+    """The labels of a run, and diagnostics about them.
 
     Args:
         declared: each label with its sources.
-        run: the path of its log, as the user named it.
-        described: what the metadata of the log says: `build.version` → values.
+        run: the path of its log, as named on the command line.
+        described: the metadata of the log: `build.version` → values.
     """
     found: dict[str, str] = {}
     diagnostics: list[Diagnostic] = []
@@ -50,11 +51,11 @@ def labels(
     return found, tuple(diagnostics)
 
 
-def of_path(name: str, sources: Sequence[LabelSource], run: str) -> tuple[str, ...]:
-    """What the path of a log says of one label."""
+def path_label(name: str, sources: Sequence[LabelSource], run: str) -> tuple[str, ...]:
+    """The value of a label in the path of a log."""
     patterns = [source.text for source in sources if source.is_path]
-    found = [name_patterns.match(pattern, run) for pattern in patterns]
-    return tuple(each[name] for each in found if each is not None)
+    matches = [name_patterns.match(pattern, run) for pattern in patterns]
+    return tuple(each[name] for each in matches if each is not None)
 
 
 def _values(
@@ -65,20 +66,20 @@ def _values(
 ) -> Iterator[str]:
     for source in sources:
         if source.is_path:
-            yield from of_path(name, [source], run)
+            yield from path_label(name, [source], run)
         else:
             yield from described.get(source.text, ())
 
 
-def over(before: Labels, given: Labels) -> tuple[Labels, tuple[Diagnostic, ...]]:
-    """Labels of a run with those of the command, which count, and where the two disagree."""
+def with_overrides(before: Labels, given: Labels) -> tuple[Labels, tuple[Diagnostic, ...]]:
+    """The labels of a run with those of the command, and F552 for each that differs."""
     clashes = (_conflict(name) for name, value in given.items() if before.get(name, value) != value)
     return {**before, **given}, tuple(clashes)
 
 
 def given(texts: Sequence[str]) -> Labels | Diagnostic:
-    """The labels of a command: `version=2.1`."""
-    found: dict[str, str] = {}
+    """The labels that a command gives: `version=2.1`."""
+    labels_given: dict[str, str] = {}
     for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not is_label(name) or not 0 < len(value) <= LONGEST:
@@ -87,37 +88,38 @@ def given(texts: Sequence[str]) -> Labels | Diagnostic:
                 f"`--label {_short(text)}` is no label",
                 help=f"write `--label version=2.1`: a name, `=`, up to {LONGEST} characters",
             )
-        if name in found:
+        if name in labels_given:
             return Diagnostic(
-                Code.BAD_LABEL, f"`--label {name}=...` is given twice", help="take one of them out"
+                Code.BAD_LABEL, f"`--label {name}=...` is given twice", help="remove one of them"
             )
-        found[name] = value
-    if len(found) > MOST_LABELS:
+        labels_given[name] = value
+    if len(labels_given) > MOST_LABELS:
         return Diagnostic(
-            Code.BAD_LABEL, f"there are {len(found)} labels, and {MOST_LABELS} is the most"
+            Code.BAD_LABEL,
+            f"there are {len(labels_given)} labels; at most {MOST_LABELS} are allowed",
         )
-    return found
+    return labels_given
 
 
 def _conflict(name: str) -> Diagnostic:
-    """F552; the same for all logs, so that many of them are one warning."""
+    """F552, with equal text for all logs, so that many of them are one warning."""
     return Diagnostic(
         Code.LABEL_CONFLICT,
-        f"sources of the label `{name}` say different things of one run",
-        help="the command counts first, then the sources in the order of `[run.label]`",
+        f"sources of the label `{name}` give one run different values",
+        help="the command line takes precedence, then the sources in the order of `[run.label]`",
         severity=Severity.WARNING,
     )
 
 
 def _none(name: str, sources: Sequence[LabelSource], *, is_given: bool) -> Diagnostic:
     """F553."""
-    texts = (f"{'path' if one.is_path else 'metadata'}:{one.text}" for one in sources)
+    texts = (f"{'path' if source.is_path else 'metadata'}:{source.text}" for source in sources)
     where = " or ".join(f"`{text}`" for text in texts)
-    what = f"is empty, or longer than {LONGEST} characters" if is_given else "says nothing"
+    what = f"is empty, or longer than {LONGEST} characters" if is_given else "has no value"
     return Diagnostic(
         Code.NO_LABEL,
         f"a run has no label `{name}`: {where} {what}",
-        help=f"say it with `--label {name}=...`, or fix its sources in `[run.label]`",
+        help=f"give it with `--label {name}=...`, or fix its sources in `[run.label]`",
         severity=Severity.WARNING,
     )
 

@@ -11,10 +11,10 @@ from collections.abc import Collection, Mapping, Sequence
 
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.messages.decoding import MissingExtra
+from fretc.logs.signals.enum_values import UnmappedSamples
 from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.topic_clocks import STILL_RUN
-from fretc.logs.signals.words import UnmappedSamples
 from fretish.bindings.amounts import duration, seconds
 from fretish.bindings.declarations import Signal, short_type
 from fretish.bindings.words import listed
@@ -31,17 +31,17 @@ _MOST = 20
 
 
 def changed(place: Span) -> Diagnostic:
-    """F903: what was read and what was hashed may be different bytes."""
+    """F903: the bytes that were read and those that were hashed may differ."""
     return Diagnostic(
         Code.UNREADABLE,
-        "it was changed while it was read",
+        "the log was changed while it was read",
         place,
         "wait until its recording or its copy is complete",
     )
 
 
 def empty(place: Span) -> Diagnostic:
-    """No bytes, or no messages."""
+    """A log without bytes, or without messages."""
     return Diagnostic(
         Code.EMPTY_LOG,
         "the log holds no message",
@@ -62,25 +62,25 @@ _PACKED = {
 
 
 def not_a_log(start: bytes, place: Span) -> Diagnostic:
-    """Another kind of file, by its first bytes."""
+    """A file of another kind, recognized by its first bytes."""
     for magic, (codec, command) in _PACKED.items():
         if start.startswith(magic):
             return Diagnostic(
                 Code.NOT_A_LOG,
-                f"it is a whole file compressed with {codec}",
+                f"the whole file is compressed with {codec}",
                 place,
-                f"unpack it first: `{command} FILE`; MCAP compresses within the file",
+                f"unpack it first: `{command} FILE`; MCAP has a compression of its own",
             )
     return Diagnostic(
         Code.NOT_A_LOG,
-        "it is not a log: neither MCAP, nor a ROS 1 bag, nor rosbag2's SQLite",
+        "it is not a log: neither MCAP, nor a ROS 1 bag, nor an SQLite file of rosbag2",
         place,
-        "name a recording",
+        "name an MCAP file, a ROS 1 bag or a rosbag2 folder",
     )
 
 
 def truncated(cut: int, place: Span) -> Diagnostic:
-    """It has no end, and no whole message before byte `cut`."""
+    """A log without an end, and without a whole message before byte `cut`."""
     return Diagnostic(
         Code.TRUNCATED_LOG,
         f"the log breaks off after byte {cut}: no message in it is whole",
@@ -90,7 +90,7 @@ def truncated(cut: int, place: Span) -> Diagnostic:
 
 
 def nothing_whole(damage: Damage, place: Span) -> Diagnostic:
-    """There are messages, and none of them is whole."""
+    """A log with messages, none of which is whole."""
     return Diagnostic(
         Code.DAMAGED_CHUNK,
         f"no message of the log can be read: {damage.description}",
@@ -100,7 +100,7 @@ def nothing_whole(damage: Damage, place: Span) -> Diagnostic:
 
 
 def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
-    """So many ticks that a time must be wrong."""
+    """A log with so many ticks that a time must be wrong."""
     return Diagnostic(
         Code.UNREADABLE_LOG,
         f"the log lasts {duration(length / _SECOND)}, which is {ticks} ticks: "
@@ -110,21 +110,21 @@ def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
     )
 
 
-# Damaged places
+# Damaged parts
 
 
 def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagnostic:
-    """One damaged place; its gap is in seconds from `origin`."""
+    """One damaged part; its gap is in seconds from `origin`."""
     if damage.code in (Code.TRUNCATED_LOG, Code.REINDEXED) and gap is not None:
         description = (
             damage.description if damage.at < 0 else f"the log breaks off after byte {damage.at}"
         )
         return Diagnostic(
             damage.code,
-            f"{description}: whole messages go {_seconds(gap[0] - origin)} far, and what came then "
-            "is unknown",
+            f"{description}: complete messages end after {_seconds(gap[0] - origin)}; what "
+            "follows is unknown",
             place,
-            "what it shows up to there counts, and nothing counts as satisfied",
+            "violations up to there count, but no requirement counts as satisfied",
             Severity.WARNING,
         )
     lost = "no message is known to be lost"
@@ -136,13 +136,13 @@ def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagno
         damage.code,
         f"{where}{damage.description}; {lost}",
         place,
-        "copy the log again from where it was recorded; nothing counts as shown by a damaged log",
+        "copy the log again from where it was recorded; a damaged log does not count as shown",
         Severity.WARNING,
     )
 
 
 def few(diagnostics: list[Diagnostic], place: Span) -> list[Diagnostic]:
-    """At most a page of diagnostics; the last one counts the rest."""
+    """At most a page of diagnostics; the last one counts the others."""
     if len(diagnostics) <= _MOST:
         return diagnostics
     more = f"the log is damaged in {len(diagnostics) - _MOST} more places"
@@ -156,7 +156,7 @@ def few(diagnostics: list[Diagnostic], place: Span) -> list[Diagnostic]:
 
 
 def no_message(topic: str, span: Span | None) -> Diagnostic:
-    """F405: the log knows the topic and holds nothing of it."""
+    """F405: the log declares the topic and has no message of it."""
     return Diagnostic(
         Code.NO_TOPIC,
         f"the log holds no message of `{topic}`",
@@ -166,7 +166,7 @@ def no_message(topic: str, span: Span | None) -> Diagnostic:
 
 
 def no_topic(topic: str, topics: Collection[str], span: Span | None) -> Diagnostic:
-    """F405, with the topics that the log does have."""
+    """F405, with the topics that are in the log."""
     near = suggestion(topic, topics)
     listed = ", ".join(sorted(topics)[:8]) + (", ..." if len(topics) > 8 else "")
     return Diagnostic(
@@ -178,12 +178,12 @@ def no_topic(topic: str, topics: Collection[str], span: Span | None) -> Diagnost
 
 
 def no_field(signal: Signal, error: FieldError) -> Diagnostic:
-    """The message does not hold the number that the signal asks for."""
+    """A message without the number that the signal reads."""
     return Diagnostic(Code.NO_FIELD, f"in `{signal.path.topic}` {error}", signal.span, error.fix)
 
 
 def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
-    """Every message leaves out the field of the signal, as their type allows."""
+    """A signal whose field every message leaves out, as their type allows."""
     name = ".".join(signal.path.fields)
     numbers = [path.removesuffix("[:]") for path in paths]
     what = "word" if signal.values else "number"
@@ -198,12 +198,12 @@ def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
 
 
 def no_constant(signal: Signal, known: Mapping[str, int]) -> Diagnostic:
-    """F340: the field holds numbers, and the definition of its messages does not name the words."""
+    """F340: the field holds numbers, and its definition has no constants for the values."""
     name = ".".join(signal.path.fields)
     missing = [word for word in signal.values if word not in known]
     if not missing:
-        message = f"two values of `{signal.name}` are one number of `{name}`"
-        fix = "take one out"
+        message = f"two values of `{signal.name}` have the same number in `{name}`"
+        fix = "remove one of them"
     else:
         near = _constant(missing[0], known)
         listed = f"it names {', '.join(list(known)[:8])}{', ...' if len(known) > 8 else ''}"
@@ -214,33 +214,33 @@ def no_constant(signal: Signal, known: Mapping[str, int]) -> Diagnostic:
         fix = (
             f"did you mean `{near}`?"
             if near
-            else f"{listed if known else 'it names none'}; or write the number of each word: "
+            else f"{listed if known else 'it names none'}; or write the number of each value: "
             f"`values = {{ {as_key(missing[0])} = 0 }}`"
         )
     return Diagnostic(Code.UNKNOWN_WORD, message, signal.span, fix)
 
 
 def _constant(word: str, known: Mapping[str, int]) -> str | None:
-    """The constant that is most likely meant: in capitals, behind a prefix, or misspelt."""
+    """The constant that is most likely meant: in capitals, with a prefix, or misspelt."""
     low = word.lower()
     ends = [each for each in known if each.lower() == low or each.lower().endswith(f"_{low}")]
     return ends[0] if ends else suggestion(word, known)
 
 
 def foreign_value(signal: Signal, foreign: UnmappedSamples, count: int, after: int) -> Diagnostic:
-    """F423: some samples are none of the words; the first one came so long after the log began."""
+    """F423: some samples are not among the signal's values; the first comes at `after` seconds."""
     near = suggestion(foreign.text, signal.values)
     is_number = re.fullmatch(r"-?[\d.]+", foreign.text) is not None
     if is_number and not signal.numbers:
-        fix = "give the number of each word: `values = { drive = 0 }`"
+        fix = "give the number of each value: `values = { drive = 0 }`"
     elif signal.numbers and not is_number:
-        fix = 'the field holds texts: `values = ["drive"]`'
+        fix = 'the field is a text: `values = ["drive"]`'
     else:
-        fix = f"did you mean `{near}`?" if near else "add it, if it is one of them"
+        fix = f"did you mean `{near}`?" if near else "add this one if it is valid"
     return Diagnostic(
         Code.FOREIGN_VALUE,
-        f"{foreign.count} of {count} samples of `{signal.name}` are none of its values, the first "
-        f"one `{foreign.text}` at {_seconds(after)}: they are unknown",
+        f"{foreign.count} of {count} samples of `{signal.name}` are not among its values, the "
+        f"first one `{foreign.text}` at {_seconds(after)}: they are unknown",
         signal.span,
         f"its values are {listed(signal.values)}; {fix}",
         Severity.WARNING,
@@ -248,19 +248,19 @@ def foreign_value(signal: Signal, foreign: UnmappedSamples, count: int, after: i
 
 
 def no_truth(signal: Signal, foreign: UnmappedSamples, count: int, after: int) -> Diagnostic:
-    """F424: some samples of a signal that stands for a truth value are neither 0 nor 1."""
+    """F424: some samples of a signal that is read as a truth value are neither 0 nor 1."""
     return Diagnostic(
         Code.NO_TRUTH,
         f"`{signal.name}` stands for a truth value, and {foreign.count} of {count} samples are "
         f"neither 1 nor 0, the first one {foreign.text} at {_seconds(after)}: they are unknown",
         signal.span,
-        f"is it a number? Then compare it: `{signal.name} > 0`",
+        f"if it is a number, compare it: `{signal.name} > 0`",
         Severity.WARNING,
     )
 
 
 def wrong_type(signal: Signal, actual: str) -> Diagnostic:
-    """The topic is of another type than the signal declares."""
+    """A topic with another type than the signal declares."""
     return Diagnostic(
         Code.WRONG_TYPE,
         f"`{signal.path.topic}` is of type `{short_type(actual)}` in the log, "
@@ -272,11 +272,11 @@ def wrong_type(signal: Signal, actual: str) -> Diagnostic:
 
 def several_types(signal: Signal, types: Sequence[str]) -> Diagnostic:
     """F421: the topic has messages of more than one type, and the signal names none."""
-    *some, last = [f"`{name}`" if name else "no type" for name in types]
+    *names, last = [f"`{name}`" if name else "no type" for name in types]
     return Diagnostic(
         Code.SEVERAL_TYPES,
-        f"`{signal.path.topic}` has messages of {', '.join(some)} and {last}: "
-        f"`{signal.name}` is read of all of them",
+        f"`{signal.path.topic}` has messages of {', '.join(names)} and {last}: "
+        f"`{signal.name}` is read from all of them",
         signal.span,
         "a field of the same name may mean something else there; "
         f'with `type = "{types[0] or types[-1]}"` a log with any other is refused',
@@ -285,7 +285,7 @@ def several_types(signal: Signal, types: Sequence[str]) -> Diagnostic:
 
 
 def unknown_encoding(signal: Signal, why: str) -> Diagnostic:
-    """No message of the topic can be decoded; or only by a part of fretc that is not installed."""
+    """A topic whose messages cannot be decoded, or only with an extra that is not installed."""
     if isinstance(why, MissingExtra):
         return Diagnostic(
             Code.MISSING_EXTRA,
@@ -303,7 +303,7 @@ def unknown_encoding(signal: Signal, why: str) -> Diagnostic:
 
 
 def bad_messages(signal: Signal, bad: int, count: int) -> Diagnostic:
-    """Single messages of the topic cannot be decoded."""
+    """A topic with single messages that cannot be decoded."""
     return Diagnostic(
         Code.BAD_MESSAGE,
         f"{bad} of {count} messages of `{signal.path.topic}` cannot be decoded: their samples are "
@@ -314,11 +314,11 @@ def bad_messages(signal: Signal, bad: int, count: int) -> Diagnostic:
 
 
 def out_of_order(signal: Signal, late: int, count: int) -> Diagnostic:
-    """Messages of the topic are earlier than one before them."""
+    """A topic whose messages are out of order."""
     return Diagnostic(
         Code.OUT_OF_ORDER,
-        f"{late} of {count} messages of `{signal.path.topic}` are earlier than one before them: "
-        "they are sorted by time",
+        f"{late} of {count} messages of `{signal.path.topic}` are out of order: they are sorted "
+        "by time",
         signal.span,
         "check the clocks of publisher and recorder",
         Severity.WARNING,
@@ -326,14 +326,13 @@ def out_of_order(signal: Signal, late: int, count: int) -> Diagnostic:
 
 
 def unstamped(signal: Signal, shift: int) -> Diagnostic:
-    """The topic has no stamps, and those of others are `shift` nanoseconds from log times."""
+    """A topic without stamps; the stamps of others differ by `shift` nanoseconds from log times."""
     message = f"the messages of `{signal.path.topic}` have no header.stamp: their log_time is used"
     if shift < _SECOND:
         return Diagnostic(Code.NO_FIELD, message, signal.span, severity=Severity.NOTE)
     return Diagnostic(
         Code.NO_FIELD,
-        f"{message}, and that is {duration(shift / _SECOND)} away from the stamps of "
-        "the other topics",
+        f"{message}, which is {duration(shift / _SECOND)} away from the stamps of the other topics",
         signal.span,
         'two clocks are mixed: use `time = "log_time"` under `[clock]`',
         Severity.WARNING,
@@ -343,11 +342,10 @@ def unstamped(signal: Signal, shift: int) -> Diagnostic:
 def zero_stamps(
     topic: str, place: Span | None, zero: int, count: int, time: TimeSource
 ) -> Diagnostic:
-    """F416: the publisher, or the recorder, never set the time of some messages."""
+    """F416: the publisher or the recorder never set the time of some messages."""
     return Diagnostic(
         Code.ZERO_STAMP,
-        f"{zero} of {count} messages of `{topic}` have a zero for a time: their samples are "
-        "unknown",
+        f"{zero} of {count} messages of `{topic}` have the time 0: their samples are unknown",
         place,
         _other_time(time),
         Severity.WARNING,
@@ -361,9 +359,9 @@ def still_clock(
     return Diagnostic(
         Code.STILL_CLOCK,
         f"the clock of `{topic}` stands still: {same} of {count} messages have the {time} of "
-        f"{STILL_RUN - 1} or more beside them",
+        f"{STILL_RUN - 1} or more neighbours",
         place,
-        f"{_other_time(time)}; what happened between them is taken for one instant",
+        f"{_other_time(time)}; what happened between them counts as one instant",
         Severity.WARNING,
     )
 
@@ -375,26 +373,26 @@ def _other_time(time: TimeSource) -> str:
 
 
 def clock_jumps(signal: Signal, jumps: int, largest: int) -> Diagnostic:
-    """F417: the declared time and the log time part by more than a second between two messages."""
+    """F417: declared time minus log time changes by more than a second between messages."""
     times = "once" if jumps == 1 else f"{jumps} times, at most"
     return Diagnostic(
         Code.CLOCK_JUMP,
         f"the clock of `{signal.path.topic}` jumps against log_time {times} by "
         f"{duration(largest / _SECOND)}",
         signal.span,
-        "was a clock set, a simulation begun anew, or were messages held back? "
-        "durations around it are not what they seem",
+        "a clock was set, a simulation was restarted, or messages were delayed: durations around "
+        "the jump are unreliable",
         Severity.WARNING,
     )
 
 
 def mixed_clocks(signal: Signal, other: str, apart: int) -> Diagnostic:
-    """F418: against log times, the stamps of two topics are more than a second apart."""
+    """F418: the stamps of two topics differ by more than a second, measured by log times."""
     return Diagnostic(
         Code.MIXED_CLOCKS,
         f"the stamps of `{signal.path.topic}` are {duration(abs(apart) / _SECOND)} "
-        f"{'ahead of' if apart > 0 else 'behind'} those of `{other}`, by the times at which both "
-        "were recorded",
+        f"{'ahead of' if apart > 0 else 'behind'} those of `{other}`, measured by their "
+        "recording times",
         signal.span,
         'two clocks are mixed: use `time = "log_time"` under `[clock]`, or set the clocks',
         Severity.WARNING,

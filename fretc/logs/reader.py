@@ -1,4 +1,4 @@
-"""Recorded logs: files → samples of signals, and how healthy the files are.
+"""The reader of logs: from files to samples of signals, and the integrity of the files.
 
 Where the index of a log explains every byte of it, only the messages in question are read. Any
 other log is read from its first record to its last; what its summary states (where the chunks are,
@@ -29,7 +29,7 @@ from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder, of_all
 from fretc.logs.storage.inputs import Input, opened
 from fretc.logs.storage.log_names import name_of
-from fretc.logs.storage.parts import Numbered, Part, around, widened
+from fretc.logs.storage.parts import Part, RenumberingSink, around, widened
 from fretc.logs.storage.splits import ACTIVE, run_name, split
 from fretc.logs.topic_columns import Columns
 from fretc.logs.topics import clocks, never_stated, topic
@@ -46,20 +46,20 @@ _MOST_TICKS = 20_000_000
 
 @dataclass(frozen=True, slots=True)
 class Overview:
-    """A log as it is, whatever is bound."""
+    """The contents of a log, independent of bindings."""
 
     recording: Recording
-    """By log times, without samples."""
+    """The recording by log times, without samples."""
     leaves: Mapping[str, Leaves | None]
-    """Of each topic the fields that a signal can read; None where its messages cannot be read."""
+    """For each topic the fields that a signal can read; None: its messages cannot be read."""
     reasons: Mapping[str, str]
-    """Why not."""
+    """The reasons why messages cannot be read."""
     words: Mapping[str, Words] = field(default_factory=dict)
-    """Of each topic the words of its texts, where they were asked for."""
+    """For each topic the values of its texts, if they were asked for."""
 
     @property
     def numbers(self) -> Mapping[str, tuple[str, ...] | None]:
-        """Of each topic the paths of its numbers and truth values."""
+        """The paths of the numbers and truth values of each topic."""
         return {
             topic: None if leaves is None else numbers(leaves)
             for topic, leaves in self.leaves.items()
@@ -79,10 +79,10 @@ def read(
         path: the file, as the user names it.
         declarations: clock and signals.
         wanted: names of declared signals.
-        integrity: what is looked at beyond the messages of the topics that the bindings name. A
-            log that is not as its index says is looked at in full.
-        beside: further signals, of topics that a wanted one reads, too. Nothing else of the
-            recording depends on them.
+        integrity: how thoroughly the log is checked beyond the bound messages. A log that does not
+            match its index is checked in full.
+        beside: further signals of topics that a wanted one reads. Nothing else in the recording
+            depends on them.
 
     Returns:
         The recording, with findings about single topics and damaged places; or what keeps the
@@ -107,20 +107,20 @@ def _read_log(
     sources = [source for some in declarations.labels.values() for source in some]
     named = {source.text for source in sources if not source.is_path}
     asked = frozenset(named) | watch_records.KEYS
-    found = _opened(path, lambda: Columns(declarations, signals, beside), integrity, asked)
-    if isinstance(found, Diagnostic):
-        return found
-    place, run, columns, examples = found
+    log = _opened(path, lambda: Columns(declarations, signals, beside), integrity, asked)
+    if isinstance(log, Diagnostic):
+        return log
+    place, run, columns, examples = log
     recording = _recording(place, run, columns, examples, signals, beside)
     return _too_long(recording, columns.clock, place) or recording
 
 
 def look(path: str, *, words: bool = False) -> Overview | Diagnostic:
-    """Read a log without any bindings: what is in it, and how healthy it is.
+    """Read a log without bindings: its contents and its integrity.
 
     Args:
         path: the file, as the user names it.
-        words: whether the words of texts are asked for, too: messages with texts are decoded.
+        words: whether the values of texts are wanted: then messages with texts are decoded.
 
     Returns:
         The overview, by log times; or what keeps the whole file from being read.
@@ -131,10 +131,10 @@ def look(path: str, *, words: bool = False) -> Overview | Diagnostic:
 def _look(path: str, words: bool) -> Overview | Diagnostic:
     nothing = Declarations(Source("", ""), Clock(None, None), {}, {})
     vocabulary = Vocabulary() if words else None
-    found = _opened(path, lambda: Columns(nothing, ()), Integrity.FULL, vocabulary=vocabulary)
-    if isinstance(found, Diagnostic):
-        return found
-    place, run, columns, examples = found
+    log = _opened(path, lambda: Columns(nothing, ()), Integrity.FULL, vocabulary=vocabulary)
+    if isinstance(log, Diagnostic):
+        return log
+    place, run, columns, examples = log
     streams = columns.streams.items()
     decoders = {topic: decoder(stream) for topic, stream in streams}
     return Overview(
@@ -150,22 +150,22 @@ def _look(path: str, words: bool) -> Overview | Diagnostic:
 
 @dataclass(frozen=True, slots=True)
 class _Run:
-    """What the files of one log have given."""
+    """The contents of the files of one log."""
 
     sha256: str
     size: int
     spans: Sequence[Gap]
     """The first and the last whole message of each file."""
     damages: Sequence[tuple[Span, Damage, Gap | None]]
-    """Each with its file, and the time that it has cost."""
+    """The damages, each with its file and the time of the lost messages."""
     notes: Sequence[Diagnostic]
     checked: Checked
     described: Described
-    """What its metadata says, as far as it is asked for."""
+    """The wanted values of its metadata."""
 
 
 _Read = tuple[Span, _Run, Columns, FirstMessages]
-"""A log, and what has taken its messages."""
+"""A log, and the sink that received its messages."""
 
 
 def _opened(
@@ -175,7 +175,7 @@ def _opened(
     asked: Collection[str] = (),
     vocabulary: Vocabulary | None = None,
 ) -> _Read | Diagnostic:
-    """The log at a path: a file, standard input, what is at a URL, or a folder of rosbag2."""
+    """The log at a path: a file, standard input, a URL, or a folder of rosbag2."""
     place = Source(name_of(path), "").span()
     try:
         if is_folder(path):
@@ -205,7 +205,7 @@ def _tried(
     integrity: Integrity,
     vocabulary: Vocabulary | None,
 ) -> _Read | Diagnostic:
-    """Read a log; once more, in full, where it is not as its index says."""
+    """Read a log; if it does not match its index, read it again in full."""
     columns = new()
     examples = FirstMessages(columns, vocabulary)
     try:
@@ -225,13 +225,16 @@ def _file(
         return part
     if part.span is None:
         return log_diagnostics.empty(place)
-    damages, notes = [(place, *one) for one in part.damages], (*part.notes, *_alone(path, place))
+    damages, notes = (
+        [(place, *damage) for damage in part.damages],
+        (*part.notes, *_alone(path, place)),
+    )
     described = together([*_of_folder(path, asked), part.described])
     return _Run(part.sha256, part.size, (part.span,), damages, notes, part.checked, described)
 
 
 def _of_folder(path: str, asked: Collection[str]) -> Iterator[Described]:
-    """What the description of rosbag2 beside a file says of its run."""
+    """The custom data of the run in the metadata of rosbag2 beside a file."""
     parent = os.path.dirname(path) or "."
     try:
         about = folder(parent) if asked and is_folder(parent) else None
@@ -242,13 +245,13 @@ def _of_folder(path: str, asked: Collection[str]) -> Iterator[Described]:
 
 
 _CUSTOM = "custom_data"
-"""What stands for the record in the description of a folder, as rosbag2 calls it."""
+"""The name of custom data in the metadata of a folder."""
 
 
 def _beginning(
     path: str, log: Input, asked: Collection[str], sink: Sink, integrity: Integrity, place: Span
 ) -> _Run | Diagnostic:
-    """What there was of a file that has become longer since."""
+    """The first bytes of a file that has grown since it was opened."""
     run = _file(path, log, asked, sink, integrity, place)
     if isinstance(run, Diagnostic):
         return run
@@ -256,7 +259,7 @@ def _beginning(
 
 
 def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
-    """Whether the file is only a part of a run."""
+    """Diagnostics of a file that is only a part of a run."""
     parent, name = os.path.split(path)
     try:
         about = folder(parent or ".") if is_folder(parent or ".") else None
@@ -279,8 +282,8 @@ def _folder(
     integrity: Integrity,
     place: Span,
 ) -> _Run | Diagnostic:
-    """The files of one run, in the order that its description gives."""
-    sink = Numbered(one)
+    """The files of one run, in the order of its metadata."""
+    sink = RenumberingSink(one)
     if isinstance(about, Diagnostic):
         return about
     if about.compressed:
@@ -304,7 +307,7 @@ def _folder(
     damages = list(_losses(about, places, found))
     if about.messages not in (None, sink.counted) and not damages:
         lost = (min(a for a, _ in spans), max(b for _, b in spans))
-        what = f"its {METADATA} states {about.messages} messages, and its files hold {sink.counted}"
+        what = f"its {METADATA} states {about.messages} messages, but its files hold {sink.counted}"
         damage = Damage(NOWHERE, what, code=Code.COUNT_MISMATCH)
         damages.append((place, damage, lost if sink.counted < (about.messages or 0) else None))
     hashes = {
@@ -323,7 +326,7 @@ def _folder(
 def _losses(
     about: Folder, places: Sequence[Span], found: Sequence[Part | Diagnostic]
 ) -> Iterator[tuple[Span, Damage, Gap | None]]:
-    """The damages of all files, in their order; a file that gave nothing is one."""
+    """The damages of all files, in their order; an unreadable file is one damage."""
     parts = [part if isinstance(part, Part) else None for part in found]
     for i, (place, part) in enumerate(zip(places, found, strict=True)):
         before, after = around(parts, i)
@@ -331,7 +334,7 @@ def _losses(
             for damage, gap in widened(part, before, after):
                 yield place, damage, gap
         else:
-            what = f"a file of the run is lost: {part.message}"
+            what = f"a file of the run cannot be read: {part.message}"
             yield place, Damage(NOWHERE, what, code=Code.LOST_PART), about.lost(i, before, after)
 
 

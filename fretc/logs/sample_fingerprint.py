@@ -1,4 +1,4 @@
-"""Whether two logs are of one run: a fingerprint of their messages, not of their files."""
+"""A fingerprint of the samples of a log, to recognize logs of one run."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from fretc.logs.signals.samples import Recording, Samples, Values
 
 
 def fingerprint(recording: Recording) -> str | None:
-    """SHA-256 of the times and values of all signals that were read; None where there are none.
+    """SHA-256 of the times and values of all signals that were read; None: there are none.
 
     A copy of a log by another tool, with other metadata, chunks or compression, has the same
-    fingerprint. All unknown values are alike, and so are the kinds of numbers.
+    fingerprint. All unknown values are equal, and so are the number types.
     """
     if not any(len(samples.times) for samples in recording.samples.values()):
         return None
@@ -31,11 +31,11 @@ def fingerprint(recording: Recording) -> str | None:
 
 
 def _in_order(samples: Samples) -> Values:
-    """The values; those of words by the words in order: how bindings list them does not count."""
+    """The values; indices of enumeration values are renumbered in order of their texts."""
     if not samples.words:
         return samples.values
     ranks = np.array([sorted(samples.words).index(word) for word in samples.words], np.float64)
-    known = ~np.isnan(samples.values)
+    is_known = ~np.isnan(samples.values)
     ordered = np.full(len(samples.values), np.nan)
-    ordered[known] = ranks[samples.values[known].astype(np.intp)]
+    ordered[is_known] = ranks[samples.values[is_known].astype(np.intp)]
     return ordered

@@ -1,11 +1,9 @@
-"""Samples that still come → the truth of propositions at each tick of the clock.
+"""The truth values of propositions at each tick of the clock, from a stream of samples.
 
-What a tick sees is computed by the functions that judge recorded logs (`signals.propositions`,
+The values at a tick are computed by the functions that judge recorded logs (`signals.propositions`,
 `signals.traces`), over a window of samples. The window begins before the last tick, by the longest
 time that a proposition looks back (`lookback`), and one nanosecond: from there on its steps are
-those of the whole log. Each signal keeps one sample from before the window, the one in force where
-it begins; so no `max_age` makes the window longer. Where propositions look back by ticks, the
-window begins before the earliest of these. Times are nanoseconds of the declared clock.
+those of the whole log.
 """
 
 from __future__ import annotations
@@ -22,11 +20,11 @@ import numpy as np
 from fretc.logs import log_diagnostics
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.messages.python_messages import Message, Value, sampled
+from fretc.logs.signals.enum_values import UnmappedSamples, shown
 from fretc.logs.signals.propositions import truth_values
 from fretc.logs.signals.samples import EXACT, Gap, Late, Recording, Samples
 from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.traces import proposition_states
-from fretc.logs.signals.words import UnmappedSamples, shown
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.expressions import ticks_back
@@ -35,12 +33,12 @@ from monitors.kernel.verdicts import Truth
 from monitors.ticking import Ticking, late
 
 MOST_TICKS = 1_000_000
-"""Ticks that may pass at once: more are a mistake in the unit of time."""
+"""The most ticks that may pass at once: more are probably a mistake in the unit of time."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tick:
-    """One tick of the clock, and the truth of each proposition at it."""
+    """One tick of the clock, with the truth value of each proposition."""
 
     time: int
     truth: Mapping[str, Truth]
@@ -53,18 +51,18 @@ class End:
     ticks: tuple[Tick, ...]
     cut: Mapping[str, Truth] | None
     until: int = 0
-    """Where the log ends, by the declared clock."""
+    """The end of the log, on the declared clock."""
 
 
 @dataclass(frozen=True, slots=True)
 class Withdrawn:
-    """Ticks that were judged, and at which propositions are unknown since a message was late."""
+    """Judged ticks at which propositions became unknown, because a message was late."""
 
     first: int
     last: int
     propositions: tuple[str, ...]
     tick: int | None = None
-    """A tick that is to be inserted: the message was one of the clock's topic."""
+    """A tick to insert, because the message was one of the clock's topic."""
 
 
 @dataclass(slots=True)
@@ -74,16 +72,16 @@ class _Span:
     first: int
     last: int
     counted: bool
-    """Whether the message was late for a tick that was judged."""
+    """Whether the message was late for a judged tick."""
 
     def holds(self, ticks: Sequence[int]) -> bool:
-        """Whether one of the ticks, which are in order, is among them."""
+        """Whether the span contains one of the ticks, which are in order."""
         place = bisect_left(ticks, self.first)
         return place < len(ticks) and ticks[place] <= self.last
 
 
 class Stream:
-    """Takes samples in any order, as long as none is earlier than the time that has passed."""
+    """A stream of samples in any order, as long as none is earlier than the time passed."""
 
     def __init__(self, declarations: Declarations, propositions: Collection[str]) -> None:
         self._declarations = declarations
@@ -96,7 +94,7 @@ class Stream:
             (ticks_back(declarations.propositions[name].expression) for name in propositions),
             default=0,
         )
-        """Ticks that those to come look back to."""
+        """The number of earlier ticks on which later ones depend."""
         flags = {
             name.id
             for proposition in propositions
@@ -110,18 +108,19 @@ class Stream:
         self._begin, self._end = LATEST, 0
         """The first and the last message of all bound topics."""
         self._recent: list[int] = []
-        """The last ticks, from that of `_back` on; all of one time, if one of that time is one."""
+        """The last ticks, from that of `_back` on; all ticks of one time, if one of that time is
+        included."""
         self._late: dict[str, list[_Span]] = {}
-        """Of each topic the ticks that are still to be judged and for which a message is late."""
+        """For each topic, the ticks that are still to be judged and for which a message is late."""
         self.late: Counter[str] = Counter()
-        """Of each topic how many messages were late for a tick that was judged."""
+        """For each topic, the number of messages that were late for a judged tick."""
         self._gaps: list[Gap] = []
         self._ended = False
 
     # Samples
 
     def add(self, name: str, time: int, value: object) -> Diagnostic | None:
-        """One sample of a signal: what its field holds, a number, an array of them, or a word."""
+        """Add one sample of a signal: a number, an array of numbers, or an enumeration value."""
         signal = self._declarations.signals[name]
         if signal.numbers and isinstance(value, str) and value in signal.values:
             value = signal.numbers[signal.values.index(value)]
@@ -133,7 +132,7 @@ class Stream:
         return self._take(signal.path.topic, time, message, (signal,))
 
     def message(self, topic: str, time: int, message: object) -> Diagnostic | None:
-        """One message: a sample of each signal that reads the topic, and of its clock a tick."""
+        """Add one message: a sample of each signal of the topic, and a tick of its clock."""
         signals = [s for s in self._declarations.signals.values() if s.path.topic == topic]
         if not signals and topic != self._declarations.clock.topic:
             return None
@@ -142,7 +141,7 @@ class Stream:
     def _take(
         self, topic: str, time: int, message: object, signals: Sequence[Signal]
     ) -> Diagnostic | None:
-        """All of its samples, or none and why."""
+        """Add all samples of a message, or none, with the reason."""
         wrong = self._over() or self._untimely(topic, time)
         if wrong is not None:
             return wrong
@@ -150,14 +149,14 @@ class Stream:
         values: list[tuple[_Queue, Value]] = []
         for signal in signals:
             try:
-                found = sampled(signal, read)
+                read_sample = sampled(signal, read)
             except FieldError as error:
                 return log_diagnostics.no_field(signal, error)
             queue = self._queues[signal.name]
-            wrong = queue.refusal(found[1], self._ticking.passed)
+            wrong = queue.refusal(read_sample[1], self._ticking.passed)
             if wrong is not None:
                 return wrong
-            values.append((queue, found))
+            values.append((queue, read_sample))
         self._put(topic, time, values)
         self._ticking.arrive(topic, time)
         return None
@@ -172,12 +171,13 @@ class Stream:
     def arrive(
         self, topic: str, time: int, arrival: int, values: Mapping[str, Value]
     ) -> Withdrawn | None:
-        """One message with its time and its arrival, as `monitors/ticking.py` has them.
+        """Add one message with its time and its arrival, as defined in `monitors/ticking.py`.
 
         Args:
-            topic: of a signal, or of the clock.
-            time: on the declared clock.
-            arrival: when it was received; it does not decrease from one message to the next.
+            topic: the topic of a signal, or of the clock.
+            time: the time on the declared clock.
+            arrival: the time at which it was received; it does not decrease from one message to the
+                next.
             values: a sample of each signal that reads the topic.
 
         Returns:
@@ -214,7 +214,7 @@ class Stream:
         )
 
     def miss(self, first: int, last: int) -> Withdrawn | None:
-        """All messages with times from `first` to `last` may be lost.
+        """Mark all messages with times from `first` to `last` as possibly lost.
 
         Returns:
             The judged ticks at which nothing is known any more.
@@ -227,9 +227,9 @@ class Stream:
         return Withdrawn(first, judged, self._propositions)
 
     def glance(self, time: int) -> tuple[Tick, ...]:
-        """What would be seen if there were a tick now, after those that still wait for messages.
+        """The values if there were a tick now, after those that still wait for messages.
 
-        Nothing is judged by that. There is nothing to be seen before the first tick is placed.
+        Nothing is judged. There are no values before the first tick is placed.
         """
         if self._ended or (self._ticking.last is None and not self._ticking.due(time)):
             return ()
@@ -240,13 +240,13 @@ class Stream:
         if time == 0:
             return Diagnostic(
                 Code.ZERO_STAMP,
-                f"a message of `{topic}` has a zero for a time: its clock was never set",
-                help="leave it out, or give it the time at which it was received",
+                f"a message of `{topic}` has the time 0: its clock was never set",
+                help="drop the message, or give it the time at which it was received",
             )
         if not 0 < time < LATEST:
             return Diagnostic(
                 Code.BAD_MESSAGE,
-                f"a message of `{topic}` has the time {time}, which no clock tells",
+                f"a message of `{topic}` has the time {time}, which is out of range",
                 help="give the time in nanoseconds",
             )
         passed = self._ticking.passed
@@ -255,13 +255,13 @@ class Stream:
                 Code.OUT_OF_ORDER,
                 f"a message of `{topic}` is {passed - time} ns late: the ticks up to "
                 f"{passed} ns are judged",
-                help="let time pass only up to where no message can come any more",
+                help="advance the time only as far as no earlier message can arrive any more",
             )
         return None
 
     @property
     def findings(self) -> tuple[Diagnostic, ...]:
-        """About samples that are none of the values of their signal, or no truth value: unknown."""
+        """Warnings about samples outside the values of their signal, or not a truth value."""
         return tuple(
             finding
             for queue in self._queues.values()
@@ -272,21 +272,20 @@ class Stream:
 
     @property
     def origin(self) -> int | None:
-        """Where the grid of ticks begins, once a tick was judged; None where there is no grid."""
+        """The start of the tick grid, once a tick was judged; None: there is no grid."""
         return self._ticking.origin
 
     @property
     def waiting(self) -> tuple[str, ...]:
-        """The topics that are yet to begin, and before which no tick can be placed.
+        """The topics without a message yet, before which no tick can be placed.
 
-        The grid of ticks begins with the last topic that begins less than a tick after the first
-        one, and with the first one where another begins later: while topics are missing, both may
-        come true.
+        The tick grid begins with the last topic that begins less than a tick after the first one,
+        and with the first one if another begins later: while topics are missing, both are possible.
         """
         return self._ticking.waiting
 
     def until(self, time: int) -> tuple[Tick, ...] | Diagnostic:
-        """Let time pass: no message before `time` comes any more.
+        """Advance the time: no message before `time` arrives any more.
 
         Returns:
             The ticks before `time` that are new, as a log has them that goes on for longer.
@@ -296,18 +295,18 @@ class Stream:
         if not 0 <= time < LATEST:
             return Diagnostic(
                 Code.BAD_MESSAGE,
-                f"time cannot pass up to {time}: no clock tells that",
+                f"time cannot advance to {time}: it is out of range",
                 help="give the time in nanoseconds",
             )
         if (many := _too_many(self._ticking.due(time))) is not None:
             return many
         times = self._ticking.until(time)
-        found = self._ticks(times, self._ticking.passed)
+        ticks = self._ticks(times, self._ticking.passed)
         self._remember(times)
-        return found
+        return ticks
 
     def end(self) -> End | Diagnostic:
-        """The ticks that are left where the log ends here: at the last message or time passed."""
+        """The remaining ticks if the log ends here: at the last message or the time passed."""
         if (over := self._over()) is not None:
             return over
         end = max(self._end, self._ticking.passed)
@@ -326,10 +325,10 @@ class Stream:
     def _over(self) -> Diagnostic | None:
         if not self._ended:
             return None
-        return Diagnostic(Code.BAD_USAGE, "the stream has ended", help="begin a new one")
+        return Diagnostic(Code.BAD_USAGE, "the stream has ended", help="begin a new stream")
 
     def _ticks(self, times: Sequence[int], end: int) -> tuple[Tick, ...]:
-        """What each of the new ticks sees, in a log that goes on up to `end`."""
+        """The values at each of the new ticks, in a log that continues up to `end`."""
         if not times:
             return ()
         start, first = self._begin, None
@@ -353,15 +352,15 @@ class Stream:
         )
 
     def _window(self) -> int:
-        """From when on samples count for the ticks to come."""
+        """The time from which on samples affect later ticks."""
         return self._recent[0] - self._lookback - 1
 
     def _within_reach(self, ticks: list[int]) -> list[int]:
-        """The ticks that those to come look back to."""
+        """The judged ticks on which later ones depend."""
         return ticks[bisect_left(ticks, ticks[-self._back :][0]) :]
 
     def _remember(self, times: Sequence[int]) -> None:
-        """These ticks are judged: drop what no later one sees."""
+        """Record these ticks as judged, and drop samples that affect no later one."""
         if not times:
             return
         self._recent = self._within_reach([*self._recent, *times])
@@ -391,7 +390,7 @@ class Stream:
             findings=(),
             intact=not self._gaps,
             late={
-                topic: Late(*np.array([(one.first, one.last) for one in spans], np.int64).T)
+                topic: Late(*np.array([(span.first, span.last) for span in spans], np.int64).T)
                 for topic, spans in self._late.items()
                 if spans
             },
@@ -399,38 +398,38 @@ class Stream:
 
 
 def lookback(expression: e.Expression) -> int:
-    """How far its truth looks back, in nanoseconds: the durations within each other, added up."""
+    """The duration in nanoseconds that the truth value looks back: the sum of nested durations."""
     inner = max(map(lookback, e.children(expression)), default=0)
     return inner + expression.duration if isinstance(expression, e.Persistence) else inner
 
 
 @dataclass(slots=True)
 class _Queue:
-    """The samples of one signal, in order of time; equal times in the order in which they came."""
+    """The samples of one signal, in order of time; those of equal times in order of arrival."""
 
     signal: Signal
     is_flag: bool
-    """Whether it stands for a truth value."""
+    """Whether the signal is a truth value."""
     times: list[int] = field(default_factory=list)
     values: list[float] = field(default_factory=list)
     kind: np.dtype[Any] | None = None
-    """None: every sample is unknown."""
+    """The number type; None: every sample is unknown."""
     count: int = 0
-    """All samples so far."""
+    """The number of samples so far."""
     foreign: UnmappedSamples | None = None
-    """Those that are no value of the signal, or no truth value."""
+    """Samples that are not among the values of the signal, or not a truth value."""
     first_foreign: int = 0
-    """When the first of them was."""
+    """The time of the first of them."""
 
     def finding(self, start: int) -> Diagnostic | None:
-        """F423 or F424, where samples were foreign; the stream began at `start`."""
+        """F423 or F424, if samples were unmapped; the stream began at `start`."""
         if self.foreign is None:
             return None
         find = log_diagnostics.no_truth if self.is_flag else log_diagnostics.foreign_value
         return find(self.signal, self.foreign, self.count, self.first_foreign - start)
 
     def refusal(self, kind: np.dtype[Any] | None, passed: int) -> Diagnostic | None:
-        """F421: in a wider kind, samples that ticks have seen would compare otherwise."""
+        """F421: in a wider number type, samples of judged ticks would compare differently."""
         if kind is None or self.kind is None or np.promote_types(self.kind, kind) == self.kind:
             return None
         if not self.times or self.times[0] >= passed:
@@ -443,13 +442,13 @@ class _Queue:
         )
 
     def put(self, time: int, value: float, kind: np.dtype[Any] | None, foreign: str) -> None:
-        """One sample, behind those of the same time; `foreign` shows one that is no value."""
+        """Add one sample, after those of the same time; `foreign`: the text of an unmapped one."""
         if not foreign and self.is_flag and value not in (0, 1) and not isnan(value):
             foreign = shown(value)
         if foreign:
             self.first_foreign = time if self.foreign is None else self.first_foreign
-            one = UnmappedSamples(1, self.count, foreign)
-            self.foreign = self.foreign.followed(one) if self.foreign else one
+            unmapped = UnmappedSamples(1, self.count, foreign)
+            self.foreign = self.foreign.followed(unmapped) if self.foreign else unmapped
         self.count += 1
         if kind is not None:
             self.kind = kind if self.kind is None else np.promote_types(self.kind, kind)
@@ -458,13 +457,13 @@ class _Queue:
         self.values.insert(place, value)
 
     def forget(self, start: int) -> None:
-        """Drop the samples before the one that is in force where the window starts."""
+        """Drop the samples before the one that is in force when the window starts."""
         count = max(0, bisect_left(self.times, start) - 1)
         del self.times[:count]
         del self.values[:count]
 
     def samples(self) -> Samples:
-        """All that are left."""
+        """All remaining samples."""
         values = np.array(self.values, self.kind or np.float32)
         times = np.array(self.times, np.int64)
         return Samples(times, values, self.signal.scale, self.signal.values)
@@ -494,7 +493,7 @@ def _too_many(times: Sequence[int]) -> Diagnostic | None:
 def _needs_messages(declarations: Declarations) -> Diagnostic:
     return Diagnostic(
         Code.MESSAGE_CLOCK,
-        f"the clock ticks with {declarations.clock}: a sample of one signal is no message",
+        f"the clock ticks with {declarations.clock}: a sample of one signal is not a message",
         declarations.source.span(0, 0),
         help="give whole messages, with their topic",
     )

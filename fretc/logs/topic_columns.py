@@ -1,6 +1,6 @@
-"""Messages in, columns of times and numbers out: of each topic what the signals ask for.
+"""Columns of times and numbers from messages: for each topic the data that the signals read.
 
-Times are nanoseconds. Only the messages of topics that the bindings name are decoded.
+Times are nanoseconds. Only the messages of bound topics are decoded.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.messages import FileTimes, Messages
 from fretc.logs.mcap.payloads import Payloads
+from fretc.logs.signals.enum_values import UnmappedSamples
 from fretc.logs.signals.samples import Gap, Late, Series, Times, Values
 from fretc.logs.signals.topic_clocks import JUMP, forward_fill, late, unset
-from fretc.logs.signals.words import UnmappedSamples
 from fretish.bindings.declarations import Declarations, Signal, short_type
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Span
 
 _MOST, _MOST_BYTES = 4096, 2**22
-"""Messages, and bytes of them, that are read at once."""
+"""The most messages, and the most bytes of them, that are decoded at once."""
 _ENOUGH = 1024
-"""So many messages are read at once; fewer wait for others of their stream."""
+"""The number of messages that are decoded at once; fewer wait for others of their stream."""
 
 
 @dataclass(slots=True)
 class Pending:
-    """Messages of one stream that are still to be read."""
+    """Messages of one stream that wait to be decoded."""
 
     stream: Stream
     logs: list[int] = field(default_factory=list)
@@ -43,7 +43,7 @@ class Pending:
     size: int = 0
 
     def add(self, logs: Sequence[int], publishes: Sequence[int], payloads: Sequence[bytes]) -> None:
-        """Some more."""
+        """Add messages."""
         self.logs.extend(logs)
         self.publishes.extend(publishes)
         self.payloads.extend(payloads)
@@ -51,7 +51,7 @@ class Pending:
 
     @property
     def full(self) -> bool:
-        """Whether they should be read before another comes."""
+        """Whether they should be decoded before another one is added."""
         return len(self.logs) >= _MOST or self.size >= _MOST_BYTES
 
 
@@ -66,37 +66,37 @@ class Column:
     type: str
     encoding: str
     bound: bool
-    """Whether the bindings name it; of another topic only log times are read."""
+    """Whether the topic is bound; of other topics only log times are read."""
     signals: list[Signal]
-    """The signals to read of it: wanted and readable."""
+    """The wanted and readable signals of the topic."""
     logs: array[int] = field(default_factory=lambda: array("q"))
     times: array[int] = field(default_factory=lambda: array("q"))
     values: dict[str, Series] = field(default_factory=dict)
     diagnostics: dict[str, Diagnostic] = field(default_factory=dict)
-    """Why there are no samples of a signal."""
+    """For each signal without samples, the reason."""
     foreign: dict[str, UnmappedSamples] = field(default_factory=dict)
-    """Of a signal of words the samples that are none of them."""
+    """For each enumeration signal, the samples that are not among its values."""
     types: dict[str, None] = field(default_factory=dict)
-    """The types of its messages, in the order in which they came."""
+    """The types of its messages, in the order of the file."""
     pending: Pending | None = None
     undecoded: int = 0
     unstamped: int = 0
     timeless: bytearray = field(default_factory=bytearray)
-    """For each message 1 where the declared clock gives no time."""
+    """For each message 1 if the declared clock gives it no time."""
     unset: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, bool))
     """For each message whether its time was never set: it is zero, and its samples are unknown."""
     placed: bool = False
-    """Whether the declared clock gives the time of any of its messages."""
+    """Whether the declared clock gives any of its messages a time."""
     stated: int = 0
     """The number of messages that the log states and that were not read."""
 
     @property
     def count(self) -> int:
-        """How many messages there are."""
+        """The number of messages."""
         return len(self.logs) + self.stated
 
     def refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
-        """No samples of this signal."""
+        """Drop the samples of a signal, for the given reason."""
         self.signals.remove(signal)
         self.diagnostics[signal.name] = diagnostic
         self.values.pop(signal.name, None)
@@ -108,7 +108,7 @@ class Column:
         return logs, np.array(self.times, np.int64) if self.bound else logs
 
     def place(self, *, from_zero: bool) -> None:
-        """Find the times that were never set; each such message is put where the one before is."""
+        """Find the times that were never set; each such message gets the time of the one before."""
         logs, times = self.raw()
         timeless = np.frombuffer(bytes(self.timeless), np.bool_) if self.bound else logs < 0
         self.unset = ~timeless & unset(logs, times, from_zero=from_zero)
@@ -117,7 +117,7 @@ class Column:
         self.times = array("q", (forward_fill(times, lost) if self.placed else logs).tobytes())
 
     def stamps(self) -> Times:
-        """In the order of the file: by the declared clock, or log times where no signal reads."""
+        """The times in the order of the file; log times if no signal reads the topic."""
         return np.array(self.times, np.int64)
 
     def numbers(self, signal: Signal) -> Values:
@@ -127,23 +127,23 @@ class Column:
         return numbers
 
     def late(self) -> int:
-        """How many messages are earlier than one before them."""
+        """The number of messages that are out of order."""
         stamps = self.stamps()
         return int((stamps < np.maximum.accumulate(stamps)).sum())
 
 
 class Columns:
-    """A sink that keeps the numbers of the signals."""
+    """A sink that keeps the times and numbers of the signals."""
 
     def __init__(
         self, declarations: Declarations, wanted: Sequence[Signal], beside: Sequence[Signal] = ()
     ) -> None:
-        """Nothing.
+        """An empty sink.
 
         Args:
-            declarations: their clock and topics.
+            declarations: the declared clock and topics.
             wanted: the signals to read.
-            beside: others, read of topics that a wanted one reads, too; nothing is found of them.
+            beside: further signals of topics that a wanted one reads; they get no diagnostics.
         """
         self.topics: dict[str, Column] = {}
         """Every topic of the log."""
@@ -180,7 +180,7 @@ class Columns:
                 column.refuse(signal, log_diagnostics.wrong_type(signal, type_))
 
     def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
-        """One message; messages of bound topics wait for others of their stream."""
+        """Add one message; messages of bound topics wait for others of their stream."""
         column = self.topics[stream.channel.topic]
         if not column.bound:
             column.logs.append(log_time)
@@ -189,7 +189,7 @@ class Columns:
         self._wait(column, stream, [log_time], [publish_time], payloads)
 
     def add_all(self, stream: Stream, messages: Messages) -> None:
-        """Messages of one topic, in their order."""
+        """Add messages of one topic, in their order."""
         column = self.topics[stream.channel.topic]
         logs = messages.logs.astype(np.int64)
         if not column.bound:
@@ -203,15 +203,15 @@ class Columns:
         self._wait(column, stream, logs.tolist(), messages.publishes.tolist(), payloads)
 
     def wants(self, topic: str) -> bool:
-        """Whether the bindings name it."""
+        """Whether the topic is bound."""
         return topic in self._bound
 
     def count(self, stream: Stream, count: int) -> None:
-        """So many messages of a topic that the bindings do not name."""
+        """Count messages of a topic that is not bound."""
         self.topics[stream.channel.topic].stated += count
 
     def _decodes(self, column: Column) -> bool:
-        """Whether its messages must be decoded."""
+        """Whether messages of the topic must be decoded."""
         return bool(column.signals) or self.clock.time is TimeSource.HEADER_STAMP
 
     def _wait(
@@ -232,7 +232,7 @@ class Columns:
             self._settle(column)
 
     def settle(self) -> None:
-        """Read the messages that wait: no other follows."""
+        """Decode the waiting messages, because no others follow."""
         for column in self.topics.values():
             self._settle(column)
         from_zero = self._begins_at_zero()
@@ -240,7 +240,7 @@ class Columns:
             column.place(from_zero=from_zero)
 
     def _begins_at_zero(self) -> bool:
-        """Whether the declared clock begins at zero: a bound topic, else any, has such a time."""
+        """Whether the declared clock begins at zero, by the bound topics, or else by all."""
         columns = self.topics.values()
         of_all = [c for c in columns if c.bound and c.logs] or list(columns)
         times = (column.raw()[1] for column in of_all)
@@ -256,7 +256,7 @@ class Columns:
     def _read(
         self, column: Column, stream: Stream, logs: Times, publishes: FileTimes, payloads: Payloads
     ) -> None:
-        """Read and keep the data of messages of one stream."""
+        """Decode messages of one stream and store their data."""
         column.types[short_type(stream.schema.name) if stream.schema else ""] = None
         extract = self._extract(column, stream, payloads)
         times, dated = self._times(column, extract, logs, publishes)
@@ -295,7 +295,7 @@ class Columns:
     def _times(
         self, column: Column, extract: Extract, logs: Times, publishes: FileTimes
     ) -> tuple[Times, NDArray[np.bool_]]:
-        """The times of the messages on the declared clock, and which of them it gives."""
+        """The times of the messages on the declared clock, and a mask of those with one."""
         every = np.ones(len(logs), bool)
         match self.clock.time:
             case TimeSource.LOG_TIME:
@@ -310,7 +310,7 @@ class Columns:
     # The results
 
     def samples(self, signal: Signal) -> tuple[Times, Values]:
-        """Times and values of one signal, in order of time; none where it has a diagnostic."""
+        """Times and values of one signal, in order of time; empty if it has a diagnostic."""
         column = self.topics.get(signal.path.topic)
         if column is None or signal.name not in column.values:
             return np.zeros(0, np.int64), np.zeros(0)
@@ -321,27 +321,27 @@ class Columns:
         return times[order], numbers[order]
 
     def ticks(self) -> Times:
-        """Times of the clock's topic, where the clock ticks by message."""
+        """The times of the clock's topic, if the clock ticks by message."""
         column = self.topics.get(self.clock.topic or "")
         return np.sort(np.array(column.times if column else [], np.int64))
 
     def late(self) -> dict[str, Late]:
-        """Of each bound topic the messages that were late; none where no lateness is declared."""
+        """The late messages of each bound topic; empty if no lateness is declared."""
         lateness = self.clock.effective_lateness
         if lateness is None or self.clock.time is TimeSource.LOG_TIME:
             return {}
-        found = {
+        late_messages = {
             column.name: late(np.array(column.logs, np.int64), column.stamps(), lateness)
             for column in self.topics.values()
             if column.bound
         }
-        return {name: each for name, each in found.items() if each is not None}
+        return {name: each for name, each in late_messages.items() if each is not None}
 
     def span(self, log: Gap) -> Gap:
-        """First and last message of the bound topics, else of all; else those of the `log` log.
+        """First and last message of the bound topics, or else of all; without any, `log`.
 
-        A topic counts if the declared clock gives the time of any of its messages. Other topics
-        than the bound ones count by log time only: an index knows no other time of them.
+        A topic counts if the declared clock gives any of its messages a time. Topics that are not
+        bound count by log time only, because an index has no other time for them.
         """
         columns = [column for column in self.topics.values() if column.placed]
         times = [c.stamps() for c in columns if c.bound]
@@ -352,7 +352,7 @@ class Columns:
         return min(int(some.min()) for some in times), max(int(some.max()) for some in times)
 
     def on_clock(self, gap: Gap) -> Gap:
-        """A span of log times, on the declared clock: between the messages around it."""
+        """A span of log times on the declared clock, by the messages around it."""
         columns = [column for column in self.topics.values() if column.bound and column.placed]
         if self.clock.time is TimeSource.LOG_TIME or not columns:
             zeros = any(column.unset.any() for column in self.topics.values())
@@ -367,7 +367,7 @@ class Columns:
     # Diagnostics
 
     def findings(self) -> list[Diagnostic]:
-        """About single topics: what is missing first, then what is odd."""
+        """Diagnostics of single topics: missing ones first, then unusual ones."""
         diagnostics = [
             diagnostic
             for signal in self._wanted
@@ -381,7 +381,7 @@ class Columns:
         return [*diagnostics, *self._foreign_values()]
 
     def _foreign_values(self) -> Iterator[Diagnostic]:
-        """About samples of signals of words that are none of them."""
+        """Warnings about samples of enumeration signals that are not among their values."""
         for signal in self._wanted:
             column = self.topics.get(signal.path.topic)
             foreign = column.foreign.get(signal.name) if column else None
@@ -401,7 +401,7 @@ class Columns:
         return log_diagnostics.no_topic(topic, self.topics, span)
 
     def readers(self) -> dict[str, Span | None]:
-        """The wanted bound topics, each with the place that binds it."""
+        """The wanted bound topics, each with the place of its binding."""
         places = {self.clock.topic: self._clock_place(self.clock.topic)} if self.clock.topic else {}
         places |= {signal.path.topic: signal.span for signal in self._wanted}
         return {topic: place for topic, place in places.items() if topic in self.topics}
@@ -423,7 +423,7 @@ class Columns:
         return diagnostics
 
     def _shift(self) -> int:
-        """Median distance of header stamps from log times, in nanoseconds."""
+        """The median of header stamps minus log times, in nanoseconds."""
         stamped = [c for c in self.topics.values() if c.bound and c.placed and not c.unstamped]
         if self.clock.time is not TimeSource.HEADER_STAMP or not stamped:
             return 0

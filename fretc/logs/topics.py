@@ -1,4 +1,4 @@
-"""What the topics of a log are, and what is odd about their fields and clocks."""
+"""The topics of a log, with diagnostics about their fields and clocks."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ from fretish.diagnostics.diagnostic import Diagnostic
 def never_stated(
     samples: Mapping[str, Samples], examples: FirstMessages, wanted: Sequence[Signal]
 ) -> list[Diagnostic]:
-    """About signals that are unknown in all messages, in JSON that has no such field."""
-    found = []
+    """Warnings about JSON fields that no message has, which make their signals unknown."""
+    diagnostics = []
     for signal in wanted:
         values = samples[signal.name].values
         payloads = examples.of(signal.path.topic)
         if not payloads or not len(values) or not np.isnan(values).all():
             continue
         leaves = message_leaves(payloads)
-        known = [p for p, leaf in leaves.items() if signal.values or leaf.kind is not Kind.TEXT]
-        if ".".join(signal.path.fields) not in {path.removesuffix("[:]") for path in known}:
-            found.append(log_diagnostics.never_stated(signal, known))
-    return found
+        paths = [p for p, leaf in leaves.items() if signal.values or leaf.kind is not Kind.TEXT]
+        if ".".join(signal.path.fields) not in {path.removesuffix("[:]") for path in paths}:
+            diagnostics.append(log_diagnostics.never_stated(signal, paths))
+    return diagnostics
 
 
 def clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
-    """What is odd about the clocks of the topics that the signals read."""
-    found = list(_unmoved(columns))
+    """Warnings about the clocks of the topics that the signals read."""
+    diagnostics = list(_unmoved(columns))
     ahead: dict[str, int] = {}
     signals = {
         signal.path.topic: signal for signal in wanted if signal.path.topic in columns.topics
@@ -46,19 +46,23 @@ def clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
         column = columns.topics[topic]
         offset = _clock_offset(column)
         if offset is not None and offset.jumps:
-            found.append(log_diagnostics.clock_jumps(signal, offset.jumps, offset.largest_jump))
+            diagnostics.append(
+                log_diagnostics.clock_jumps(signal, offset.jumps, offset.largest_jump)
+            )
         if offset is not None and not column.unstamped:
             ahead[topic] = offset.median
     middle = median(ahead.values()) if ahead else 0
     true = min(ahead, key=lambda topic: (abs(ahead[topic] - middle), abs(ahead[topic])), default="")
     for topic, shift in ahead.items():
         if abs(shift - ahead[true]) > JUMP:
-            found.append(log_diagnostics.mixed_clocks(signals[topic], true, shift - ahead[true]))
-    return found
+            diagnostics.append(
+                log_diagnostics.mixed_clocks(signals[topic], true, shift - ahead[true])
+            )
+    return diagnostics
 
 
 def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
-    """About clocks that were never set, or that stand still."""
+    """Warnings about clocks that were never set, or that stand still."""
     for topic, place in columns.readers().items():
         column, time = columns.topics[topic], columns.clock.time
         if zero := int(column.unset.sum()):
@@ -68,18 +72,18 @@ def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
 
 
 def _clock_offset(column: Column) -> ClockOffset | None:
-    """Of the messages, without those whose time was never set."""
-    known = ~column.unset
-    return clock_offset(np.array(column.logs, np.int64)[known], column.stamps()[known])
+    """The offset of the clock, without messages whose time was never set."""
+    is_set = ~column.unset
+    return clock_offset(np.array(column.logs, np.int64)[is_set], column.stamps()[is_set])
 
 
 def topic(column: Column) -> Topic:
-    """What a log holds of a topic, and how its clock goes."""
+    """The statistics of a topic and its clock."""
     if column.stated:
         return _counted(column)
     times = np.sort(column.stamps())
     steps = np.diff(times)
-    offset = _clock_offset(column) if column.bound else None  # others have log times alone
+    offset = _clock_offset(column) if column.bound else None  # other topics have only log times
     return Topic(
         name=column.name,
         type=column.type,

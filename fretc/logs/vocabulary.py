@@ -1,4 +1,4 @@
-"""The words that the texts of a log hold: what a signal of words could be."""
+"""The texts in the fields of a log: candidates for enumeration values."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from fretc.logs.signals.signals import FieldError, UnstatedError, field_of
 from fretish.bindings.declarations import Path
 
 _MOST = 20
-"""Different words of a field; one with more is free text."""
+"""The most different texts of a field; a field with more is free text."""
 _LONGEST = 40
 _MOST_MESSAGES, _MOST_BYTES = 20_000, 2**16
-"""Messages of a topic that are decoded, and the bytes of one."""
+"""The most messages of a topic that are decoded, and the most bytes of one."""
 _NAMES = ("frame_id", "child_frame_id", "encoding", "distortion_model")
-"""Fields that never change while a robot runs."""
+"""Names of fields that never change while a robot runs."""
 
 Words = Mapping[str, tuple[str, ...] | None]
-"""Of each text of a topic, by its path, its words in the order in which they came; None: free
+"""For each text field of a topic, by its path, its texts in the order of the log; None: free
 text."""
 
 
 class Vocabulary:
-    """Collects the words of messages, as long as they are few."""
+    """A collector of the texts of messages, as long as there are few different ones."""
 
     def __init__(self) -> None:
         self._words: dict[str, dict[str, dict[str, None] | None]] = {}
@@ -33,9 +33,9 @@ class Vocabulary:
         self._counts: Counter[str] = Counter()
 
     def of(self, topic: str) -> Words:
-        """The words of a topic."""
-        found = self._words.get(topic, {})
-        return {path: None if words is None else tuple(words) for path, words in found.items()}
+        """The texts of a topic."""
+        texts = self._words.get(topic, {})
+        return {path: None if words is None else tuple(words) for path, words in texts.items()}
 
     def take(self, stream: Stream, payload: memoryview) -> None:
         """One message."""
@@ -58,29 +58,29 @@ class Vocabulary:
                 self._words[topic][path] = None
 
     def _decoder(self, stream: Stream) -> Decode | None:
-        """The decoder of a stream; None where it has no texts whose words are still few."""
+        """The decoder of a stream; None: it has no field with few different texts."""
         id, topic = stream.channel.id, stream.channel.topic
         if id not in self._decoders:
-            found = decoder(stream)
-            self._decoders[id] = None if isinstance(found, str) else found
+            decode = decoder(stream)
+            self._decoders[id] = None if isinstance(decode, str) else decode
             self._find(stream, ())
-        known = self._words[topic]
+        texts = self._words[topic]
         is_open = stream.channel.message_encoding == "json" or any(
-            words is not None for words in known.values()
+            words is not None for words in texts.values()
         )
         return self._decoders[id] if is_open else None
 
     def _find(self, stream: Stream, payloads: tuple[bytes, ...]) -> None:
-        """Note the texts of a stream."""
-        known = self._words.setdefault(stream.channel.topic, {})
+        """Find the text fields of a stream."""
+        texts = self._words.setdefault(stream.channel.topic, {})
         for path, leaf in (leaves(stream, payloads) or {}).items():
             *above, last = path.split(".")
             if leaf.kind is Kind.TEXT and last not in _NAMES and above[:1] != ["header"]:
-                known.setdefault(path, {})
+                texts.setdefault(path, {})
 
 
 def _add(words: dict[str, None], path: str, message: object) -> bool:
-    """Note the word of a message; False where it makes the field free text."""
+    """Add the text of a message; False: the field becomes free text."""
     try:
         text = field_of(Path("", tuple(path.split("."))), message)
     except (FieldError, UnstatedError):

@@ -1,11 +1,11 @@
-"""What a watch writes into its recording, and what an untrusted log may claim instead.
+"""The metadata records that a watch writes into its recording, and checks of untrusted ones.
 
-The metadata record `fretc.grid` says where the grid of ticks begins, as soon as it is placed, and
-`fretc.watch`, at the end, up to when was watched and what was missed meanwhile. Both name the clock
-by which they count. Where messages came behind later ones, after their ticks had been judged,
-`fretc.watch` has their number (`disordered`), and the grid does not count. Nothing of a record
-counts that is of another clock, is not written like this, or names a place at which no grid of the
-log can begin. Times are nanoseconds.
+The record `fretc.grid` states where the grid of ticks begins, as soon as it is placed, and
+`fretc.watch`, at the end, the time up to which was watched and the times of missed messages. Both
+state the clock by which they count. If messages came after later ones whose ticks had been judged,
+`fretc.watch` has their number (`disordered`), and the grid is ignored. A record is also ignored if
+it has another clock, is malformed, or states a start that no grid of the log can have. Times are
+nanoseconds.
 """
 
 from __future__ import annotations
@@ -28,35 +28,35 @@ GRID, WATCH = "fretc.grid", "fretc.watch"
 """The names of the records."""
 _OF_GRID = (f"{GRID}.clock", f"{GRID}.origin", f"{WATCH}.clock", f"{WATCH}.until")
 KEYS = frozenset({*_OF_GRID, f"{WATCH}.missed", f"{WATCH}.disordered"})
-"""All that they say."""
+"""The keys of the records."""
 _TIME = re.compile(r"[1-9][0-9]{0,18}")
 _SPANS = re.compile(r"[1-9][0-9]{0,18}-[1-9][0-9]{0,18}( [1-9][0-9]{0,18}-[1-9][0-9]{0,18})*")
 
 
 @dataclass(frozen=True, slots=True)
 class Watched:
-    """What the watch that recorded a log says of it, as far as that fits the log."""
+    """The facts about the watch that recorded a log, as far as they fit the log."""
 
     origin: int | None = None
-    """Where the grid of ticks begins."""
+    """The start of the grid of ticks."""
     until: int = 0
-    """Up to when was watched, on the declared clock."""
+    """The end of the watch, on the declared clock."""
     missed: tuple[Gap, ...] = ()
-    """When messages were lost: first and last receive time."""
+    """Intervals of lost messages: first and last receive time."""
     lost: bool = False
-    """Whether messages were lost at all."""
+    """Whether any messages were lost."""
     findings: tuple[Diagnostic, ...] = ()
 
 
 def clock_text(clock: Clock) -> str:
-    """All of a clock on which the grid depends."""
+    """The parts of a clock on which the grid depends."""
     by_stamps = clock.time is not TimeSource.LOG_TIME and clock.lateness is not None
     waits = f", late after {in_words(clock.lateness or 0)}" if by_stamps else ""
     return f"{clock}, by {clock.time}{waits}"
 
 
 def grid_record(clock: Clock, origin: int) -> dict[str, str]:
-    """The record of a grid."""
+    """The record of the start of a grid."""
     return {"clock": clock_text(clock), "origin": str(origin)}
 
 
@@ -70,14 +70,14 @@ def watch_record(
 
 
 _SHOWN = 80
-"""Characters of an untrusted text."""
+"""The most characters of an untrusted text."""
 
 
 def watched(columns: Columns, described: Mapping[str, tuple[str, ...]], place: Span) -> Watched:
-    """What the records of a log say, with a finding for each.
+    """The facts in the records of a log, with a diagnostic for each.
 
-    What was missed counts whatever the clock, and where nobody can tell when that was, too: it
-    makes things unknown, and nothing else.
+    Missed messages count whatever the clock, and even at unknown times: they only make propositions
+    unknown.
     """
     lost, gaps = _missed(described.get(f"{WATCH}.missed", ()))
     findings = [_missing(gaps, place)] if lost else []
@@ -86,17 +86,17 @@ def watched(columns: Columns, described: Mapping[str, tuple[str, ...]], place: S
     stated = {key: described[key] for key in _OF_GRID if key in described}
     if f"{WATCH}.disordered" in described:
         stated.pop(f"{GRID}.origin", None)
-    found = _grid(stated, columns)
-    if isinstance(found, str):
-        return Watched(None, 0, gaps, lost, (*findings, _refused(found, place)))
-    origin, until = found
+    grid = _grid(stated, columns)
+    if isinstance(grid, str):
+        return Watched(None, 0, gaps, lost, (*findings, _refused(grid, place)))
+    origin, until = grid
     if origin is not None or until:
         findings.append(_taken_over(origin, until, columns, place))
     return Watched(origin, until, gaps, lost, tuple(findings))
 
 
 def _missed(texts: Sequence[str]) -> tuple[bool, tuple[Gap, ...]]:
-    """Whether anything was missed, and when."""
+    """Whether messages were missed, and when."""
     spans = [
         (int(a), int(b))
         for text in texts
@@ -107,7 +107,7 @@ def _missed(texts: Sequence[str]) -> tuple[bool, tuple[Gap, ...]]:
 
 
 def _grid(stated: Mapping[str, tuple[str, ...]], columns: Columns) -> tuple[int | None, int] | str:
-    """The origin and the end, or why they do not count."""
+    """The start of the grid and the end of the watch, or the reason why they are ignored."""
     for key, values in stated.items():
         if len(values) > 1:
             return f"it has {len(values)} values of `{key}`"
@@ -115,7 +115,7 @@ def _grid(stated: Mapping[str, tuple[str, ...]], columns: Columns) -> tuple[int 
     for record in (GRID, WATCH):
         named = stated.get(f"{record}.clock", (clock,))[0]
         if named != clock:
-            return f"it is of the clock `{named[:_SHOWN]}`, and not `{clock}`"
+            return f"it uses the clock `{named[:_SHOWN]}`, not `{clock}`"
     texts = [stated.get(key, ("",))[0] for key in (f"{GRID}.origin", f"{WATCH}.until")]
     for text in texts:
         if text and not (_TIME.fullmatch(text) and int(text) < LATEST):
@@ -129,9 +129,9 @@ def _grid(stated: Mapping[str, tuple[str, ...]], columns: Columns) -> tuple[int 
 def _fits(origin: int, columns: Columns) -> bool:
     """Whether a watch can have placed its grid there.
 
-    It has done so by the messages that had come by some moment, and less than a period after the
-    first of their times. All had come that came until the first tick was judged, and none that
-    came when a period had passed after the time of the message that came first.
+    It has done so by the messages that had arrived by some moment, and less than a period after the
+    first of their times. All messages that arrived until the first tick was judged had arrived
+    then, and none that arrived a period after the time of the message that arrived first.
     """
     clock = columns.clock
     read = [column for column in columns.topics.values() if column.bound and len(column.logs)]
@@ -167,9 +167,9 @@ def _taken_over(origin: int | None, until: int, columns: Columns, place: Span) -
 def _refused(why: str, place: Span) -> Diagnostic:
     return Diagnostic(
         Code.FOREIGN_GRID,
-        f"what the log says of a watch does not count: {why}",
+        f"the watch that the log records is ignored: {why}",
         place,
-        "audit a recording with the clock of its watch",
+        "audit the recording with the same clock as the watch",
         Severity.WARNING,
     )
 
@@ -177,10 +177,10 @@ def _refused(why: str, place: Span) -> Diagnostic:
 def _missing(gaps: Sequence[Gap], place: Span) -> Diagnostic:
     length = sum(b - a for a, b in gaps)
     times = "once" if len(gaps) == 1 else f"{len(gaps)} times"
-    how = f"{times}, for {seconds(length / 1e9)} in all: what came then is unknown"
+    how = f"{times}, for {seconds(length / 1e9)} in all: messages of these times are unknown"
     return Diagnostic(
         Code.MISSED,
-        f"the watch has missed messages {how if gaps else 'and does not say when'}",
+        f"the watch has missed messages {how if gaps else 'at unknown times'}",
         place,
         severity=Severity.WARNING,
     )

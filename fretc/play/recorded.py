@@ -14,7 +14,7 @@ from itertools import groupby
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import monitor as emitted
-from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.plan import Plan
 from fretc.logs.reader import read
 from fretc.logs.signals.traces import Timeline, trace

@@ -14,8 +14,8 @@ from compiler.logic.claims import Proof
 from compiler.project.project import Project
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
-from fretc.audit.evidence.briefs import Briefs, EvidenceSource
 from fretc.audit.evidence.probabilities import AVERAGE
+from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummaries
 from fretc.audit.evidence.schema import Selection
 from fretc.audit.evidence.verdicts import NOT_EXERCISED, RETIRED
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE, SUPPORTED
@@ -82,7 +82,7 @@ def report(
         book: who signed what.
         together: None where nobody has asked whether all requirements can be kept together.
     """
-    briefs = Briefs.of(evidence) if evidence else None
+    briefs = ResultSummaries.of(evidence) if evidence else None
     runs_by_key = runs(briefs)
     all_runs = tuple(runs_by_key.values())
     all_proofs = merged(proofs.proofs if proofs else (), ajpf)

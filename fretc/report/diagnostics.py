@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fretc.audit.evidence.briefs import Briefs
+from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.evidence.verdicts import WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -15,7 +15,7 @@ from fretish.diagnostics.source import Source
 
 
 def stale_evidence(
-    assessments: Sequence[Assessment], briefs: Briefs | None, path: str
+    assessments: Sequence[Assessment], briefs: ResultSummaries | None, path: str
 ) -> tuple[Diagnostic, ...]:
     """F504 for requirements with evidence of something else, and for each id that is unknown.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.verdicts import RETIRED
 from fretc.coverage.coverage import CoverageStatus, RequirementCoverage, of_requirements
 from fretc.report.model.assessments import Assessment

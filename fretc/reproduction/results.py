@@ -19,15 +19,15 @@ from compiler.files.build_id import __version__
 from compiler.files.records import plain, replace
 from compiler.files.text_files import file_sha256
 from fretc.audit.evidence.basis import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
-from fretc.audit.evidence.briefs import brief
 from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.estimates import estimates
 from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.result_summaries import brief
 from fretc.audit.evidence.schema import Document, Requirement, Result
 from fretc.audit.evidence.schema import Finding as OfLog
 from fretc.audit.many_logs import Engine, audit_logs, named_situations
 from fretc.audit.plan import Plan, monitored_requirements
-from fretc.logs.labels import of_path
+from fretc.logs.labels import path_label
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.storage.log_names import name_of, path_of
@@ -325,7 +325,8 @@ def _same_labels(before: Result, now: Result, plan: Plan) -> bool:
     different = [name for name in own if own[name] != other[name]]
     declared = plan.declarations.labels
     return all(
-        name not in plan.labels and own[name] in of_path(name, declared.get(name, ()), before.run)
+        name not in plan.labels
+        and own[name] in path_label(name, declared.get(name, ()), before.run)
         for name in different
     )
 

@@ -1,8 +1,8 @@
-"""From the verdicts of a requirement in one scenario, round by round, to what has become of it.
+"""The change of a requirement in one scenario, from its verdicts round by round.
 
-A round is violated where one of its runs is. It is shown where a run shows the requirement and no
-other leaves it open. Else it is open: nothing is known of it, and nothing has become better. What
-was violated and is open now is never called fixed.
+A round is violated if one of its runs is. It is shown if a run shows the requirement and no other
+leaves it open. Else it is open: nothing is known, and nothing has improved. A requirement that was
+violated and is open now is never called fixed.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from fretc.audit.evidence.verdicts import BROKEN, SHOWN
 from monitors import kernel
 
 
-class Tone(StrEnum):
-    """What a round says."""
+class RoundOutcome(StrEnum):
+    """The combined verdict of a round."""
 
     VIOLATED = "violated"
     SHOWN = "shown"
@@ -24,10 +24,10 @@ class Tone(StrEnum):
 
 
 class Change(StrEnum):
-    """What has become of a requirement in a scenario; the worst first."""
+    """The change of a requirement in a scenario; the worst first."""
 
     NEW = "new"
-    """Violated now, and not when something was known of it last."""
+    """Violated now, and not when it was last known."""
     FIRST_VIOLATED = "first seen, violated"
     STILL = "still violated"
     LOST = "lost"
@@ -35,7 +35,7 @@ class Change(StrEnum):
     GONE = "gone"
     """Judged before, and not in the newest round."""
     NOT_SELECTED = "not selected"
-    """Judged before, in runs that the audit of the newest round may have left out by its choice."""
+    """Judged before, in runs that the selection of the newest round may have left out."""
     FIRST = "first seen"
     FIXED = "fixed"
     NEVER_SHOWN = "never shown"
@@ -43,61 +43,67 @@ class Change(StrEnum):
 
 
 RED = (Change.NEW, Change.FIRST_VIOLATED)
-"""What is violated, and was not."""
+"""The changes to violated."""
 _NEUTRAL = (kernel.VACUOUS, "not exercised", "retired")
-"""Verdicts that say nothing beside others."""
+"""Verdicts that do not count beside others."""
 
 
-def tone(verdicts: Iterable[str]) -> Tone:
-    """What the verdicts of a round say, at least one."""
+def round_outcome(verdicts: Iterable[str]) -> RoundOutcome:
+    """The combined verdict of a round from its verdicts, at least one."""
     words = {*verdicts}
     if words & {*BROKEN}:
-        return Tone.VIOLATED
+        return RoundOutcome.VIOLATED
     left_open = words - {*SHOWN, *_NEUTRAL}
-    return Tone.SHOWN if words & {*SHOWN} and not left_open else Tone.OPEN
+    return RoundOutcome.SHOWN if words & {*SHOWN} and not left_open else RoundOutcome.OPEN
 
 
 def change(rounds: Sequence[Sequence[str]]) -> Change:
-    """What has become of it.
+    """The change of a requirement.
 
     Args:
-        rounds: the verdicts of each round, the newest last; a round without one did not judge it.
-            There is a verdict in one of them.
+        rounds: the verdicts of each round, the newest last; empty for a round that did not judge
+            it. At least one round has a verdict.
     """
-    *before, now = [tone(verdicts) if verdicts else None for verdicts in rounds]
+    *before, now = [round_outcome(verdicts) if verdicts else None for verdicts in rounds]
     judged = [each for each in before if each is not None]
     last = last_known(rounds)
     if now is None:
         assert judged, "it was never judged"
         return Change.GONE
     if not judged:
-        return Change.FIRST_VIOLATED if now is Tone.VIOLATED else Change.FIRST
-    was_violated = last is not None and before[last] is Tone.VIOLATED
+        return Change.FIRST_VIOLATED if now is RoundOutcome.VIOLATED else Change.FIRST
+    was_violated = last is not None and before[last] is RoundOutcome.VIOLATED
     match now:
-        case Tone.VIOLATED:
+        case RoundOutcome.VIOLATED:
             return Change.STILL if was_violated else Change.NEW
-        case Tone.SHOWN:
+        case RoundOutcome.SHOWN:
             return Change.FIXED if was_violated else Change.STEADY
-        case Tone.OPEN:
+        case RoundOutcome.OPEN:
             return Change.LOST if last is not None else Change.NEVER_SHOWN
 
 
 def last_known(rounds: Sequence[Sequence[str]]) -> int | None:
-    """The number of the last round before the newest that says something; None: none does."""
-    known = [i for i, one in enumerate(rounds[:-1]) if one and tone(one) is not Tone.OPEN]
-    return known[-1] if known else None
+    """The index of the last round before the newest with a known outcome; None: none."""
+    known_rounds = [
+        i
+        for i, one in enumerate(rounds[:-1])
+        if one and round_outcome(one) is not RoundOutcome.OPEN
+    ]
+    return known_rounds[-1] if known_rounds else None
 
 
 def is_flaky(rounds: Sequence[Sequence[str]], of_software: Mapping[str, Sequence[str]]) -> bool:
-    """Whether it is violated now and then: more than one turn, or both at one state of software.
+    """Whether violations came and went repeatedly, or one commit has both verdicts.
 
     Args:
         rounds: the verdicts of each round, the newest last.
         of_software: the verdicts of the runs of each commit.
     """
-    tones = [tone(verdicts) for verdicts in rounds if verdicts]
-    known = [each for each in tones if each is not Tone.OPEN]
-    turns = sum(a is not b for a, b in pairwise(known))
+    round_outcomes = [round_outcome(verdicts) for verdicts in rounds if verdicts]
+    decided = [
+        round_outcome for round_outcome in round_outcomes if round_outcome is not RoundOutcome.OPEN
+    ]
+    turns = sum(a is not b for a, b in pairwise(decided))
     return turns > 1 or any(
         {*verdicts} & {*BROKEN} and {*verdicts} & {*SHOWN} for verdicts in of_software.values()
     )

@@ -1,6 +1,6 @@
-"""The layout of trends: a strip of rounds, and the numbers of runs over rounds; 720 wide at most.
+"""The layout of trends: strips of rounds, and charts of numbers over rounds, at most 720 wide.
 
-What a picture shows, its text says, too: colour is never all that tells it.
+Each picture has a text with the same information: it never depends on colour alone.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from statistics import median
 from fretc.report.model import phrases
 from fretc.report.pictures.histograms import step
 from fretc.report.pictures.plots import places
-from fretc.trends.changes import Tone
+from fretc.trends.changes import RoundOutcome
 from fretc.trends.comparisons import Comparison, Finding, Measure, Value, amount
 
 _CELL, _TALL = 9, 16
 MOST_CELLS = 60
-"""Rounds of a strip, the newest ones."""
+"""The most rounds of a strip; it has the newest ones."""
 _WIDTH, _LEFT, _RIGHT, _TOP, _BASE = 720, 92, 30, 14, 134
 _MOST_DOTS = 40
-"""Of a round: the worst ones, and as many others as fit."""
+"""The most dots of a round: the worst ones, and as many others as fit."""
 _LABELS = 14
-"""Rounds with a number on the axis, about."""
-_KINDS = {Tone.VIOLATED: "violated", Tone.SHOWN: "shown", Tone.OPEN: "open"}
+"""The approximate number of labelled rounds on the axis."""
+_KINDS = {RoundOutcome.VIOLATED: "violated", RoundOutcome.SHOWN: "shown", RoundOutcome.OPEN: "open"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,31 +49,31 @@ class Strip:
     text: str
 
 
-def strip(tones: Sequence[Tone | None]) -> Strip:
+def strip(round_outcomes: Sequence[RoundOutcome | None]) -> Strip:
     """The newest rounds: a violated one is a tall bar, a shown one low, an open one hollow."""
-    first = max(0, len(tones) - MOST_CELLS)
-    shown = tones[first:]
+    first = max(0, len(round_outcomes) - MOST_CELLS)
+    shown = round_outcomes[first:]
     cells = tuple(_cell(i, each) for i, each in enumerate(shown))
     return Strip(_CELL * len(shown), _TALL, cells, _in_words(shown, first + 1))
 
 
-def _cell(place: int, each: Tone | None) -> Cell:
+def _cell(place: int, each: RoundOutcome | None) -> Cell:
     x, width = place * _CELL + 1, _CELL - 2
     match each:
-        case Tone.VIOLATED:
+        case RoundOutcome.VIOLATED:
             return Cell("violated", x, 0, width, _TALL)
-        case Tone.SHOWN:
+        case RoundOutcome.SHOWN:
             return Cell("shown", x, _TALL - 7, width, 7)
-        case Tone.OPEN:
+        case RoundOutcome.OPEN:
             return Cell("open", x, _TALL - 12, width, 12)
         case None:
             return Cell("absent", x, _TALL - 1, width, 1)
 
 
-def _in_words(tones: Sequence[Tone | None], first: int) -> str:
-    """`rounds 1 to 4 shown, 5 violated`."""
+def _in_words(round_outcomes: Sequence[RoundOutcome | None], first: int) -> str:
+    """The rounds in words: `rounds 1 to 4 shown, 5 violated`."""
     parts, at = [], first
-    for each, some in groupby(tones):
+    for each, some in groupby(round_outcomes):
         last = at + len(list(some)) - 1
         which = f"{at}" if at == last else f"{at} to {last}"
         parts.append(f"{which} {'not judged' if each is None else _KINDS[each]}")
@@ -86,7 +86,7 @@ def _in_words(tones: Sequence[Tone | None], first: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Dot:
-    """A run."""
+    """The number of one run."""
 
     x: float
     y: float
@@ -108,7 +108,7 @@ class Chart:
     base: int
     dots: tuple[Dot, ...]
     medians: tuple[tuple[float, float, float], ...]
-    """From, to, and at which height."""
+    """Left, right and height of each median."""
     ticks: tuple[tuple[float, str], ...]
     marks: tuple[tuple[float, str], ...]
 
@@ -117,10 +117,10 @@ def chart(one: Comparison, rounds: int, is_after: Sequence[bool], id: str) -> Ch
     """The layout.
 
     Args:
-        one: with the values of its runs.
-        rounds: how many there are.
-        is_after: of each run, whether it is of what is compared with the others.
-        id: of the drawing.
+        one: the comparison with the values of its runs.
+        rounds: the number of rounds.
+        is_after: for each run, whether it belongs to the newer side of the comparison.
+        id: the id of the chart.
     """
     numbers = [value.number for value in one.values]
     low, high = min([0.0, *numbers]), max([0.0, *numbers])
@@ -169,7 +169,7 @@ def chart(one: Comparison, rounds: int, is_after: Sequence[bool], id: str) -> Ch
 
 
 def _chosen(values: Sequence[Value], measure: Measure) -> Sequence[Value]:
-    """The worst ones, and others in their order: no run that is worse is left out for a better."""
+    """The worst values and others in order: no worse value is left out for a better one."""
     if len(values) <= _MOST_DOTS:
         return values
     sign = 1 if measure.is_better_larger else -1
@@ -179,7 +179,7 @@ def _chosen(values: Sequence[Value], measure: Measure) -> Sequence[Value]:
 
 
 def _spread(values: Sequence[Value]) -> Iterator[tuple[float, Value]]:
-    """Each with its place in the column of its round, from 0 to 1."""
+    """Each value with its position in the column of its round, from 0 to 1."""
     for i, value in enumerate(values):
         yield 0.2 + 0.6 * (i + 0.5) / len(values), value
 

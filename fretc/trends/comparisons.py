@@ -1,7 +1,7 @@
-"""Latencies and margins of the newest version against those before: whether chance is enough.
+"""Significance tests of latencies and margins of the newest version against those before.
 
-Of each run counts one number of a kind, because what happens within a run is not independent:
-the longest and the median latency of its answers, and its least margin to each threshold. Larger
+Each run counts with one number of a kind, because events within a run are not independent: the
+longest and the median latency of its answers, and its least margin to each threshold. Larger
 latencies and smaller margins are worse. Runs of one scenario are ranked with each other.
 """
 
@@ -15,15 +15,15 @@ from statistics import median
 
 from fretc.audit.evidence.schema import Threshold
 from fretc.report.model.phrases import some, value
-from fretc.trends.histories import Histories, Judged, Run, Scenario
-from fretc.trends.rank_test import Tail, decidable, fewer, holm, larger
+from fretc.trends.histories import Histories, Run, RunOutcome, Scenario
+from fretc.trends.rank_test import RankTest, decidable, fewer, holm, larger
 
 LEVEL = 0.05
-"""The chance of even one regression that is none, of all that are found together."""
+"""The probability of even one false regression among all that are reported."""
 
 
 class Kind(StrEnum):
-    """What is measured of a run."""
+    """The kind of number of a run."""
 
     LONGEST = "longest latency"
     MEDIAN = "median latency"
@@ -31,7 +31,7 @@ class Kind(StrEnum):
 
 
 class Finding(StrEnum):
-    """What a comparison shows; the worst first."""
+    """The finding of a comparison; the worst first."""
 
     REGRESSED = "regressed"
     TOO_FEW = "too few runs to tell"
@@ -40,13 +40,13 @@ class Finding(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """What is compared: a latency of a requirement, or the margin of some to one threshold."""
+    """A compared number: a latency of a requirement, or the margin of some to one threshold."""
 
     requirements: tuple[str, ...]
     kind: Kind
     unit: str
     threshold: str = ""
-    """`clearance < 0.05 m (too_close)`; empty of a latency."""
+    """`clearance < 0.05 m (too_close)`; empty for a latency."""
 
     @property
     def is_better_larger(self) -> bool:
@@ -55,11 +55,11 @@ class Measure:
 
     @property
     def ids(self) -> str:
-        """Its requirements, as they are shown."""
+        """The ids of its requirements, as text."""
         return some(self.requirements, 3)
 
     def __str__(self) -> str:
-        """As it is shown."""
+        """The measure as text."""
         return f"{self.kind} to {self.threshold}" if self.threshold else str(self.kind)
 
 
@@ -75,23 +75,23 @@ class Value:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A measure of the newest version against that before it."""
+    """A measure of the newest version compared with the version before it."""
 
     measure: Measure
     finding: Finding
     before: float | None
-    """Medians of the runs that are compared; None: there are none."""
+    """Medians of the compared runs; None: there are none."""
     after: float | None
     runs_before: int
     runs_after: int
     p: float | None
-    """Adjusted for all comparisons; None where none is made."""
+    """The p-value, adjusted for all comparisons; None: not tested."""
     values: tuple[Value, ...]
-    """Of all runs whose requirement is as it is now, for the picture."""
+    """The values of all runs whose requirement is unchanged, for the chart."""
 
     @property
     def worse(self) -> str:
-        """From which median to which, of how many runs, and how likely that is chance."""
+        """The medians, the numbers of runs, and the p-value, in words."""
         ends = (amount(number or 0.0, self.measure.unit) for number in (self.before, self.after))
         p = 1.0 if self.p is None else self.p
         chance = "p < 0.001" if p < 0.001 else f"p = {p:.2g}"
@@ -100,8 +100,8 @@ class Comparison:
 
 
 @dataclass(frozen=True, slots=True)
-class Sides:
-    """Which runs are compared with which."""
+class ComparedRuns:
+    """The two compared sets of runs."""
 
     after: str
     before: str
@@ -109,7 +109,7 @@ class Sides:
     is_before: Callable[[Run], bool]
 
 
-def sides(histories: Histories) -> Sides:
+def compared_runs(histories: Histories) -> ComparedRuns:
     """The newest version and the one before it; else the newest round and all before it.
 
     A version is as new as its newest run.
@@ -122,14 +122,14 @@ def sides(histories: Histories) -> Sides:
     versions = sorted(place, key=place.__getitem__)
     if len(versions) > 1 and place[versions[-1]][0] == histories.newest:
         before, after = versions[-2:]
-        return Sides(
+        return ComparedRuns(
             f"version {after}",
             f"version {before}",
             lambda run: run.version == after,
             lambda run: run.version == before,
         )
     newest = histories.newest
-    return Sides(
+    return ComparedRuns(
         "the newest round",
         "the rounds before it",
         lambda run: run.round == newest,
@@ -137,32 +137,33 @@ def sides(histories: Histories) -> Sides:
     )
 
 
-def comparisons(histories: Histories, held: Sides, level: float = LEVEL) -> tuple[Comparison, ...]:
-    """All of them, the regressions first.
+def comparisons(
+    histories: Histories, compared: ComparedRuns, level: float = LEVEL
+) -> tuple[Comparison, ...]:
+    """All comparisons, the regressions first.
 
-    Only what its numbers allow to be found beside all others is tested (Tarone): which that is
-    depends on how many runs there are and which of their numbers are equal, never on which of them
-    are the newest ones.
+    Only comparisons that could be significant among all others are tested (Tarone): this depends on
+    the number of runs and on equal numbers, never on which of them are the newest.
 
     Args:
-        histories: what was read.
-        held: which runs are compared with which.
-        level: the chance of even one regression that is none.
+        histories: the histories of all evidence.
+        compared: the two compared sets of runs.
+        level: the probability of even one false regression.
     """
     measured = _measured(histories)
-    tested = [_tested(histories.runs, held, measure, values) for measure, values in measured]
+    tested = [_tested(histories.runs, compared, measure, values) for measure, values in measured]
     family = decidable([tail.least for tail, _ in tested], level)
     adjusted = dict(zip(family, holm([tested[i][0].p for i in family]), strict=True))
-    found = [
+    all_comparisons = [
         _comparison(measure, values, tested[i][1], adjusted.get(i), level)
         for i, (measure, values) in enumerate(measured)
     ]
     order = list(Finding)
-    return tuple(sorted(found, key=lambda one: (order.index(one.finding), one.p or 1.0)))
+    return tuple(sorted(all_comparisons, key=lambda one: (order.index(one.finding), one.p or 1.0)))
 
 
 def _measured(histories: Histories) -> list[tuple[Measure, tuple[Value, ...]]]:
-    """Each measure with its values; what several requirements share is one."""
+    """Each measure with its values; a measure that several requirements share is one."""
     shared: dict[tuple[object, ...], tuple[Measure, tuple[Value, ...]]] = {}
     for requirement in histories.requirements:
         for measure, values in _measures(histories, requirement):
@@ -181,18 +182,18 @@ _Strata = Sequence[tuple[Sequence[float], Sequence[float]]]
 
 
 def _tested(
-    runs: Sequence[Run], held: Sides, measure: Measure, values: Sequence[Value]
-) -> tuple[Tail, _Strata]:
-    """The test, and the numbers that it counts: each log once, the newest ones first."""
+    runs: Sequence[Run], compared: ComparedRuns, measure: Measure, values: Sequence[Value]
+) -> tuple[RankTest, _Strata]:
+    """The test, and its numbers: each log once, the newest ones first."""
     strata: dict[Scenario, tuple[list[float], list[float]]] = defaultdict(lambda: ([], []))
     passed: set[str] = set()
-    for one in values:  # from the oldest round on: a copy in a later one is nothing new
-        run = runs[one.run]
-        is_after = held.is_after(run)
-        if run.content in passed or not (is_after or held.is_before(run)):
+    for run_value in values:  # from the oldest round on, so that copies in later rounds are skipped
+        run = runs[run_value.run]
+        is_after = compared.is_after(run)
+        if run.content in passed or not (is_after or compared.is_before(run)):
             continue
         passed.add(run.content)
-        strata[one.scenario][is_after].append(one.number)
+        strata[run_value.scenario][is_after].append(run_value.number)
     both = fewer([(before[::-1], after[::-1]) for before, after in strata.values()])
     sign = -1 if measure.is_better_larger else 1
     return larger([([sign * x for x in b], [sign * x for x in a]) for b, a in both]), both
@@ -224,13 +225,13 @@ def _comparison(
     )
 
 
-# What is measured -------------------------------------------------------------------------------
+# Measures ---------------------------------------------------------------------------------------
 
 
 def _measures(
     histories: Histories, requirement: str
 ) -> Iterator[tuple[Measure, tuple[Value, ...]]]:
-    """What is measured of a requirement, with the values of all runs that are comparable."""
+    """The measures of a requirement, with the values of all comparable runs."""
     judged = [
         one
         for (id, _), some in histories.judged.items()
@@ -242,33 +243,33 @@ def _measures(
         return
     judged.sort(key=lambda one: (one.round, histories.runs[one.run].time or -1, one.run))
     basis = judged[-1].basis
-    same = [one for one in judged if one.basis == basis]
+    same = [outcome for outcome in judged if outcome.basis == basis]
     for kind, number in ((Kind.LONGEST, _longest), (Kind.MEDIAN, _median)):
         values = tuple(_value(histories.runs, one, number(one)) for one in same)
-        known = tuple(each for each in values if each is not None)
-        if known:
-            yield Measure((requirement,), kind, "s"), known
+        known_values = tuple(value for value in values if value is not None)
+        if known_values:
+            yield Measure((requirement,), kind, "s"), known_values
     yield from _margins(histories, requirement, same)
 
 
-def _longest(one: Judged) -> float | None:
+def _longest(one: RunOutcome) -> float | None:
     return one.longest
 
 
-def _median(one: Judged) -> float | None:
+def _median(one: RunOutcome) -> float | None:
     return one.median
 
 
-def _value(runs: Sequence[Run], one: Judged, number: float | None) -> Value | None:
+def _value(runs: Sequence[Run], one: RunOutcome, number: float | None) -> Value | None:
     if number is None:
         return None
     return Value(one.run, runs[one.run].scenario, one.round, float(number))
 
 
 def _margins(
-    histories: Histories, requirement: str, same: Sequence[Judged]
+    histories: Histories, requirement: str, same: Sequence[RunOutcome]
 ) -> Iterator[tuple[Measure, tuple[Value, ...]]]:
-    """The least margin of each run to each threshold; one that was crossed has none left: 0."""
+    """The least margin of each run to each threshold; 0 for a crossed one."""
     known = {one.run: one for one in same}
     found: dict[Measure, dict[int, float]] = defaultdict(dict)
     for source, places in zip(histories.sources, histories.places, strict=True):
@@ -281,11 +282,11 @@ def _margins(
     for measure, margins in found.items():
         ordered = [(one, margins[run]) for run, one in known.items() if run in margins]
         values = (_value(histories.runs, one, number) for one, number in ordered)
-        yield measure, tuple(each for each in values if each is not None)
+        yield measure, tuple(value for value in values if value is not None)
 
 
 def _margin(each: Threshold) -> float | None:
-    """None where the comparison was never known."""
+    """The margin; None: the comparison was always unknown."""
     return 0.0 if each.comparison == "crossed" else each.margin
 
 
@@ -301,5 +302,5 @@ def amount(number: float, unit: str) -> str:
 
 
 def by_finding(found: Sequence[Comparison]) -> Mapping[Finding, int]:
-    """How many of each."""
+    """The number of comparisons with each finding."""
     return {kind: sum(one.finding is kind for one in found) for kind in Finding}

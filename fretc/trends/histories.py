@@ -17,32 +17,32 @@ from datetime import UTC, datetime
 from pathlib import PurePosixPath
 
 from fretc.audit.evidence.basis import BINDINGS, CLOCK, PARAMS, SENTENCE, TOPICS
-from fretc.audit.evidence.briefs import Brief, EvidenceSource, RunFacts
+from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary, RunFacts
 from fretc.audit.evidence.schema import Selection
 from fretish.reading.natural_order import natural
 
 EVIDENCE, DAY = "evidence", "day"
-"""What a round can be, beside the value of a label."""
+"""The kinds of rounds other than the values of a label."""
 SCENARIO, VERSION, COMMIT, DATE = "scenario", "version", "commit", "date"
-"""Labels that mean something here."""
+"""Labels with a meaning for trends."""
 _BASIS = (SENTENCE, PARAMS, CLOCK, TOPICS, BINDINGS)
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Scenario:
-    """What is comparable: a scenario, the name of a log, or all runs of an evidence together."""
+    """Comparable runs: those of a scenario, or of a log name, or all runs of an evidence."""
 
     name: str
     kind: str = SCENARIO
 
     def __str__(self) -> str:
-        """As it is shown."""
+        """The scenario as text."""
         return "all runs together" if self.kind == ALL else self.name
 
 
 NAME, ALL = "name", "all"
 ALL_RUNS = Scenario("", ALL)
-"""Of a requirement with a probability, which no run decides alone."""
+"""The scenario of a requirement with a probability, which all runs decide together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,34 +51,34 @@ class Run:
 
     name: str
     content: str
-    """What tells its log from another one: copies have the same."""
+    """Hash of the content of the log, to detect copies of it."""
     scenario: Scenario
     round: int
     version: str
-    """Of the software, as a label says; empty: none does."""
+    """The version of the software from a label; empty: there is none."""
     software: str
-    """Its commit, else its round: of what runs should have one outcome."""
+    """The commit, else the round: runs with the same software should have one outcome."""
     time: int | None
 
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """What is compared with earlier ones."""
+    """A set of runs that is compared with earlier ones."""
 
     name: str
     first: int | None
-    """The times of its runs."""
+    """The times of its first and its last run."""
     last: int | None
     runs: int
     versions: tuple[str, ...]
     requirements: frozenset[str]
-    """Ids of those by which its runs were judged."""
+    """Ids of the requirements that its runs were judged by."""
     selections: tuple[Selection, ...]
-    """Of its evidence, where not all logs were audited."""
+    """The selections of its evidence, if not all logs were audited."""
 
     @property
     def days(self) -> str:
-        """From day to day; empty where no time is known."""
+        """The first and the last day; empty: no time is known."""
         if self.first is None or self.last is None:
             return ""
         days = dict.fromkeys((day(self.first), day(self.last)))
@@ -86,51 +86,51 @@ class Round:
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
-    """What one run says of one requirement."""
+class RunOutcome:
+    """The result of one requirement in one run."""
 
     run: int
-    """Its number in `Histories.runs`; -1: all runs of the evidence together."""
+    """The index in `Histories.runs`; -1: all runs of the evidence together."""
     round: int
     verdict: str
     basis: int
-    """What it rests on beside the log: the same number, the same basis."""
+    """The number of its verdict inputs: equal numbers have equal inputs."""
     longest: float | None = None
-    """Of its answers, seconds."""
+    """The longest latency in seconds."""
     median: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Histories:
-    """All that was read, rounds from the oldest to the newest."""
+    """All evidence that was read, rounds from the oldest to the newest."""
 
     by: str
     rounds: tuple[Round, ...]
     runs: tuple[Run, ...]
     requirements: Mapping[str, str]
-    """Id → its sentence, as the newest evidence has it."""
-    judged: Mapping[tuple[str, Scenario], Sequence[Judged]]
+    """Id → the sentence in the newest evidence."""
+    judged: Mapping[tuple[str, Scenario], Sequence[RunOutcome]]
     order: str
-    """By what rounds are ordered, in words."""
+    """The order of rounds, in words."""
     sources: tuple[EvidenceSource, ...] = field(repr=False)
     places: tuple[Sequence[int], ...] = field(repr=False)
-    """Of each source the run of the result at each place."""
+    """For each source, the run of the result at each index."""
     bases: tuple[Sequence[int], ...] = field(repr=False)
-    """The same of their bases."""
+    """For each source, the verdict inputs of the result at each index."""
 
     @property
     def newest(self) -> int:
-        """The number of the newest round."""
+        """The index of the newest round."""
         return len(self.rounds) - 1
 
 
 def day(time: int) -> str:
-    """The day of a time, of UTC."""
+    """The day of a time, in UTC."""
     return datetime.fromtimestamp(time // 10**9, UTC).date().isoformat()
 
 
 def time_of(facts: RunFacts) -> int | None:
-    """When a run was: its label `date`, else when its log begins; None: nobody knows."""
+    """The time of a run: its label `date`, else the begin of its log; None: unknown."""
     written = _time(facts.labels.get(DATE, ""))
     start = facts.start_ns
     if written is not None or start is None or not 0 <= start < _LATEST:
@@ -139,16 +139,16 @@ def time_of(facts: RunFacts) -> int | None:
 
 
 _LATEST = 4102444800 * 10**9
-"""2100-01-01: what is later is no time of a run."""
+"""2100-01-01: a later time is invalid."""
 
 
 def _time(text: str) -> int | None:
-    """`2026-11-20`, `2026-11-20T21:00:00+01:00`, `2026_11_20-21_00_00`; without a zone, of UTC."""
+    """The time of `2026-11-20`, `2026-11-20T21:00:00+01:00`, `2026_11_20-21_00_00`; or None."""
     rosbag = _ROSBAG.fullmatch(text)
     try:
         form = "{}-{}-{}T{}:{}:{}".format(*rosbag.groups()) if rosbag else text
-        found = datetime.fromisoformat(form)
-        aware = found if found.tzinfo is not None else found.replace(tzinfo=UTC)
+        moment = datetime.fromisoformat(form)
+        aware = moment if moment.tzinfo is not None else moment.replace(tzinfo=UTC)
         time = round((aware - datetime(1970, 1, 1, tzinfo=UTC)).total_seconds()) * 10**9
     except (ValueError, OverflowError):
         return None
@@ -156,11 +156,11 @@ def _time(text: str) -> int | None:
 
 
 _ROSBAG = re.compile(r"(\d{4})_(\d\d)_(\d\d)-(\d\d)_(\d\d)_(\d\d)", re.ASCII)
-"""How rosbag2 names folders."""
+"""The format of times in folder names of rosbag2."""
 
 
 def scenario_of(facts: RunFacts) -> Scenario:
-    """What the run is comparable by."""
+    """The scenario of a run."""
     named = facts.labels.get(SCENARIO)
     return Scenario(named) if named else Scenario(PurePosixPath(facts.run).name or facts.run, NAME)
 
@@ -169,12 +169,12 @@ def scenario_of(facts: RunFacts) -> Scenario:
 
 
 def histories(sources: Sequence[EvidenceSource], by: str | None = None) -> Histories:
-    """Read all of it.
+    """The histories of all sources.
 
     Args:
         sources: at least one, in any order.
-        by: what a round is: `EVIDENCE`, `DAY` or a label; None: each evidence, or each day where
-            there is one evidence.
+        by: the kind of rounds: `EVIDENCE`, `DAY` or a label; None: evidence, or days if there is
+            one evidence.
     """
     by = by or (EVIDENCE if len(sources) > 1 else DAY)
     facts_of = [list(source.runs()) for source in sources]
@@ -201,12 +201,12 @@ def histories(sources: Sequence[EvidenceSource], by: str | None = None) -> Histo
 
 
 def _latest(facts: Sequence[RunFacts]) -> int:
-    """What has no time comes first: it cannot be the newest."""
+    """The sort key of a time: an unknown time comes first, because it cannot be the newest."""
     return max(_times(facts), default=-1)
 
 
 def _order(rounds: Sequence[Round], *, undated: bool) -> str:
-    """By what they are ordered, and what decides."""
+    """The order of rounds in words, and how to change it."""
     times = [each.last for each in rounds]
     by = [f"by time (label `{DATE}`, else start of the logs)"]
     by += ["those without a time first"] if None in times else []
@@ -216,7 +216,7 @@ def _order(rounds: Sequence[Round], *, undated: bool) -> str:
 
 
 def _key(by: str, source: int, facts: RunFacts) -> str:
-    """What tells the round of a run from the others."""
+    """The key of the round of a run."""
     if by == EVIDENCE:
         return str(source)
     if by == DAY:
@@ -228,7 +228,7 @@ def _key(by: str, source: int, facts: RunFacts) -> str:
 def _rounds(
     by: str, sources: Sequence[EvidenceSource], facts_of: Sequence[Sequence[RunFacts]]
 ) -> tuple[tuple[Round, ...], Mapping[str, int]]:
-    """The rounds, and the number of each by its key."""
+    """The rounds, and the index of each by its key."""
     members: dict[str, list[RunFacts]] = defaultdict(list)
     audits: dict[str, dict[int, EvidenceSource]] = defaultdict(dict)
     for i, (source, facts) in enumerate(zip(sources, facts_of, strict=True)):
@@ -249,7 +249,9 @@ def _rounds(
             max(times[key], default=None),
             len(members[key]),
             tuple(dict.fromkeys(v for one in members[key] if (v := one.labels.get(VERSION)))),
-            frozenset(each.id for some in audits[key].values() for each in some.requirements),
+            frozenset(
+                requirement.id for some in audits[key].values() for requirement in some.requirements
+            ),
             tuple(each.selection for each in audits[key].values() if each.selection is not None),
         )
         for key in keys
@@ -258,7 +260,7 @@ def _rounds(
 
 
 def _times(facts: Sequence[RunFacts]) -> list[int]:
-    return [time for one in facts if (time := time_of(one)) is not None]
+    return [time for run in facts if (time := time_of(run)) is not None]
 
 
 def _round_name(by: str, key: str, sources: Sequence[EvidenceSource]) -> str:
@@ -268,25 +270,27 @@ def _round_name(by: str, key: str, sources: Sequence[EvidenceSource]) -> str:
 
 
 class _Reader:
-    """What comes together while the evidence is read."""
+    """The histories while evidence is read."""
 
     def __init__(self, by: str, round_of: Mapping[str, int]) -> None:
         self.runs: list[Run] = []
         self.requirements: dict[str, str] = {}
-        self.judged: dict[tuple[str, Scenario], list[Judged]] = defaultdict(list)
+        self.judged: dict[tuple[str, Scenario], list[RunOutcome]] = defaultdict(list)
         self.places: list[Sequence[int]] = []
         self.bases: list[Sequence[int]] = []
         self._by, self._round_of = by, round_of
         self._numbers: dict[tuple[str, ...], int] = {}
 
     def read(self, number: int, source: EvidenceSource, facts: Sequence[RunFacts]) -> None:
-        """Take in one evidence."""
+        """Add one evidence."""
         run_of: dict[str, int] = {}
         for one in facts:
             run_of[one.run] = len(self.runs)
             self.runs.append(self._run(one, self._round_of[_key(self._by, number, one)]))
-        self.requirements |= {each.id: each.sentence for each in source.requirements}
-        together = {each.requirement for each in source.probabilities}
+        self.requirements |= {
+            requirement.id: requirement.sentence for requirement in source.requirements
+        }
+        together = {probability.requirement for probability in source.probabilities}
         places, bases = array("q"), array("q")
         for _, brief in source.briefs():
             run, basis = run_of[brief.run], self._basis(brief)
@@ -310,10 +314,10 @@ class _Reader:
             time_of(facts),
         )
 
-    def _add(self, brief: Brief, run: int, basis: int) -> None:
+    def _add(self, brief: ResultSummary, run: int, basis: int) -> None:
         one = self.runs[run]
         self.judged[brief.requirement, one.scenario].append(
-            Judged(
+            RunOutcome(
                 run,
                 one.round,
                 brief.verdict,
@@ -324,25 +328,27 @@ class _Reader:
         )
 
     def _add_estimates(self, source: EvidenceSource, number: int, rounds: Sequence[int]) -> None:
-        """What all runs of an evidence say counts for the newest round that it has."""
+        """Add the answers of all runs of an evidence to its newest round."""
         own = self._round_of[str(number)] if self._by == EVIDENCE else max(rounds, default=0)
-        for one in source.probabilities:
-            self.judged[one.requirement, ALL_RUNS].append(Judged(-1, own, one.answer, 0))
+        for probability in source.probabilities:
+            self.judged[probability.requirement, ALL_RUNS].append(
+                RunOutcome(-1, own, probability.answer, 0)
+            )
 
-    def _basis(self, brief: Brief) -> int:
+    def _basis(self, brief: ResultSummary) -> int:
         prints = brief.fingerprints
         parts = tuple(str(getattr(prints, name)) for name in _BASIS)
         return self._numbers.setdefault(parts, len(self._numbers))
 
 
-def verdicts_of_rounds(judged: Sequence[Judged], rounds: int) -> tuple[tuple[str, ...], ...]:
+def verdicts_of_rounds(judged: Sequence[RunOutcome], rounds: int) -> tuple[tuple[str, ...], ...]:
     """The verdicts of each round."""
-    found: list[list[str]] = [[] for _ in range(rounds)]
-    for one in judged:
-        found[one.round].append(one.verdict)
-    return tuple(map(tuple, found))
+    verdicts: list[list[str]] = [[] for _ in range(rounds)]
+    for outcome in judged:
+        verdicts[outcome.round].append(outcome.verdict)
+    return tuple(map(tuple, verdicts))
 
 
 def counted(verdicts: Sequence[str]) -> Mapping[str, int]:
-    """How many of each verdict."""
+    """The number of each verdict."""
     return Counter(verdicts)

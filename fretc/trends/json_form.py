@@ -1,4 +1,4 @@
-"""Trends as JSON: everything, in the order of the text."""
+"""Trends as JSON: all items, in the order of the text."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SCHEMA = "fretc-trends-1"
 
 
 def text(trends: Trends) -> str:
-    """The whole file."""
+    """The text of the whole file."""
     return f"{to_json(_plain(trends))}\n"
 
 
@@ -28,14 +28,14 @@ def _plain(trends: Trends) -> dict[str, Any]:
         "runs": trends.runs,
         "rounds": [_round(each) for each in trends.rounds],
         "requirements": dict(trends.sentences),
-        "items": [_item(each) for each in trends.items],
+        "items": [_item(item) for item in trends.items],
         "compared": {
-            "before": trends.held.before,
-            "after": trends.held.after,
+            "before": trends.compared.before,
+            "after": trends.compared.after,
             "level": trends.level,
             **{str(kind): count for kind, count in by_finding(trends.comparisons).items()},
         },
-        "comparisons": [_comparison(each) for each in trends.comparisons],
+        "comparisons": [_comparison(comparison) for comparison in trends.comparisons],
     }
 
 
@@ -45,7 +45,7 @@ def _round(each: Round) -> dict[str, Any]:
         "days": each.days,
         "runs": each.runs,
         "versions": list(each.versions),
-        "selections": [plain(one) for one in each.selections],
+        "selections": [plain(selection) for selection in each.selections],
     }
 
 

@@ -1,7 +1,7 @@
-"""What the choice of logs may have left out of the newest round: it is neither gone nor fixed.
+"""Requirements that the selection of logs may have left out of the newest round.
 
-`fretc audit --since` and `--sample` choose among the logs that are named, and evidence says how
-many they left out, not which.
+`fretc audit --since` and `--sample` select among the named logs, and evidence states how many they
+left out, not which.
 """
 
 from __future__ import annotations
@@ -10,25 +10,31 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from fretc.audit.evidence.schema import Selection
-from fretc.trends.changes import Change, Tone, tone
-from fretc.trends.histories import Histories, Judged, Run
+from fretc.trends.changes import Change, RoundOutcome, round_outcome
+from fretc.trends.histories import Histories, Run, RunOutcome
 
 
 def is_left_out(
-    histories: Histories, requirement: str, judged: Sequence[Judged], change: Change
+    histories: Histories, requirement: str, judged: Sequence[RunOutcome], change: Change
 ) -> bool:
-    """Whether it is the choice of logs that a requirement is not judged or not violated any more.
+    """Whether the selection of logs may be the reason for a change.
 
     Args:
-        histories: what was read.
+        histories: the histories of all evidence.
         requirement: its id.
-        judged: all that is said of it in one scenario.
-        change: what has become of it, as if all logs had been chosen.
+        judged: all results of the requirement in one scenario.
+        change: the change as if all logs had been selected.
     """
     newest = histories.rounds[-1]
     runs = histories.runs
-    now = [runs[one.run] for one in judged if one.round == histories.newest and one.run >= 0]
-    before = [one for one in judged if one.round < histories.newest and one.run >= 0]
+    now = [
+        runs[outcome.run]
+        for outcome in judged
+        if outcome.round == histories.newest and outcome.run >= 0
+    ]
+    before = [
+        outcome for outcome in judged if outcome.round < histories.newest and outcome.run >= 0
+    ]
     if change is Change.GONE and requirement in newest.requirements:
         last = max((one.round for one in before), default=-1)
         return any(
@@ -38,29 +44,29 @@ def is_left_out(
             for selection in newest.selections
         )
     if change is Change.FIXED:
-        violated = [one for one in before if tone([one.verdict]) is Tone.VIOLATED]
-        last = max((one.round for one in violated), default=-1)
+        violated = [one for one in before if round_outcome([one.verdict]) is RoundOutcome.VIOLATED]
+        last = max((outcome.round for outcome in violated), default=-1)
         names, logs = {run.name for run in now}, {run.content for run in now}
-        known = {runs[one.run].content for one in before}
+        contents = {runs[one.run].content for one in before}
         return any(
-            _may_leave_out(selection, runs[one.run], by_date=logs <= known)
-            for one in violated
-            if one.round == last
-            and runs[one.run].name not in names
-            and runs[one.run].content not in logs
+            _may_leave_out(selection, runs[outcome.run], by_date=logs <= contents)
+            for outcome in violated
+            if outcome.round == last
+            and runs[outcome.run].name not in names
+            and runs[outcome.run].content not in logs
             for selection in newest.selections
         )
     return False
 
 
 def _may_leave_out(selection: Selection, run: Run, *, by_date: bool = True) -> bool:
-    """Whether the choice may be why the log of a run was not audited.
+    """Whether the selection may be the reason why the log of a run was not audited.
 
     Args:
-        selection: of the newest round.
-        run: of an earlier one.
-        by_date: whether its date counts. A newer log of its scenario takes the place of an older
-            one; what a sample has left out may be as new as what it has.
+        selection: the selection of the newest round.
+        run: a run of an earlier round.
+        by_date: whether its date counts. A newer log of its scenario replaces an older one; a log
+            that a sample has left out may be as new as those in it.
     """
     if selection.sample_of is not None and selection.audited < selection.sample_of:
         return True

@@ -1,4 +1,4 @@
-"""Trends as one HTML file that works offline, in the style of the report and by its policy."""
+"""Trends as one HTML file that works offline, in the style of the report."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.status_symbols import StatusSymbol
 
 _MOST_RED, _MOST = 500, 150
-"""Rows of a list; those left out are counted, with their requirements."""
+"""The most rows of a list; the omitted ones are counted, with their requirements."""
 _MOST_CHARTS = 24
 
 
@@ -36,27 +36,39 @@ class _List:
 
 
 _LISTS = (
-    _List("new", "Newly violated", "Violated now, and not when known last.", (Change.NEW,),
+    _List("new", "Newly violated",
+          "Violated now, but not in the last round with a known outcome.", (Change.NEW,),
           signs.BAD),
     _List("first-violated", "Violated, and never judged before",
           "The newest round is the first that judges them.", (Change.FIRST_VIOLATED,), signs.BAD),
-    _List("still", "Still violated", "Violated now, and when known last.", (Change.STILL,),
+    _List("still", "Still violated",
+          "Violated now, and in the last round with a known outcome.", (Change.STILL,),
           signs.BAD),
     _List("lost", "Known before, open now",
           "Violated or shown before; the newest round leaves it open, so nothing is fixed.",
           (Change.LOST,), signs.UNKNOWN),
-    _List("fixed", "Fixed", "Violated when known last, shown now.", (Change.FIXED,), signs.GOOD),
+    _List("fixed", "Fixed",
+          "Violated in the last round with a known outcome, shown now.", (Change.FIXED,),
+          signs.GOOD),
 )  # fmt: skip
 
 
 def html(trends: Trends) -> str:
-    """The whole file."""
+    """The text of the whole file."""
     style = render("report/style.css.j2") + render("trends/style.css.j2")
-    lists = [_listed(each, trends.of(*each.kinds)) for each in _LISTS]
+    lists = [_listed(change_list, trends.of(*change_list.kinds)) for change_list in _LISTS]
     flaky = [item for item in trends.items if item.flaky]
-    regressed = trends.found(Finding.REGRESSED)
-    others = [one for one in trends.comparisons if one.finding is not Finding.REGRESSED]
-    moving = [one for one in others if len({value.number for value in one.values}) > 1]
+    regressed = trends.with_finding(Finding.REGRESSED)
+    others = [
+        comparison
+        for comparison in trends.comparisons
+        if comparison.finding is not Finding.REGRESSED
+    ]
+    moving = [
+        comparison
+        for comparison in others
+        if len({value.number for value in comparison.values}) > 1
+    ]
     pictured = moving[:_MOST_CHARTS]
     return render(
         "trends/page.html.j2",
@@ -70,7 +82,7 @@ def html(trends: Trends) -> str:
                 "facts": _facts(trends),
                 "rounds": [_round(i, each) for i, each in enumerate(trends.rounds, 1)],
                 "by": trends.by,
-                "lists": [each for each in lists if each["rows"]],
+                "lists": [change_list for change_list in lists if change_list["rows"]],
                 "flaky": {
                     "rows": _rows(flaky[:_MOST_RED]),
                     "left": _left(flaky[_MOST_RED:]),
@@ -83,13 +95,13 @@ def html(trends: Trends) -> str:
                 "not_selected_count": phrases.whole(len(trends.of(Change.NOT_SELECTED))),
                 "not_selected": _groups(not_selected(trends)),
                 "arrived": _groups(arrived(trends)),
-                "held": {"before": trends.held.before, "after": trends.held.after},
+                "compared": {"before": trends.compared.before, "after": trends.compared.after},
                 "level": f"{trends.level:g}",
                 "regressed": _charts(trends, regressed[:_MOST_CHARTS], "regressed"),
                 "regressed_lines": [_line(one) for one in regressed[_MOST_CHARTS:]],
                 "others": _charts(trends, pictured, "other"),
-                "few": len(trends.found(Finding.TOO_FEW)),
-                "chance": len(trends.found(Finding.CHANCE)),
+                "few": len(trends.with_finding(Finding.TOO_FEW)),
+                "chance": len(trends.with_finding(Finding.CHANCE)),
                 "pictured": len(pictured),
                 "moving": len(moving),
             }
@@ -98,7 +110,7 @@ def html(trends: Trends) -> str:
 
 
 def _mark(trends: Trends) -> dict[str, Any]:
-    """The sign of the whole, and its word."""
+    """The overall symbol and its word."""
     if trends.is_worse:
         return {**asdict(signs.BAD), "word": "worse"}
     if not trends.is_comparable:
@@ -109,7 +121,7 @@ def _mark(trends: Trends) -> dict[str, Any]:
 def _headline(trends: Trends) -> str:
     counts = (
         (len(trends.of(*RED)), "new violation", ""),
-        (len(trends.found(Finding.REGRESSED)), "regression", ""),
+        (len(trends.with_finding(Finding.REGRESSED)), "regression", ""),
         (len(trends.of(Change.STILL)), "requirement still violated in a scenario",
          "requirements still violated in scenarios"),
         (len(trends.lost), "verdict lost", "verdicts lost"),
@@ -121,7 +133,7 @@ def _headline(trends: Trends) -> str:
 
 def _facts(trends: Trends) -> list[str]:
     newest = trends.rounds[-1]
-    versions = phrases.some([f"version {each}" for each in newest.versions], 3)
+    versions = phrases.some([f"version {version}" for version in newest.versions], 3)
     about = ", ".join(filter(None, [newest.days, versions, phrases.times(newest.runs, "run")]))
     steady, never = len(trends.of(Change.STEADY)), len(trends.of(Change.NEVER_SHOWN))
     return [
@@ -129,7 +141,7 @@ def _facts(trends: Trends) -> list[str]:
         f"{phrases.times(len(trends.rounds), 'round')}, {phrases.times(trends.runs, 'run')}, "
         f"{phrases.times(len(trends.sentences), 'requirement')}; {phrases.whole(steady)} shown as "
         f"before, {phrases.whole(never)} never shown.",
-        *(f"Newest round: {in_words(each)}." for each in newest.selections),
+        *(f"Newest round: {in_words(selection)}." for selection in newest.selections),
         *([f"{trends.order[:1].upper()}{trends.order[1:]}."] if len(trends.rounds) > 1 else []),
     ]
 
@@ -158,7 +170,7 @@ def _listed(each: _List, items: Sequence[Item]) -> dict[str, Any]:
 
 
 def _left(items: Sequence[Item]) -> str:
-    """What is left out, in words; empty where nothing is."""
+    """The omitted items in words; empty: there are none."""
     if not items:
         return ""
     ids = phrases.some([*dict.fromkeys(item.requirement for item in items)], 20)
@@ -166,7 +178,7 @@ def _left(items: Sequence[Item]) -> str:
 
 
 def _groups(groups: Sequence[Group]) -> list[str]:
-    """Each in words; of very many the first ones, and how many more there are."""
+    """Each group in words; of very many the first ones, and the number of others."""
     more = len(groups) - _MOST_RED
     lines = [group.text for group in groups[:_MOST_RED]]
     return [*lines, f"{phrases.whole(more)} more: `--format json` has all"] if more > 0 else lines
@@ -177,7 +189,7 @@ def _rows(items: Sequence[Item]) -> list[dict[str, Any]]:
         {
             "requirement": item.requirement,
             "scenario": str(item.scenario),
-            "strip": asdict(strip(item.tones)),
+            "strip": asdict(strip(item.round_outcomes)),
             "now": _now(item),
         }
         for item in items

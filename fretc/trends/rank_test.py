@@ -21,25 +21,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 Stratum = tuple[Sequence[float], Sequence[float]]
-"""The earlier and the later numbers; infinite ones may be among them."""
+"""The earlier and the later numbers, which may be infinite."""
 _Shares = NDArray[np.float64]
 MOST, MOST_OF_STRATUM = 100, 50
-"""Numbers of a side that are counted: of all strata together, and of one."""
+"""The most numbers of a side: of all strata together, and of one."""
 
 
 @dataclass(frozen=True, slots=True)
-class Tail:
-    """How likely so large ranks are where nothing has changed."""
+class RankTest:
+    """The probability of ranks at least so large if nothing has changed."""
 
     p: float
     least: float
-    """The least p that these numbers could have had, however they were arranged."""
+    """The least p that these numbers could have in any arrangement."""
     arrangements: int
-    """How many there are."""
+    """The number of arrangements."""
 
 
-def larger(strata: Sequence[Stratum]) -> Tail:
-    """Whether the later numbers are larger; strata with one side alone say nothing.
+def larger(strata: Sequence[Stratum]) -> RankTest:
+    """Test whether the later numbers are larger; strata with one side only are skipped.
 
     Args:
         strata: no number is NaN.
@@ -52,7 +52,7 @@ def larger(strata: Sequence[Stratum]) -> Tail:
         whole = np.convolve(whole, _sums(ranks, len(after)))
         arrangements *= comb(len(ranks), len(after))
     top = int(np.flatnonzero(whole)[-1]) if whole.any() else 0
-    return Tail(min(1.0, float(whole[total:].sum())), float(whole[top]), arrangements)
+    return RankTest(min(1.0, float(whole[total:].sum())), float(whole[top]), arrangements)
 
 
 def doubled_ranks(numbers: Sequence[float]) -> list[int]:
@@ -70,7 +70,7 @@ def doubled_ranks(numbers: Sequence[float]) -> list[int]:
 
 
 def _sums(ranks: Sequence[int], chosen: int) -> _Shares:
-    """Element s: the share of the ways to choose so many ranks in which they sum up to s."""
+    """Element s: the share of the selections of so many ranks whose sum is s."""
     size = sum(sorted(ranks)[-chosen:]) + 1
     ways = np.zeros((chosen + 1, size))
     ways[0, 0] = 1.0
@@ -81,11 +81,10 @@ def _sums(ranks: Sequence[int], chosen: int) -> _Shares:
 
 
 def fewer(strata: Sequence[Stratum]) -> list[Stratum]:
-    """As many numbers of each side as are counted, so that the work has a bound.
+    """At most so many numbers of each side, to limit the cost.
 
     Args:
-        strata: each side from its newest number on; which ones are left out does not depend on
-            their values.
+        strata: each side from its newest number on; the omitted ones do not depend on their values.
     """
     both = [(before, after) for before, after in strata if before and after]
     most = min(MOST_OF_STRATUM, max(2, MOST // max(1, len(both))))
@@ -93,25 +92,25 @@ def fewer(strata: Sequence[Stratum]) -> list[Stratum]:
 
 
 def decidable(least: Sequence[float], level: float) -> list[int]:
-    """The numbers of the tests that can find something at a level, all of them together.
+    """The indices of the tests that can be significant at a level, all of them together.
 
-    Of so many tests each has to reach the level divided by their number: what cannot be that small
-    is not one of them.
+    With so many tests, each has to reach the level divided by their number: a test that cannot
+    reach it is not counted.
 
     Args:
         least: the least p that each test can have.
-        level: of all together.
+        level: the level of all tests together.
     """
     count = 1
-    while len(found := [i for i, each in enumerate(least) if each * count <= level]) > count:
+    while len(indices := [i for i, each in enumerate(least) if each * count <= level]) > count:
         count += 1
-    return found
+    return indices
 
 
 def holm(values: Sequence[float]) -> list[float]:
-    """Each p adjusted for all of them: at most the level where it counts as a finding.
+    """Each p-value adjusted for all of them: a finding has at most the level.
 
-    The chance of even one false finding is then at most the level.
+    The probability of even one false finding is then at most the level.
     """
     adjusted, highest = [0.0] * len(values), 0.0
     order = sorted(range(len(values)), key=values.__getitem__)

@@ -1,4 +1,4 @@
-"""What has become of everything between the rounds: one value, for text, JSON and page."""
+"""The changes of all requirements between rounds: one value for text, JSON and page."""
 
 from __future__ import annotations
 
@@ -6,22 +6,30 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from fretc.audit.evidence.briefs import EvidenceSource
-from fretc.trends.changes import RED, Change, Tone, change, is_flaky, last_known, tone
+from fretc.audit.evidence.result_summaries import EvidenceSource
+from fretc.trends.changes import (
+    RED,
+    Change,
+    RoundOutcome,
+    change,
+    is_flaky,
+    last_known,
+    round_outcome,
+)
 from fretc.trends.comparisons import (
     LEVEL,
+    ComparedRuns,
     Comparison,
     Finding,
-    Sides,
+    compared_runs,
     comparisons,
-    sides,
 )
 from fretc.trends.histories import (
     DAY,
     EVIDENCE,
     Histories,
-    Judged,
     Round,
+    RunOutcome,
     Scenario,
     histories,
     verdicts_of_rounds,
@@ -33,110 +41,111 @@ from fretish.reading.natural_order import natural
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A requirement in a scenario, and what has become of it."""
+    """A requirement in a scenario, with its change."""
 
     requirement: str
     scenario: Scenario
     change: Change
     flaky: bool
     changed: bool
-    """Whether the requirement, or what it is bound to, is not the one of an earlier round."""
+    """Whether the requirement or its bindings differ from those of an earlier round."""
     rounds: tuple[tuple[str, ...], ...]
     """The verdicts of each round, the newest last."""
 
     @property
-    def tones(self) -> tuple[Tone | None, ...]:
-        """What each round says; None: it does not judge it."""
-        return tuple(tone(verdicts) if verdicts else None for verdicts in self.rounds)
+    def round_outcomes(self) -> tuple[RoundOutcome | None, ...]:
+        """The combined verdict of each round; None: not judged."""
+        return tuple(round_outcome(verdicts) if verdicts else None for verdicts in self.rounds)
 
     @property
     def was_violated(self) -> bool:
-        """Whether it was violated when something was known of it before the newest round."""
+        """Whether it was violated when it was last known before the newest round."""
         last = last_known(self.rounds)
-        return last is not None and self.tones[last] is Tone.VIOLATED
+        return last is not None and self.round_outcomes[last] is RoundOutcome.VIOLATED
 
     @property
-    def last(self) -> Tone:
-        """What was said of it last, in a round that had the runs of which it was said."""
+    def last(self) -> RoundOutcome:
+        """The verdicts of the last round that judged it."""
         if self.change is Change.NOT_SELECTED and self.was_violated:
-            return Tone.VIOLATED
-        return next(filter(None, reversed(self.tones)))
+            return RoundOutcome.VIOLATED
+        return next(filter(None, reversed(self.round_outcomes)))
 
 
 @dataclass(frozen=True, slots=True)
 class Trends:
-    """All of it."""
+    """The trends of all evidence."""
 
     by: str
     rounds: tuple[Round, ...]
     sentences: Mapping[str, str]
     """Id of a requirement → its sentence."""
     items: tuple[Item, ...]
-    """The worst first."""
-    held: Sides
+    """Items, the worst first."""
+    compared: ComparedRuns
     comparisons: tuple[Comparison, ...]
     level: float
     is_after: tuple[bool, ...]
-    """Of each run, whether it is of what is compared with others."""
+    """For each run, whether it belongs to the newer side of the comparison."""
     order: str
-    """By what rounds are ordered, in words."""
+    """The order of rounds, in words."""
 
     @property
     def runs(self) -> int:
-        """How many there are."""
+        """The number of runs."""
         return len(self.is_after)
 
     def of(self, *kinds: Change) -> tuple[Item, ...]:
         """The items of some kinds."""
         return tuple(item for item in self.items if item.change in kinds)
 
-    def found(self, kind: Finding) -> tuple[Comparison, ...]:
-        """The comparisons of a finding."""
-        return tuple(one for one in self.comparisons if one.finding is kind)
+    def with_finding(self, kind: Finding) -> tuple[Comparison, ...]:
+        """The comparisons with a finding."""
+        return tuple(comparison for comparison in self.comparisons if comparison.finding is kind)
 
     @property
     def is_worse(self) -> bool:
-        """Whether something is newly violated, or has regressed."""
-        return bool(self.of(*RED) or self.found(Finding.REGRESSED))
+        """Whether a requirement is newly violated, or a number has regressed."""
+        return bool(self.of(*RED) or self.with_finding(Finding.REGRESSED))
 
     @property
     def has_pairs(self) -> bool:
-        """Whether something was judged in two rounds."""
+        """Whether any requirement was judged in two rounds."""
         return any(sum(map(bool, item.rounds)) > 1 for item in self.items)
 
     @property
     def is_comparable(self) -> bool:
-        """Whether all that was known before is known now, and something can be compared at all.
+        """Whether every requirement known before is known now, and any can be compared.
 
-        What was not selected, as the user asked for, is missing only where it was violated.
+        A requirement that was not selected, as the user asked for, is missing only if it was
+        violated.
         """
         return self.has_pairs and not self.lost
 
     @property
     def lost(self) -> tuple[Item, ...]:
-        """What was known before and is not known now, though it was to be, or was violated."""
+        """Items known before and not now, except those not selected and not violated."""
         left_out = (item for item in self.of(Change.NOT_SELECTED) if item.was_violated)
         return (*self.of(Change.LOST, Change.GONE), *left_out)
 
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Items of one scenario, or of one requirement, of which all have come, or gone."""
+    """Items of one scenario, or of one requirement, that have all appeared, or all disappeared."""
 
     name: str
-    """`scenario safety-late`, `requirement R7`, `R7 in safety-late`."""
+    """`scenario safety-late`, `requirement R7`, or `R7 in safety-late`."""
     items: tuple[Item, ...]
 
     @property
     def text(self) -> str:
-        """With what was said of them last."""
+        """The name with the last verdicts."""
         last = [item.last for item in self.items]
-        counts = [f"{last.count(each)} {each}" for each in Tone if each in last]
+        counts = [f"{last.count(outcome)} {outcome}" for outcome in RoundOutcome if outcome in last]
         return f"{self.name}: {', '.join(counts)}"
 
 
 def grouped(trends: Trends, *kinds: Change) -> tuple[Group, ...]:
-    """Items of some kinds: whole scenarios, whole requirements, then the rest one by one."""
+    """Items of some kinds: whole scenarios, whole requirements, then the others one by one."""
     others = [item for item in trends.items if item.change not in kinds]
     scenarios, requirements = {i.scenario for i in others}, {i.requirement for i in others}
     groups: dict[str, list[Item]] = defaultdict(list)
@@ -151,17 +160,17 @@ def grouped(trends: Trends, *kinds: Change) -> tuple[Group, ...]:
 
 
 def gone(trends: Trends) -> tuple[Group, ...]:
-    """What was judged before, and is not in the newest round."""
+    """Items that were judged before, and are not in the newest round."""
     return grouped(trends, Change.GONE)
 
 
 def not_selected(trends: Trends) -> tuple[Group, ...]:
-    """What was judged before, in logs that the choice of logs may have left out."""
+    """Items that were judged before, in logs that the selection may have left out."""
     return grouped(trends, Change.NOT_SELECTED)
 
 
 def arrived(trends: Trends) -> tuple[Group, ...]:
-    """What was never judged before; what is violated of it is reported one by one, too."""
+    """Items that were never judged before; violated ones are also reported one by one."""
     return grouped(trends, Change.FIRST, Change.FIRST_VIOLATED)
 
 
@@ -172,19 +181,19 @@ def trends(
 
     Args:
         sources: the evidence, at least one.
-        by: what a round is (`fretc.trends.histories.histories`).
-        level: the chance of even one regression that is none.
+        by: the kind of rounds (`fretc.trends.histories.histories`).
+        level: the probability of even one false regression.
     """
     if by not in (None, EVIDENCE, DAY) and not any(
-        by in facts.labels for each in sources for facts in each.runs()
+        by in facts.labels for source in sources for facts in source.runs()
     ):
         return Diagnostic(
             Code.NOT_COMPARABLE,
             f"no run has the label `{by}`",
             help="name a label that `[run.label]` or `--label` gives, or `evidence` or `day`",
         )
-    known = histories(sources, by)
-    items = [_item(known, *key, judged) for key, judged in known.judged.items()]
+    read_histories = histories(sources, by)
+    items = [_item(read_histories, *key, judged) for key, judged in read_histories.judged.items()]
     order = list(Change)
     items.sort(
         key=lambda item: (
@@ -193,24 +202,26 @@ def trends(
             natural(item.scenario.name),
         )
     )
-    held = sides(known)
+    compared = compared_runs(read_histories)
     return Trends(
-        known.by,
-        known.rounds,
-        known.requirements,
+        read_histories.by,
+        read_histories.rounds,
+        read_histories.requirements,
         tuple(items),
-        held,
-        comparisons(known, held, level),
+        compared,
+        comparisons(read_histories, compared, level),
         level,
-        tuple(held.is_after(run) for run in known.runs),
-        known.order,
+        tuple(compared.is_after(run) for run in read_histories.runs),
+        read_histories.order,
     )
 
 
-def _item(known: Histories, requirement: str, scenario: Scenario, judged: Sequence[Judged]) -> Item:
+def _item(
+    known: Histories, requirement: str, scenario: Scenario, judged: Sequence[RunOutcome]
+) -> Item:
     rounds = verdicts_of_rounds(judged, len(known.rounds))
     basis = max(judged, key=lambda one: one.round).basis
-    comparable = [one for one in judged if one.basis == basis]
+    comparable = [outcome for outcome in judged if outcome.basis == basis]
     of_software: dict[str, list[str]] = defaultdict(list)
     for one in comparable:
         software = known.runs[one.run].software if one.run >= 0 else f"all of {one.round}"

@@ -1,8 +1,8 @@
-"""Arrivals → times and samples, as an audit reads them from the recording.
+"""Times and samples of arriving messages, read as by an audit of the recording.
 
-What a message holds is read by the audit's own decoders, one message at a time. A message that
-cannot be decoded, or whose time was never set, is unknown and stands where the one before it of its
-topic does; before the first one with a time, it waits for that. Times are nanoseconds.
+The decoders of audits read one message at a time. A message that cannot be decoded, or whose time
+was never set, is unknown and gets the time of the one before it of its topic; before the first
+message with a time, it waits for that. Times are nanoseconds.
 """
 
 from __future__ import annotations
@@ -20,14 +20,15 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.payloads import Payloads
 from fretc.logs.messages.python_messages import Value
-from fretc.logs.signals.words import UNKNOWN
+from fretc.logs.signals.enum_values import UNKNOWN
 from fretc.watch.sources.source import Arrival, Channel
 from fretish.bindings.declarations import Declarations, Signal, short_type
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
 
 MOST_HELD = 1000
-"""Messages of a topic without any time that wait for one; then the oldest are forgotten."""
+"""The most messages of a topic without any time that wait for one; further ones replace the
+oldest."""
 _NOTHING: Value = (UNKNOWN, None, "")
 
 
@@ -45,9 +46,9 @@ class Timed:
 @dataclass(slots=True)
 class _Topic:
     names: tuple[str, ...]
-    """All signals that read it."""
+    """All signals that read the topic."""
     signals: list[Signal]
-    """Those that its messages have."""
+    """The signals that the messages of the topic have."""
     latest: int | None = None
     """The time of the last message that has one."""
     held: list[int] = field(default_factory=list)
@@ -56,7 +57,7 @@ class _Topic:
 
 
 class Decoder:
-    """Reads the messages of all bound topics."""
+    """A decoder of the messages of all bound topics."""
 
     def __init__(self, declarations: Declarations) -> None:
         self._time = declarations.clock.time
@@ -65,22 +66,22 @@ class Decoder:
         names |= {declarations.clock.topic} if declarations.clock.topic else set()
         self._topics = {
             name: _Topic(
-                tuple(each.name for each in signals if each.path.topic == name),
-                [each for each in signals if each.path.topic == name],
+                tuple(signal.name for signal in signals if signal.path.topic == name),
+                [signal for signal in signals if signal.path.topic == name],
             )
             for name in names
         }
         self._extractions: dict[Channel, Extraction] = {}
         self.undecoded: dict[str, int] = {}
-        """Of each topic the messages that could not be decoded."""
+        """For each topic, the number of messages that could not be decoded."""
 
     @property
     def topics(self) -> frozenset[str]:
-        """Those that are read."""
+        """The topics that are read."""
         return frozenset(self._topics)
 
     def read(self, arrival: Arrival) -> tuple[list[Timed], list[Diagnostic]]:
-        """The message, with those that waited for its time, and what is wrong with its channel."""
+        """The message, with those that waited for its time, and diagnostics of its channel."""
         topic = self._topics.get(arrival.channel.topic)
         if topic is None:
             return [], []
@@ -91,8 +92,8 @@ class Decoder:
         problems += self._refusals(arrival.channel, topic)
         time = self._placed(arrival, extract)
         nothing = dict.fromkeys(topic.names, _NOTHING)
-        known = topic.signals if time != 0 else ()
-        values = {**nothing, **{each.name: _value(extract, each.name) for each in known}}
+        signals = topic.signals if time != 0 else ()
+        values = {**nothing, **{each.name: _value(extract, each.name) for each in signals}}
         name = arrival.channel.topic
         if not bool(extract.decoded[0]) and self._extractions[arrival.channel].reads:
             self.undecoded[name] = self.undecoded.get(name, 0) + 1
@@ -110,7 +111,7 @@ class Decoder:
         ], problems
 
     def _open(self, channel: Channel, topic: _Topic) -> list[Diagnostic]:
-        """The first message of a channel: its type may be another than the bindings say."""
+        """Open a channel at its first message: its type may differ from the one in the bindings."""
         problems = []
         type_ = short_type(channel.schema_name)
         topic.types[type_] = None
@@ -125,15 +126,15 @@ class Decoder:
         return problems
 
     def _refusals(self, channel: Channel, topic: _Topic) -> list[Diagnostic]:
-        """Of signals that the channel does not have."""
+        """Diagnostics for signals that the channel does not have."""
         refused = self._extractions[channel].diagnostics
-        found = [signal for signal in topic.signals if signal.name in refused]
-        for signal in found:
+        missing = [signal for signal in topic.signals if signal.name in refused]
+        for signal in missing:
             topic.signals.remove(signal)
-        return [refused[signal.name] for signal in found]
+        return [refused[signal.name] for signal in missing]
 
     def _placed(self, arrival: Arrival, extract: Extract) -> int | None:
-        """Its time on the declared clock; 0: it was never set; None: nothing tells it."""
+        """The time on the declared clock; 0: it was never set; None: it is unknown."""
         match self._time:
             case TimeSource.LOG_TIME:
                 return arrival.log_time
@@ -149,12 +150,12 @@ def _value(extract: Extract, name: str) -> Value:
     if extract.is_foreign(name, 0):
         return UNKNOWN, None, extract.texts[name][1]
     values = extract.values[name]
-    known = values[0]
-    return (known, values.dtype, "") if not isnan(known) else _NOTHING
+    value = values[0]
+    return (value, values.dtype, "") if not isnan(value) else _NOTHING
 
 
 def stream_of(channel: Channel, id: int = 1) -> Stream:
-    """A channel as the decoders of logs know it."""
+    """A channel as a stream for the decoders of logs."""
     schema = None
     if channel.schema_name or channel.schema_encoding:
         schema = Schema(

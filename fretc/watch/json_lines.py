@@ -1,4 +1,4 @@
-"""What `--format jsonl` prints: a line for each piece of news, an object each."""
+"""The output of `--format jsonl`: a line with a JSON object for each event."""
 
 from __future__ import annotations
 
@@ -14,37 +14,40 @@ from compiler.files.records import (
     json_schema,
     plain,
 )
-from fretc.watch.news import Changed, Found, Late, News, RunEnded
+from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, StateChange, WatchEvent
 from fretc.watch.sources.source import Interrupted, Missed, Opened, Reconnected
 
-_Time = Annotated[Whole | None, about("nanoseconds of the declared clock; null: there is none")]
+_Time = Annotated[Whole | None, about("nanoseconds on the declared clock; null: there is none")]
 
 
 class RequirementLine(Record, frozen=True, tag="requirement", tag_field="type"):
-    """A requirement of which something is otherwise than before."""
+    """A requirement whose state has changed."""
 
     requirement: Name
-    verdict: Annotated[str, about("if the run ended now, as an audit calls it")]
+    verdict: Annotated[str, about("the verdict of an audit if the run ended now")]
     owed: Annotated[
         bool | None,
-        about("whether a demand is open that the robot must meet now: it stops unless it is false"),
+        about(
+            "whether an obligation is open (null: unknown); a robot with a stop supervisor "
+            "stops unless it is false"
+        ),
     ]
-    triggered_ns: Annotated[_Time, about("the last tick that has triggered it")]
-    open_ns: Annotated[_Time, about("the trigger of the demand that is open")]
-    deadline_ns: Annotated[_Time, about("the last tick at which it can be met")]
+    triggered_ns: Annotated[_Time, about("the last tick with a trigger")]
+    open_ns: Annotated[_Time, about("the trigger of the open obligation")]
+    deadline_ns: Annotated[_Time, about("the last tick at which the open obligation can be met")]
     violated_ns: Annotated[_Time, about("the first tick at which it was violated")]
     time_ns: Annotated[Whole, about("the latest time of all messages, on the declared clock")]
 
 
 class LateLine(Record, frozen=True, tag="late", tag_field="type"):
-    """Ticks that were judged have become unknown."""
+    """Judged ticks have become unknown."""
 
-    ticks: Annotated[Count, about("all of the run so far")]
-    messages: Annotated[dict[Name, Count], about("of each topic, all of the run so far")]
+    ticks: Annotated[Count, about("the total in this run so far")]
+    messages: Annotated[dict[Name, Count], about("the total of each topic in this run so far")]
 
 
 class MessageLine(Record, frozen=True, tag="message", tag_field="type"):
-    """What a user should know."""
+    """A diagnostic for the user."""
 
     code: Name
     severity: Annotated[str, about("error, warning or note")]
@@ -53,13 +56,13 @@ class MessageLine(Record, frozen=True, tag="message", tag_field="type"):
 
 
 class OpenedLine(Record, frozen=True, tag="opened", tag_field="type"):
-    """The source is there."""
+    """The source is connected."""
 
     source: str
 
 
 class InterruptedLine(Record, frozen=True, tag="interrupted", tag_field="type"):
-    """The source is gone, and is sought again."""
+    """The connection to the source is lost; fretc tries to connect again."""
 
     since_ns: Annotated[Whole, about("receive time")]
     code: Name
@@ -71,8 +74,8 @@ class MissedLine(Record, frozen=True, tag="missed", tag_field="type"):
 
     since_ns: Annotated[Whole, about("receive time")]
     until_ns: Annotated[Whole, about("receive time")]
-    reconnected: Annotated[bool, about("whether the source is there again")]
-    count: Annotated[Count | None, about("how many; null: nobody knows")]
+    reconnected: Annotated[bool, about("true: the source is connected again")]
+    count: Annotated[Count | None, about("the number of missed messages; null: unknown")]
 
 
 class RunLine(Record, frozen=True, tag="run", tag_field="type"):
@@ -93,36 +96,36 @@ SCHEMA = "fretc-watch-1"
 
 
 class _Lines(Record, frozen=True):
-    """All of them."""
+    """All kinds of lines."""
 
     lines: list[Line]
 
 
 def schema() -> dict[str, Any]:
     """The JSON Schema of a line."""
-    found = json_schema(
+    line_schema = json_schema(
         _Lines,
         SCHEMA,
         "A line of `fretc watch --format jsonl`",
-        "Times are nanoseconds. `type` tells the kinds of lines from each other.",
+        "Times are nanoseconds. `type` is the kind of a line.",
     )
-    line_ = found["properties"]["lines"]["items"]
-    head = {key: value for key, value in found.items() if key.startswith("$") or key in _HEAD}
+    line_ = line_schema["properties"]["lines"]["items"]
+    head = {key: value for key, value in line_schema.items() if key.startswith("$") or key in _HEAD}
     return {**head, **line_}
 
 
 _HEAD = ("title", "description")
 
 
-def line(news: News) -> dict[str, Any]:
-    """The object of one piece of news."""
-    found: dict[str, Any] = plain(_line(news))
-    return found
+def line(event: WatchEvent) -> dict[str, Any]:
+    """The JSON object of one event."""
+    fields: dict[str, Any] = plain(_line(event))
+    return fields
 
 
-def _line(news: News) -> Line:
-    match news:
-        case Changed(state, _, time):
+def _line(event: WatchEvent) -> Line:
+    match event:
+        case StateChange(state, _, time):
             return RequirementLine(
                 state.requirement,
                 state.verdict,
@@ -133,9 +136,9 @@ def _line(news: News) -> Line:
                 state.violated_ns,
                 time,
             )
-        case Late(ticks, messages):
+        case LateMessages(ticks, messages):
             return LateLine(ticks, dict(messages))
-        case Found(diagnostic):
+        case DiagnosticEvent(diagnostic):
             return MessageLine(
                 diagnostic.code.number,
                 str(diagnostic.severity),
@@ -153,4 +156,4 @@ def _line(news: News) -> Line:
         case RunEnded(number, verdicts, recording, ticks):
             return RunLine(number, ticks, dict(verdicts), recording)
         case _:
-            assert_never(news)
+            assert_never(event)

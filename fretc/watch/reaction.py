@@ -1,4 +1,4 @@
-"""`--on-violation`: a command of the user, which gets the facts and never holds up the watch."""
+"""`--on-violation`: a command of the user, which receives the facts and never delays the watch."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 PATIENCE = 60
 """Seconds that a command may take."""
 MOST = 8
-"""Commands that run at once; a violation beyond them starts none, and that is said."""
+"""The most commands that run at once; a further violation starts none and is reported."""
 _LAST = 5
-"""Seconds that commands still have when a watch has ended."""
+"""Seconds that commands may still take when a watch has ended."""
 
 
 class Reaction:
-    """Starts a command for each violation, each in a thread of its own."""
+    """A starter of a command for each violation, each in a thread of its own."""
 
     def __init__(self, command: Sequence[str]) -> None:
-        """Of the command and its options, which no shell sees."""
+        """`command`: the program and its options, which are not passed to a shell."""
         self._command = tuple(command)
         self._threads: list[Thread] = []
         self._processes: set[subprocess.Popen[bytes]] = set()
@@ -35,22 +35,22 @@ class Reaction:
         self._problems: deque[Diagnostic] = deque()
 
     def start(self, facts: Mapping[str, Any]) -> None:
-        """Start it with facts: as JSON on standard input, and each as `FRETC_NAME` beside."""
+        """Start the command, with facts as JSON on standard input and as `FRETC_NAME` variables."""
         self._threads = [thread for thread in self._threads if thread.is_alive()]
         if len(self._threads) >= MOST:
-            self._failed(f"was not started: {MOST} of it still run")
+            self._failed(f"was not started: {MOST} earlier ones still run")
             return
         thread = Thread(target=self._run, args=(dict(facts),), daemon=True)
         self._threads.append(thread)
         thread.start()
 
     def problems(self) -> Iterator[Diagnostic]:
-        """What has failed since this was asked last."""
+        """The failures since the last call."""
         while self._problems:
             yield self._problems.popleft()
 
     def wait(self) -> None:
-        """Give commands that still run a little time, and end them."""
+        """Wait a little for commands that still run, then stop them."""
         for thread in self._threads:
             thread.join(_LAST / len(self._threads))
         self.end()
@@ -58,7 +58,7 @@ class Reaction:
             thread.join(_LAST)
 
     def end(self) -> None:
-        """Kill what still runs, with all that it started."""
+        """Kill all running commands, with the processes that they started."""
         self._is_over = True
         for process in [*self._processes]:
             _kill(process)
@@ -93,10 +93,10 @@ class Reaction:
         except subprocess.TimeoutExpired:
             _kill(process)
             process.communicate()
-            self._failed(f"took longer than {PATIENCE} s, and was ended")
+            self._failed(f"took longer than {PATIENCE} s, and was stopped")
         else:
             if self._is_over and process.returncode == -signal.SIGKILL:
-                self._failed(f"was ended: it still ran {_LAST} s after the watch")
+                self._failed(f"was stopped: it still ran {_LAST} s after the end of the watch")
             elif process.returncode:
                 self._failed(f"ended with exit status {process.returncode}")
 
@@ -105,13 +105,13 @@ class Reaction:
             Diagnostic(
                 Code.REACTION_FAILED,
                 f"`{self._command[0]}` {how}",
-                help="try it by hand; the watch does not depend on it",
+                help="run the command by hand to see the error; the watch continues without it",
                 severity=Severity.WARNING,
             )
         )
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
-    """With its group, in which is what it has started, unless that has left it."""
+    """Kill the process with its group, which has the processes that it started."""
     with suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)

@@ -1,7 +1,8 @@
 """The recording of a watch: an MCAP file with the bytes that arrived, in the order of arrival.
 
-What an audit needs to say the same (where the grid begins, up to when was watched, what was missed)
-is written as metadata. The file is readable up to its last second at any time; closed, it is whole.
+The facts that an audit needs for equal verdicts (the start of the grid, the end of the watch,
+missed messages) are written as metadata. The file is readable up to its last second at any time;
+after it is closed, it is complete.
 """
 
 from __future__ import annotations
@@ -18,21 +19,21 @@ from fretc.watch.sources.source import Arrival, Channel
 from fretish.clock import Clock
 
 _SECOND = 10**9
-"""Nanoseconds of receive time after which what has come is written, at the latest."""
+"""The most nanoseconds of receive time before arrived messages are written."""
 _CHUNK = 2**19
 """Bytes of a chunk."""
 MOST_GAPS = 10_000
-"""Times of missed messages that are written one by one; more are one, from first to last."""
+"""The most intervals of missed messages that are written one by one; more are merged into one."""
 
 
 class Recorder:
-    """Writes one run."""
+    """A writer of one run."""
 
     def __init__(self, path: Path, clock: Clock) -> None:
         """Begin a new file.
 
         Raises:
-            OSError: there is one, or it cannot be written.
+            OSError: the file exists already, or cannot be written.
         """
         self.path = path
         self._clock = clock
@@ -45,10 +46,10 @@ class Recorder:
         self._has_grid = False
 
     def message(self, arrival: Arrival) -> None:
-        """One message, as it came.
+        """Write one message as it arrived.
 
         Raises:
-            OSError: the disk is full, say.
+            OSError: for example because the disk is full.
         """
         channel = self._channels.get(arrival.channel)
         if channel is None:
@@ -69,10 +70,10 @@ class Recorder:
         return int(self._writer.register_channel(channel.topic, channel.message_encoding, schema))
 
     def grid(self, origin: int | None) -> None:
-        """Where the grid begins; written once.
+        """Write the start of the grid, once.
 
         Raises:
-            OSError: the disk is full, say.
+            OSError: for example because the disk is full.
         """
         if origin is not None and not self._has_grid:
             self._has_grid = True
@@ -82,12 +83,13 @@ class Recorder:
         """End the file.
 
         Args:
-            until: up to when was watched, on the declared clock.
+            until: the end of the watch, on the declared clock.
             missed: receive times between which messages were lost.
-            disordered: messages that were judged too late because they came behind later ones.
+            disordered: the number of messages that came after later ones whose ticks had been
+                judged.
 
         Raises:
-            OSError: the disk is full, say.
+            OSError: for example because the disk is full.
         """
         if len(missed) > MOST_GAPS:
             missed = ((missed[0][0], missed[-1][1]),)
@@ -98,10 +100,10 @@ class Recorder:
             self._file.close()
 
     def abandon(self) -> None:
-        """Leave the file as it is: what is in it can be read, and breaks off."""
+        """Leave the file as it is: readable, but truncated."""
         self._file.close()
 
     def discard(self) -> None:
-        """Leave no file: nothing has come."""
+        """Delete the file, because no message arrived."""
         self._file.close()
         self.path.unlink(missing_ok=True)

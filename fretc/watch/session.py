@@ -1,8 +1,7 @@
-"""One run, watched: arrivals in, ticks, standings and findings out.
+"""The session of one run: arrivals in, ticks, states and diagnostics out.
 
-Nothing here waits, prints, or looks at a clock: who calls it says what has arrived, and up to which
-receive time everything has. Times are nanoseconds; what is meant by them, `monitors/ticking.py`
-says.
+The session never waits, prints, or reads a clock: the caller passes arrivals, and the receive time
+up to which they are complete. Times are nanoseconds, with the meaning in `monitors/ticking.py`.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.traces import trace
 from fretc.logs.stream import End, Stream, Tick, Withdrawn
 from fretc.watch.decoding import Decoder, Timed
-from fretc.watch.judging import Judges
+from fretc.watch.requirement_monitors import RequirementMonitors
 from fretc.watch.sources.source import Arrival
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -31,35 +30,35 @@ from monitors.ticking import Ledger, is_jump
 
 @dataclass(frozen=True, slots=True)
 class Jump:
-    """The clock of a topic was set back: what follows is another run."""
+    """The clock of a topic was set back: a new run begins."""
 
     topic: str
     by: int
 
 
 @dataclass(frozen=True, slots=True)
-class Ended:
-    """A run that has ended, as an audit of its recording judges it."""
+class EndedRun:
+    """A run that has ended, with the verdicts of an audit of its recording."""
 
     verdicts: Mapping[str, str]
     until: int
-    """Up to when it was watched, on the declared clock."""
+    """The end of the watch, on the declared clock."""
 
 
 @dataclass(slots=True)
 class Topic:
-    """What has come of a topic."""
+    """The messages of a topic that have arrived."""
 
     count: int = 0
     first: int | None = None
     last: int | None = None
     """Receive times."""
     recent: list[int] = field(default_factory=list)
-    """The last receive times, for its rate."""
+    """The last receive times, for the rate."""
 
     @property
     def rate(self) -> float | None:
-        """Messages a second, of the last ones."""
+        """Messages per second, from the last ones."""
         if len(self.recent) < 2 or self.recent[-1] == self.recent[0]:
             return None
         return (len(self.recent) - 1) * 1e9 / (self.recent[-1] - self.recent[0])
@@ -69,86 +68,86 @@ _RECENT = 20
 
 
 class Session:
-    """Watches one run of a robot by all requirements of a plan."""
+    """A session of one run of a robot, with all requirements of a plan."""
 
     def __init__(self, plan: Plan) -> None:
-        """Nothing has come yet; the clock of the plan declares a lateness, where it needs one."""
+        """An empty session; the clock of the plan declares a lateness, if it needs one."""
         self._plan = plan
         self._clock = plan.declarations.clock
         patience = self._clock.effective_lateness
         assert patience is not None, "a clock by stamps has a lateness"
         self._patience = patience
-        self._judges = Judges(plan)
-        self._stream = Stream(plan.declarations, self._judges.propositions)
+        self._monitors = RequirementMonitors(plan)
+        self._stream = Stream(plan.declarations, self._monitors.propositions)
         self._decoder = Decoder(plan.declarations)
         self._latest: dict[str, int] = {}
         self._now = 0
-        """On the declared clock: the latest time of all messages."""
+        """The latest time of all messages, on the declared clock."""
         self._received = 0
         self.disordered = 0
-        """Messages behind later ones, by receive time, that came after their ticks were judged: a
-        log that is followed can have some."""
+        """Messages that arrived after later ones whose ticks had been judged, in a log that is
+        followed."""
         self._missed: list[Gap] = []
         self._gap_from: int | None = None
-        """The latest time before messages were missed, until another one comes."""
+        """The latest time before messages were missed, until another one arrives."""
         self.interrupted = False
-        """Whether the source is gone."""
+        """Whether the source is not connected."""
         self._ahead: tuple[Truth, ...] | None = None
         self._final: Mapping[str, str] = {}
         """The verdicts of a run that has ended."""
         self.topics = {name: Topic() for name in sorted(self._decoder.topics)}
         self.problems: list[Diagnostic] = []
-        """What is wrong with the messages of a topic, each once."""
+        """Diagnostics of the messages of topics, each once."""
 
     @cached_property
     def reads(self) -> Mapping[str, tuple[str, ...]]:
-        """Of each requirement the topics on which it depends."""
+        """For each requirement, the topics on which it depends."""
         of, found = self._plan.declarations, {}
-        for monitor in self._judges.monitors:
-            names = {n for each in monitor.PROPOSITIONS for n in of.propositions[each].signals}
+        for monitor in self._monitors.monitors:
+            names = {n for name in monitor.PROPOSITIONS for n in of.propositions[name].signals}
             topics = {of.signals[name].path.topic for name in names}
             found[monitor.REQUIREMENTS[0].id] = tuple(sorted(topics))
         return found
 
     @property
     def missed(self) -> tuple[Gap, ...]:
-        """When messages were missed, by receive time."""
+        """The intervals of missed messages, by receive time."""
         return tuple(self._missed)
 
     @property
     def received(self) -> int:
-        """The receive time up to which everything that has come was given; 0 before the first."""
+        """The receive time up to which arrivals are complete; 0 before the first."""
         return self._received
 
     @property
     def origin(self) -> int | None:
-        """Where the grid of ticks begins, once it is placed; None, too, where there is no grid."""
+        """The start of the grid of ticks, once it is placed; None also if there is no grid."""
         return self._stream.origin
 
     @property
     def first_tick(self) -> int | None:
         """The time of the first tick."""
-        return self._judges.ledger.time(0)
+        return self._monitors.ledger.time(0)
 
     @property
     def ticks(self) -> int:
-        """How many were judged."""
-        return self._judges.count
+        """The number of judged ticks."""
+        return self._monitors.count
 
     @property
     def ledger(self) -> Ledger:
-        """The ticks that were judged."""
-        return self._judges.ledger
+        """The judged ticks."""
+        return self._monitors.ledger
 
     @property
     def late(self) -> Mapping[str, int]:
-        """Of each topic how many messages were late for a tick."""
+        """For each topic, the number of late messages."""
         return self._stream.late
 
     @property
     def late_ticks(self) -> int:
-        """How many of them became unknown because a message was late."""
-        return self._judges.ledger.late
+        """The number of ticks that became unknown because a message was late."""
+        return self._monitors.ledger.late
 
     @property
     def now(self) -> int:
@@ -157,13 +156,13 @@ class Session:
 
     @property
     def waiting(self) -> tuple[str, ...]:
-        """The topics that have to begin before the first tick can be placed."""
+        """The topics without a message yet, before which the first tick cannot be placed."""
         return self._stream.waiting
 
-    # What comes
+    # Arrivals
 
     def arrive(self, arrival: Arrival) -> Jump | Diagnostic | None:
-        """One message.
+        """Add one message.
 
         Returns:
             A jump, and nothing was taken: the message belongs to another run. Or what keeps time
@@ -192,7 +191,7 @@ class Session:
         return None
 
     def _take(self, message: Timed) -> bool:
-        """Whether a tick that needed it was judged already."""
+        """Add a message; whether a tick that it affects was already judged."""
         self._latest[message.topic] = max(message.time, self._latest.get(message.topic, 0))
         self._now = max(self._now, message.time)
         if self._gap_from is not None and not self.interrupted:
@@ -205,17 +204,17 @@ class Session:
 
     def _withdraw(self, late: Withdrawn | None) -> None:
         if late is not None:
-            self._judges.withdraw(late)
+            self._monitors.withdraw(late)
 
     def interrupt(self) -> None:
-        """The source is gone: no tick is judged until `miss` says what was lost."""
+        """Record that the connection is lost: no tick is judged until `miss` is called."""
         self.interrupted = True
         self._gap_from = self._gap_from or self._now or None
 
     def miss(self, since: int, until: int) -> None:
-        """Messages received from `since` to `until` were lost.
+        """Record that messages received from `since` to `until` were lost.
 
-        By stamps, the messages around them tell which times that are.
+        With stamps, the neighbouring messages determine the lost times.
         """
         self.interrupted, self._ahead = False, None
         if self._missed and since <= self._missed[-1][1]:
@@ -229,37 +228,37 @@ class Session:
             self._gap_from = self._gap_from or self._now or None
 
     def idle(self, now: int) -> Diagnostic | None:
-        """Everything that was received before `now` has been given."""
+        """Record that all messages received before `now` have been added."""
         self._received = max(self._received, now)
         return self._pass(self._received - self._patience) if self._now else None
 
     def _pass(self, time: int) -> Diagnostic | None:
         if self.interrupted:
             return None
-        found = self._stream.until(max(time, 0))
-        if isinstance(found, Diagnostic):
-            return found
-        for tick in found:
-            self._judges.step(tick)
-        if found:
+        ticks = self._stream.until(max(time, 0))
+        if isinstance(ticks, Diagnostic):
+            return ticks
+        for tick in ticks:
+            self._monitors.step(tick)
+        if ticks:
             self._ahead = None
         return None
 
-    # What is known
+    # The state
 
     def states(self, *, ahead: bool = True) -> tuple[State, ...]:
-        """Of each requirement what is known now.
+        """The present state of each requirement.
 
         Args:
-            ahead: whether what has come since the last tick counts for what is owed.
+            ahead: whether messages since the last tick count for `owed`.
         """
-        judges = self._judges
+        monitors = self._monitors
         if ahead and self._ahead is None:
             rows = [tick.truth for tick in self._stream.glance(max(self._now, self._time_passed))]
-            self._ahead = judges.owed(rows)
-        owed = self._ahead if ahead and self._ahead is not None else judges.owed()
+            self._ahead = monitors.owed(rows)
+        owed = self._ahead if ahead and self._ahead is not None else monitors.owed()
         owed = (None,) * len(owed) if self.interrupted else owed
-        read = zip(judges.standings(), owed, judges.last_triggers(), strict=True)
+        read = zip(monitors.standings(), owed, monitors.last_triggers(), strict=True)
         return tuple(
             State(
                 standing.requirement,
@@ -269,7 +268,7 @@ class Session:
                 self._tick_time(standing.open),
                 self._tick_time(standing.deadline),
                 None
-                if standing.requirement in judges.counted
+                if standing.requirement in monitors.counted
                 else self._tick_time(standing.first_violation),
             )
             for standing, owing, trigger in read
@@ -280,50 +279,50 @@ class Session:
         return self._received - self._patience
 
     def _verdict(self, standing: Standing) -> str:
-        """That of the run, where it has ended; one with missed messages satisfies nothing."""
+        """The verdict of a run that has ended; a run with missed messages satisfies nothing."""
         if standing.requirement in self._final:
             return self._final[standing.requirement]
-        verdict = self._judges.said(standing.requirement, str(standing.verdict))
+        verdict = self._monitors.audit_verdict(standing.requirement, str(standing.verdict))
         return "no data" if self._missed and verdict in ("satisfied", "vacuous") else verdict
 
     def _tick_time(self, tick: int | None) -> int | None:
-        """When a tick is, perhaps one to come."""
+        """The time of a tick, also of a future one."""
         if tick is None:
             return None
-        known = self._judges.ledger.time(tick)
+        judged_time = self._monitors.ledger.time(tick)
         origin, period = self.origin, self._clock.period
-        if known is not None or origin is None or period is None:
-            return known
+        if judged_time is not None or origin is None or period is None:
+            return judged_time
         return origin + self._clock.phase + tick * period
 
-    def end(self) -> Ended | Diagnostic:
-        """The run ends here."""
+    def end(self) -> EndedRun | Diagnostic:
+        """End the run."""
         if self._gap_from is not None:
             self._withdraw(self._stream.miss(self._gap_from, self._now))
-        found = self._stream.end()
-        if not isinstance(found, End):
-            return found
-        for tick in found.ticks:
-            self._judges.step(tick)
-        self._final = self._judges.verdicts(found.cut, intact=not self._missed)
-        return Ended(self._final, found.until)
+        stream_end = self._stream.end()
+        if not isinstance(stream_end, End):
+            return stream_end
+        for tick in stream_end.ticks:
+            self._monitors.step(tick)
+        self._final = self._monitors.verdicts(stream_end.cut, intact=not self._missed)
+        return EndedRun(self._final, stream_end.until)
 
     def judge_again(self, log: str) -> Mapping[str, str] | Diagnostic:
-        """Judge the run that has ended by a log of it, as an audit does: in the order of times.
+        """Judge the ended run by a log of it, as an audit does: in the order of times.
 
         Returns:
             The verdicts, which `states` has, too; or why the log cannot be read.
         """
-        declarations, names = self._plan.declarations, self._judges.propositions
+        declarations, names = self._plan.declarations, self._monitors.propositions
         signals = signals_of(declarations, names)
         recording = read(log, declarations, signals, self._plan.integrity)
         if isinstance(recording, Diagnostic):
             return recording
-        found = trace(declarations, recording, names)
-        times = found.timeline.times.tolist()
-        self._judges, self._ahead = Judges(self._plan), None
-        rows = rows_of([found.columns[name] for name in names], len(times))
+        columns = trace(declarations, recording, names)
+        times = columns.timeline.times.tolist()
+        self._monitors, self._ahead = RequirementMonitors(self._plan), None
+        rows = rows_of([columns.columns[name] for name in names], len(times))
         for time, row in zip(times, rows, strict=True):
-            self._judges.step(Tick(time, dict(zip(names, row, strict=True))))
-        self._final = self._judges.verdicts(found.cut, intact=recording.intact)
+            self._monitors.step(Tick(time, dict(zip(names, row, strict=True))))
+        self._final = self._monitors.verdicts(columns.cut, intact=recording.intact)
         return self._final

@@ -1,4 +1,4 @@
-"""What a watch shows a person: a row for each requirement, or a line for each piece of news."""
+"""The text output of a watch: a row for each requirement, or a line for each event."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import assert_never
 from fretc.audit.evidence.verdicts import VERDICTS
 from fretc.terminal.output import Piece
 from fretc.terminal.screen import Screen, fitted, padded, titled, width
-from fretc.watch.news import Changed, Found, Late, News, RunEnded
+from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, StateChange, WatchEvent
 from fretc.watch.session import Session
 from fretc.watch.sources.source import Interrupted, Missed, Opened, Reconnected
 from fretish.bindings.amounts import duration, seconds
@@ -18,11 +18,11 @@ from monitors.kernel.verdicts import Truth
 _S = 10**9
 _OWED: Mapping[Truth, str] = {True: "owed", None: "may be owed", False: ""}
 _NAME = 40
-"""Columns of a requirement's name, at most."""
+"""The widest name of a requirement, in columns."""
 
 
 def rows(session: Session, titles: Mapping[str, str], screen: Screen) -> Iterator[list[Piece]]:
-    """The screen: requirements, then topics."""
+    """The rows of the screen: requirements, then topics."""
     states = session.states()
     ids = [state.requirement for state in states]
     most = min(_NAME, screen.width // 2)
@@ -44,10 +44,10 @@ def rows(session: Session, titles: Mapping[str, str], screen: Screen) -> Iterato
 
 def _ticks(session: Session) -> str:
     if session.waiting:
-        return f"  waits for {', '.join(session.waiting)} to place the first tick"
+        return f"  waits for {', '.join(session.waiting)} before the first tick"
     late = f", {session.late_ticks} became unknown" if session.late_ticks else ""
     behind = session.disordered
-    why = f"; {behind} messages behind later ones: judged again at the end" if behind else ""
+    why = f"; {behind} messages out of order: judged again at the end" if behind else ""
     return f"  {session.ticks} ticks{late}{why}"
 
 
@@ -75,25 +75,25 @@ def _ago(time: int, now: int) -> str:
     return f"{duration(max(0, now - time) / _S)} ago"
 
 
-def line(news: News, start: int | None) -> str | None:
-    """A line of news; None where it says nothing that a diagnostic does not say.
+def line(event: WatchEvent, start: int | None) -> str | None:
+    """The line of an event; None: a diagnostic says the same.
 
     Args:
-        news: what has happened.
-        start: the first tick, from which seconds count; None: there is none yet.
+        event: the event.
+        start: the time of the first tick, from which seconds count; None: there is none yet.
     """
-    match news:
-        case Changed(state, before, time):
+    match event:
+        case StateChange(state, before, time):
             return _changed(state, before, time, start)
-        case Late(ticks, messages):
+        case LateMessages(ticks, messages):
             of = ", ".join(f"{count} of {topic}" for topic, count in messages.items() if count)
-            return f"late messages ({of}): {ticks} ticks that were judged are unknown"
+            return f"late messages ({of}): {ticks} judged ticks became unknown"
         case Opened(name):
             return f"watches {name}"
         case Interrupted(_, problem):
             return f"interrupted: {problem.message}"
         case Reconnected(since, until):
-            return f"connected again: what came within {duration((until - since) / _S)} is lost"
+            return f"connected again: messages of {duration((until - since) / _S)} are lost"
         case Missed(since, until, count):
             what = "1 message" if count == 1 else f"{count} messages"
             within = f" within {duration((until - since) / _S)}" if until > since else ""
@@ -102,16 +102,16 @@ def line(news: News, start: int | None) -> str | None:
             where = f", recorded in {recording}" if recording else ""
             of = ", ".join(f"{id} {verdict}" for id, verdict in verdicts.items())
             return f"run {number} ended after {ticks} ticks{where}: {of}"
-        case Found():
+        case DiagnosticEvent():
             return None
         case _:
-            assert_never(news)
+            assert_never(event)
 
 
 def _changed(state: State, before: State | None, time: int, start: int | None) -> str | None:
-    """Only what a reader of a log of lines would act on: a verdict, a demand that opens or ends."""
-    told = None if before is None else (before.verdict, before.owed)
-    if told == (state.verdict, state.owed):
+    """The line of a changed verdict, or of an obligation that opens or ends, else None."""
+    previous = None if before is None else (before.verdict, before.owed)
+    if previous == (state.verdict, state.owed):
         return None
     at = seconds((time - start) / _S) if start is not None else "-"
     owed = f", {_OWED[state.owed]}" if _OWED[state.owed] else ""

@@ -1,4 +1,4 @@
-"""What a source gives → sessions, recordings and news; each run has a session and a recording."""
+"""Sessions, recordings and events from a source; each run has a session and a recording."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from fretc.audit.plan import Plan
-from fretc.watch.news import Changed, Found, Late, News, RunEnded
+from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, StateChange, WatchEvent
 from fretc.watch.recording import Recorder
-from fretc.watch.session import Ended, Jump, Session
+from fretc.watch.session import EndedRun, Jump, Session
 from fretc.watch.sources.source import (
     Arrival,
     Event,
@@ -24,51 +24,51 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from monitors.guard import State
 
 MOST_RUNS = 100
-"""After so many a clock that is set back again and again is two clocks."""
+"""The number of runs after which a clock that is set back repeatedly is taken for two clocks."""
 LOOK = 50 * 10**6
-"""Nanoseconds of receive time after which it is looked again what is owed, if not even a tick was
-judged: to look costs as much as a tick."""
+"""Nanoseconds of receive time after which the open obligations are updated, even if no tick was
+judged: an update costs as much as a tick."""
 SILENCE = 5 * 10**9
-"""Nanoseconds after which a topic that has not begun is reported."""
+"""Nanoseconds after which a topic without messages is reported."""
 
 
 class Watch:
-    """One watch, of one run or, where a clock is set back, of several."""
+    """A watch of one run or, if a clock is set back, of several."""
 
     def __init__(self, plan: Plan, record: Path | None = None, log: str | None = None) -> None:
-        """Nothing has come yet.
+        """A watch without messages yet.
 
         Args:
-            plan: its clock has a lateness, where it needs one.
-            record: the file that is written; of a second run with `-2` before its ending.
-            log: the log that is watched; None: no log is.
+            plan: the plan; its clock has a lateness, if it needs one.
+            record: the file to write; for a second run, with `-2` before its suffix.
+            log: the log that is watched; None: the source is not a log.
 
         Raises:
-            OSError: the file is there, or cannot be written.
+            OSError: the file exists already, or cannot be written.
         """
         self._plan, self._record, self._log = plan, record, log
         self.session = Session(plan)
         self.runs: list[RunEnded] = []
         self.failed = False
-        """Whether something has gone wrong that leaves a run, or its recording, unfinished."""
+        """Whether an error leaves a run, or its recording, unfinished."""
         self.ended = False
         """Whether nothing more can be watched."""
         self._states: dict[str, State] = {}
         self._late = 0
         self._began: int | None = None
         self._looked = 0
-        """The receive time at which it was last looked what is owed."""
+        """The receive time of the last update of open obligations."""
         self._judged = 0, 0
-        """The ticks of the run that were judged then, and those that had become unknown."""
+        """The number of ticks judged by then, and of those that had become unknown."""
         self._silent: set[str] = set()
         self._lost_since: int | None = None
         self._has_begun = False
-        """Whether the source was ever there."""
+        """Whether the source was ever connected."""
         self._recorder = self._new_recorder()
 
     @property
     def topics(self) -> list[str]:
-        """All that are read."""
+        """All topics that are read."""
         return sorted(self.session.topics)
 
     @property
@@ -84,10 +84,10 @@ class Watch:
             path = path.with_name(f"{path.stem}-{len(self.runs) + 1}{path.suffix}")
         return Recorder(path, self._plan.declarations.clock)
 
-    # What comes
+    # Arrivals
 
-    def take(self, item: Arrival | Event | Idle) -> Iterator[News]:
-        """One thing that a source gives, and what there is to tell of it."""
+    def take(self, item: Arrival | Event | Idle) -> Iterator[WatchEvent]:
+        """Process one message or event of a source, and return the events to report."""
         match item:
             case Arrival():
                 yield from self._arrive(item)
@@ -112,9 +112,9 @@ class Watch:
                 yield item
             case Problem(diagnostic):
                 self.failed |= diagnostic.is_error
-                yield Found(diagnostic)
+                yield DiagnosticEvent(diagnostic)
 
-    def _arrive(self, arrival: Arrival) -> Iterator[News]:
+    def _arrive(self, arrival: Arrival) -> Iterator[WatchEvent]:
         self._began = self._began or arrival.log_time
         self._has_begun = True
         found = self.session.arrive(arrival)
@@ -128,51 +128,51 @@ class Watch:
         if found is not None or self._is_due(arrival.log_time):
             yield from self._passed(found)
         for problem in self.session.problems:
-            yield Found(problem)
+            yield DiagnosticEvent(problem)
         self.session.problems.clear()
         if arrival.log_time - self._began > SILENCE:
             yield from self._silences(arrival.log_time)
 
     def _is_due(self, now: int) -> bool:
-        """Whether there can be news: a tick more, or another look after some time."""
+        """Whether there can be new events: after one more tick, or after some time."""
         judged = self.session.ticks, self.session.late_ticks
         if judged == self._judged and now - self._looked < LOOK:
             return False
         self._looked, self._judged = now, judged
         return True
 
-    def _passed(self, wrong: Diagnostic | None) -> Iterator[News]:
+    def _passed(self, wrong: Diagnostic | None) -> Iterator[WatchEvent]:
         if wrong is not None:
             self.failed = self.ended = True
-            yield Found(wrong)
+            yield DiagnosticEvent(wrong)
         yield from self._changes()
 
-    def _changes(self, *, ahead: bool = True) -> Iterator[News]:
+    def _changes(self, *, ahead: bool = True) -> Iterator[WatchEvent]:
         if self.session.late_ticks > self._late:
             self._late = self.session.late_ticks
-            yield Late(self._late, dict(self.session.late))
+            yield LateMessages(self._late, dict(self.session.late))
         for state in self.session.states(ahead=ahead):
             before = self._states.get(state.requirement)
             if state != before:
                 self._states[state.requirement] = state
-                yield Changed(state, before, self.session.now)
+                yield StateChange(state, before, self.session.now)
 
-    def _silences(self, now: int) -> Iterator[News]:
+    def _silences(self, now: int) -> Iterator[WatchEvent]:
         self._began = self._began or now
         if now - self._began < SILENCE:
             return
         for name, topic in self.session.topics.items():
             if not topic.count and name not in self._silent:
                 self._silent.add(name)
-                yield Found(_silent(name))
+                yield DiagnosticEvent(_silent(name))
 
-    def _begin_anew(self, jump: Jump, arrival: Arrival) -> Iterator[News]:
-        """A clock was set back: this run ends, and another one begins."""
-        yield Found(_set_back(jump))
+    def _begin_anew(self, jump: Jump, arrival: Arrival) -> Iterator[WatchEvent]:
+        """End this run and begin another one, because a clock was set back."""
+        yield DiagnosticEvent(_set_back(jump))
         yield from self.finish(begins_anew=True)
         if len(self.runs) >= MOST_RUNS:
             self.failed = self.ended = True
-            yield Found(_two_clocks(jump))
+            yield DiagnosticEvent(_two_clocks(jump))
             return
         self.session = Session(self._plan)
         if self._lost_since is not None:
@@ -187,7 +187,7 @@ class Watch:
 
     # The recording
 
-    def _recorded(self, arrival: Arrival) -> Iterator[News]:
+    def _recorded(self, arrival: Arrival) -> Iterator[WatchEvent]:
         if self._recorder is None or arrival.channel.topic not in self.session.topics:
             return
         try:
@@ -196,19 +196,19 @@ class Watch:
         except OSError as error:
             yield from self._not_recorded(error)
 
-    def _not_recorded(self, error: OSError) -> Iterator[News]:
+    def _not_recorded(self, error: OSError) -> Iterator[WatchEvent]:
         self.failed = True
         path = self._record
         if self._recorder is not None:
             path = self._recorder.path
             self._recorder.abandon()
         self._recorder = None
-        yield Found(_not_recorded(str(path), error.strerror or str(error)))
+        yield DiagnosticEvent(_not_recorded(str(path), error.strerror or str(error)))
 
-    def finish(self, *, begins_anew: bool = False) -> Iterator[News]:
-        """The present run ends: its verdicts are those of an audit of its recording.
+    def finish(self, *, begins_anew: bool = False) -> Iterator[WatchEvent]:
+        """End the present run: its verdicts are those of an audit of its recording.
 
-        Where the source was never there, there is neither.
+        If the source was never connected, there is neither a run nor a recording.
 
         Args:
             begins_anew: whether another run of the same source follows.
@@ -219,25 +219,25 @@ class Watch:
             return
         if self._lost_since is not None:
             self.session.miss(self._lost_since, max(self._lost_since, self.session.received))
-        found = self.session.end()
-        if not isinstance(found, Ended):
+        ended = self.session.end()
+        if not isinstance(ended, EndedRun):
             self.failed = True
-            yield Found(found)
-            found = Ended(dict.fromkeys(self._states, "no data"), self.session.now)
+            yield DiagnosticEvent(ended)
+            ended = EndedRun(dict.fromkeys(self._states, "no data"), self.session.now)
         path, session = None, self.session
         if self._recorder is not None:
             path = str(self._recorder.path)
             try:
                 self._recorder.grid(None if session.disordered else session.origin)
-                self._recorder.close(found.until, session.missed, session.disordered)
+                self._recorder.close(ended.until, session.missed, session.disordered)
             except OSError as error:
                 yield from self._not_recorded(error)
             self._recorder = None
-        verdicts = found.verdicts
+        verdicts = ended.verdicts
         if session.disordered:
             log = path or (self._log if not self.runs and not begins_anew else None)
             judged = _no_log() if log is None else session.judge_again(log)
-            yield Found(_disordered(session.disordered, log, judged))
+            yield DiagnosticEvent(_disordered(session.disordered, log, judged))
             verdicts = verdicts if isinstance(judged, Diagnostic) else judged
         yield from self._changes(ahead=False)
         run = RunEnded(len(self.runs) + 1, verdicts, path, session.ticks)
@@ -248,8 +248,9 @@ class Watch:
 def _silent(topic: str) -> Diagnostic:
     return Diagnostic(
         Code.NOTHING_COMES,
-        f"nothing has come of `{topic}` for {duration(SILENCE / 1e9)}: what reads it is unknown",
-        help="compare its name with those that the robot sends",
+        f"no message has arrived of `{topic}` for {duration(SILENCE / 1e9)}: propositions that "
+        "read it are unknown",
+        help="compare its name with the topics of the robot",
         severity=Severity.WARNING,
     )
 
@@ -257,8 +258,7 @@ def _silent(topic: str) -> Diagnostic:
 def _set_back(jump: Jump) -> Diagnostic:
     return Diagnostic(
         Code.CLOCK_SET_BACK,
-        f"the clock of `{jump.topic}` was set back by {duration(jump.by / 1e9)}: what follows is "
-        "another run",
+        f"the clock of `{jump.topic}` was set back by {duration(jump.by / 1e9)}: a new run begins",
         severity=Severity.WARNING,
     )
 
@@ -266,13 +266,13 @@ def _set_back(jump: Jump) -> Diagnostic:
 def _two_clocks(jump: Jump) -> Diagnostic:
     return Diagnostic(
         Code.CLOCK_SET_BACK,
-        f"the clock of `{jump.topic}` was set back {MOST_RUNS} times: it is given up",
-        help="are there two publishers of the topic, with different clocks?",
+        f"the clock of `{jump.topic}` was set back {MOST_RUNS} times: the watch gives up",
+        help="check whether two publishers of the topic use different clocks",
     )
 
 
 def _disordered(count: int, log: str | None, judged: object) -> Diagnostic:
-    messages = f"{count} message{'s' * (count > 1)} of the log stood behind later ones"
+    messages = f"{count} message{'s' * (count > 1)} of the log came after later ones"
     if not isinstance(judged, Diagnostic):
         return Diagnostic(
             Code.DISORDERED,
@@ -296,6 +296,6 @@ def _no_log() -> Diagnostic:
 def _not_recorded(path: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.NOT_RECORDED,
-        f"`{path}` cannot be written on: {why}; the watch goes on without it",
-        help="make room, and watch again with another file",
+        f"`{path}` cannot be written any further: {why}; the watch continues without it",
+        help="free some space, and watch again with another file",
     )

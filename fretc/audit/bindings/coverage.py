@@ -1,4 +1,4 @@
-"""What the bound propositions were in recorded runs: true, false or unknown."""
+"""The truth values of the bound propositions in recorded runs: true, false or unknown."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from fretc.audit.one_log import examined, signals_of
 from fretc.audit.phases.advice import Runs, proposal
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.audit.plan import Plan, monitored_requirements
-from fretc.audit.pool import WorkerDied, each, was_killed
+from fretc.audit.pool import WorkerDied, killed_diagnostic, map_processes
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
@@ -29,26 +29,26 @@ from fretish.diagnostics.rendering import as_json, visible
 
 @dataclass(frozen=True, slots=True)
 class LogCoverage:
-    """One log: its ticks, and the tally of each proposition (None: it could not be read)."""
+    """One log: its ticks and the tally of each proposition (None: the log could not be read)."""
 
     run: str
     ticks: int
     tallies: Mapping[str, Tally] | None
     findings: tuple[Diagnostic, ...]
     phases: Mapping[str, Phases] = field(default_factory=dict)
-    """Of each requirement the verdict at each phase of the ticks; empty where there are none."""
+    """The verdict of each requirement at each phase of the ticks; empty: not computed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """What each proposition was in each log."""
+    """The values of each proposition in each log."""
 
     declarations: Declarations
     logs: tuple[LogCoverage, ...]
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What there is to say: of each log, and then of all of them."""
+        """Diagnostics of each log, and then those of all logs together."""
         return (*self._findings, *self._of_all)
 
     @property
@@ -75,12 +75,12 @@ class Coverage:
 
     @property
     def as_json(self) -> str:
-        """One JSON object: of each proposition what it was bound to, and what it was."""
+        """A JSON object with the definition and the values of each proposition."""
         return f"{json.dumps(self._record(), indent=2, allow_nan=False)}\n"
 
     @property
     def text(self) -> tuple[tuple[str, str | None], ...]:
-        """Lines for a person, each with its colour."""
+        """Lines of text, each with its colour."""
         names = self.declarations.propositions
         lines = [line for name in names for line in self._lines(name)]
         return tuple((visible(line), colour) for line, colour in (*lines, *self._phase_lines()))
@@ -167,7 +167,7 @@ class Coverage:
 
 
 def _expression(declarations: Declarations, name: str) -> str:
-    """As it is written in the bindings; or in a sentence that compares signals itself."""
+    """The expression of a proposition in the bindings, or a comparison in a sentence."""
     data: Mapping[str, Any] = tomllib.loads(declarations.source.text)
     table = data.get("proposition", {}).get(name)
     return str(table["expr"]) if table else declarations.propositions[name].text
@@ -190,13 +190,13 @@ def _counted(tally: Tally) -> str:
 def coverage(
     declarations: Declarations, logs: Sequence[str], jobs: int, plan: Plan | None = None
 ) -> Coverage | Diagnostic:
-    """Look at every proposition in every log.
+    """Evaluate every proposition in every log.
 
     Args:
         declarations: clock, signals and propositions.
         logs: paths.
         jobs: how many processes share the logs.
-        plan: of the requirements; None where they cannot be audited.
+        plan: the audit of the requirements, for the phases; None: they cannot be audited.
     """
     if not declarations.clock.declared or not declarations.propositions:
         what = "clock" if not declarations.clock.declared else "proposition"
@@ -210,12 +210,12 @@ def coverage(
     look = partial(_log_coverage, declarations=declarations, plan=plan)
     logs = tuple(dict.fromkeys(logs))
     of_logs = {
-        place: LogCoverage(logs[place], 0, None, (was_killed(logs[place], str(result)),))
+        index: LogCoverage(logs[index], 0, None, (killed_diagnostic(logs[index], str(result)),))
         if isinstance(result, WorkerDied)
         else result
-        for place, result in each(look, logs, jobs)
+        for index, result in map_processes(look, logs, jobs)
     }
-    return Coverage(declarations, tuple(of_logs[place] for place in range(len(logs))))
+    return Coverage(declarations, tuple(of_logs[index] for index in range(len(logs))))
 
 
 def _log_coverage(log: str, declarations: Declarations, plan: Plan | None) -> LogCoverage:
@@ -234,8 +234,8 @@ def _log_coverage(log: str, declarations: Declarations, plan: Plan | None) -> Lo
 def _phases(
     log: str, declarations: Declarations, recording: Recording, plan: Plan
 ) -> Mapping[str, Phases]:
-    """By the ticks of an audit: they begin with the messages that the requirements read."""
-    monitors = [each.monitor for each in monitored_requirements(plan)]
+    """The verdicts by phase, on the ticks of an audit: the requirements' topics set the first."""
+    monitors = [requirement.monitor for requirement in monitored_requirements(plan)]
     if _topics(plan.declarations) != _topics(declarations):
         names = tuple(plan.declarations.signals)
         again = read(log, plan.declarations, names)

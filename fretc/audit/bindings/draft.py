@@ -1,4 +1,4 @@
-"""A draft of `bindings.toml`: what a log offers to bind, and what the requirements still need.
+"""A draft of `bindings.toml`: the signals of a log, and what the requirements still need.
 
 It is text for a person to edit. What is known of a message's type is written out; every other
 number or text stands there as a comment. Times are nanoseconds.
@@ -28,21 +28,22 @@ from fretish.bindings.declarations import Declarations, Role, path, short_type
 from fretish.clock import NANOSECONDS, in_words
 
 _TICK = 100 * 10**6
-"""Where no topic has a rate."""
+"""Nanoseconds of a tick if no topic has a rate."""
 _FAST = 220 * 10**6
-"""A topic that comes no less often than this can set the tick; slower ones are held."""
+"""The longest period, in nanoseconds, of a topic that determines the tick; samples of slower topics
+are held."""
 _AGES = 3
-"""Periods of its topic up to which a sample counts."""
+"""Age limit of a sample, in periods of its topic."""
 _SHORTEST = 10**6
-"""No tick is shorter."""
+"""The shortest tick, in nanoseconds."""
 _ROUND = (10, 12, 15, 20, 25, 30, 35, 40, 50, 60, 75, 90)
-"""What an age is rounded up to, times a power of ten."""
+"""Factors to which an age limit is rounded up, times a power of ten."""
 _FEW = 10
-"""Messages; fewer are events, and have no rate."""
+"""A topic with fewer messages has no rate: its messages are events."""
 
 
 @dataclass(frozen=True, slots=True)
-class Drafted:
+class DraftedSignal:
     """A signal of the draft."""
 
     name: str
@@ -50,19 +51,19 @@ class Drafted:
     type: str
     quantity: Quantity
     max_age: str
-    """Empty: the topic has no rate."""
+    """The age limit; empty: the topic has no rate."""
     values: tuple[str, ...] = ()
-    """The words that a text has in the log."""
+    """The texts of the field in the log."""
 
     @property
     def path(self) -> str:
-        """As the bindings write it."""
+        """The path of the field, as written in bindings."""
         return f"{self.topic}.{self.quantity.field}"
 
 
 @dataclass(frozen=True, slots=True)
-class Other:
-    """A field that nothing is drafted of, and the words that it may be."""
+class UndraftedField:
+    """A field without a drafted signal, and the values that it can have."""
 
     path: str
     values: tuple[str, ...] = ()
@@ -70,18 +71,18 @@ class Other:
 
 @dataclass(frozen=True, slots=True)
 class TopicDraft:
-    """A topic with its signals, and its other numbers and texts."""
+    """A topic with its signals and its other fields."""
 
     title: str
-    signals: tuple[Drafted, ...]
-    others: tuple[Other, ...]
+    signals: tuple[DraftedSignal, ...]
+    others: tuple[UndraftedField, ...]
     remark: str
-    """Why nothing of it can be bound; empty where something can."""
+    """The reason why no field of the topic can be bound; empty: some can."""
 
 
 @dataclass(frozen=True, slots=True)
 class MissingProposition:
-    """A proposition that the requirements name and no bindings define."""
+    """A proposition that requirements use and no bindings define."""
 
     name: str
     requirements: tuple[str, ...]
@@ -91,7 +92,7 @@ class MissingProposition:
 
 @dataclass(frozen=True, slots=True)
 class MissingSignal:
-    """A signal that comparisons of the requirements name and no bindings declare."""
+    """A signal that comparisons of the requirements use and no bindings declare."""
 
     name: str
     requirements: tuple[str, ...]
@@ -109,10 +110,10 @@ def draft(
     a proposition that is called as a signal that is true or false, and a signal of the draft.
 
     Args:
-        overview: of a log, with its words.
-        missing: propositions that sentences name and nothing declares.
-        durations: those of the sentences; each is a whole number of ticks.
-        unread: signals that sentences compare and nothing declares.
+        overview: the summary of a log, with the texts of its fields.
+        missing: propositions that sentences use and no bindings define.
+        durations: durations of the sentences in nanoseconds; each is a whole number of ticks.
+        unread: signals that sentences compare and no bindings declare.
     """
     topics = _topics(overview)
     signals = [signal for topic in topics for signal in topic.signals]
@@ -131,13 +132,13 @@ def draft(
     )
 
 
-def drafted_signals(overview: Overview) -> tuple[Drafted, ...]:
-    """The signals that a draft writes out."""
+def drafted_signals(overview: Overview) -> tuple[DraftedSignal, ...]:
+    """The signals that a draft declares."""
     return tuple(signal for topic in _topics(overview) for signal in topic.signals)
 
 
-def plain_signals(overview: Overview) -> tuple[Drafted, ...]:
-    """A signal for each field of a message whose type says nothing: a word, or without a unit."""
+def plain_signals(overview: Overview) -> tuple[DraftedSignal, ...]:
+    """A signal for each enumeration or unitless field, for types that are not well known."""
     taken: set[str] = set()
     return tuple(
         _named(_plain(topic, field, values), taken)
@@ -147,13 +148,13 @@ def plain_signals(overview: Overview) -> tuple[Drafted, ...]:
     )
 
 
-def _plain(topic: Topic, field: str, values: tuple[str, ...]) -> Drafted:
+def _plain(topic: Topic, field: str, values: tuple[str, ...]) -> DraftedSignal:
     name, type_ = _word(f"{topic.name}_{field}"), short_type(topic.type)
-    return Drafted(name, topic.name, type_, Quantity(field, ""), _max_age(topic), values)
+    return DraftedSignal(name, topic.name, type_, Quantity(field, ""), _max_age(topic), values)
 
 
 def _fields(overview: Overview, topic: str) -> dict[str, tuple[str, ...]]:
-    """The fields of a topic that a signal could read, each with the words that it may be."""
+    """The fields of a topic that a signal can read, each with its possible values."""
     leaves, words = overview.leaves.get(topic) or {}, overview.words.get(topic, {})
     return {
         field: (*leaf.names, *(words.get(field) or ()))
@@ -162,12 +163,12 @@ def _fields(overview: Overview, topic: str) -> dict[str, tuple[str, ...]]:
     }
 
 
-def _is_flag(overview: Overview, signal: Drafted) -> bool:
+def _is_flag(overview: Overview, signal: DraftedSignal) -> bool:
     leaves = overview.leaves.get(signal.topic) or {}
     return leaves[signal.quantity.field].kind is Kind.FLAG
 
 
-def _example(overview: Overview, signals: Sequence[Drafted]) -> str:
+def _example(overview: Overview, signals: Sequence[DraftedSignal]) -> str:
     """An expression over the first signal."""
     if not signals:
         return "x < 5 cm"
@@ -200,7 +201,7 @@ def missing_propositions(project: Project) -> tuple[MissingProposition, ...]:
 
 
 def missing_signals(project: Project) -> tuple[MissingSignal, ...]:
-    """The signals that comparisons of the requirements lack."""
+    """The undeclared signals in comparisons of the requirements."""
     users: dict[str, dict[str, None]] = {}
     for requirement in project.formalized:
         if requirement.entry.status == "retired":
@@ -214,7 +215,7 @@ def missing_signals(project: Project) -> tuple[MissingSignal, ...]:
 def _unread(
     requirement: FormalizedRequirement, name: str, declared: Declarations | None
 ) -> tuple[str, ...]:
-    """The signals that one of its comparisons lacks; none where it is bound itself."""
+    """The undeclared signals in the comparison of a proposition; none if bindings define it."""
     if declared is not None and name in declared.propositions:
         return ()
     return binding_agreement.missing_signals(
@@ -223,9 +224,13 @@ def _unread(
 
 
 def durations(project: Project) -> tuple[int, ...]:
-    """Those of the requirements, in nanoseconds; ticks are none."""
-    found = [s.duration(requirement.sentence.timing) for requirement in project.formalized]
-    return tuple(d.amount * NANOSECONDS[d.unit] for d in found if d and d.unit in NANOSECONDS)
+    """The durations of the requirements in nanoseconds, without those stated in ticks."""
+    seconds_or_ticks = [
+        s.duration(requirement.sentence.timing) for requirement in project.formalized
+    ]
+    return tuple(
+        d.amount * NANOSECONDS[d.unit] for d in seconds_or_ticks if d and d.unit in NANOSECONDS
+    )
 
 
 def _missing_proposition(
@@ -240,7 +245,7 @@ def _missing_proposition(
 
 
 def _role(name: str, sentence: s.Sentence) -> Role:
-    """What the place of a name in the sentence says of it."""
+    """The role of a name, from its place in the sentence."""
 
     def within(expression: e.Expression | None) -> bool:
         return expression is not None and any(part.id == name for part in e.names(expression))
@@ -267,7 +272,7 @@ def _topics(overview: Overview) -> list[TopicDraft]:
         paths_of_signals = {signal.path for signal in signals}
         fields = {f"{name}.{field}": each for field, each in _fields(overview, name).items()}
         others = tuple(
-            Other(each, values)
+            UndraftedField(each, values)
             for each, values in fields.items()
             if each not in paths_of_signals and path(each) is not None
         )
@@ -276,14 +281,14 @@ def _topics(overview: Overview) -> list[TopicDraft]:
     return drafts
 
 
-def _drafted(topic: Topic, leaves: Leaves, words: Words) -> list[Drafted]:
-    """The signals of a topic, where its type is well known; with names that are not yet unique."""
+def _drafted(topic: Topic, leaves: Leaves, words: Words) -> list[DraftedSignal]:
+    """The drafted signals of a topic of a well-known type; their names are not yet unique."""
     if not topic.count:
         return []
     base = _word(topic.name)
     type_ = short_type(topic.type)
     return [
-        Drafted(
+        DraftedSignal(
             "_".join(filter(None, (base, quantity.name))),
             topic.name,
             type_,
@@ -304,11 +309,11 @@ def _word(text: str) -> str:
 
 
 _RESERVED = {"and", "or", "not", "for", "true", "false", "abs", "min", "max"}
-"""Words that are no names of signals, in bindings or in sentences."""
+"""Keywords of bindings and sentences, which cannot be names of signals."""
 
 
-def _named(signal: Drafted, names: set[str]) -> Drafted:
-    """The same with a name of its own, which an expression can use."""
+def _named(signal: DraftedSignal, names: set[str]) -> DraftedSignal:
+    """The signal with a unique name that expressions can use."""
     name, number = signal.name, 2
     while name in names or name in _RESERVED:
         name, number = f"{signal.name}_{number}", number + 1
@@ -317,7 +322,7 @@ def _named(signal: Drafted, names: set[str]) -> Drafted:
 
 
 def _is_worth(field: str) -> bool:
-    """Stamps and covariances are numbers too; nobody asks for them."""
+    """Whether the field is of interest: neither a stamp nor a covariance."""
     return not re.match(r"(?:header|stamp)\.", field) and "covariance" not in field
 
 
@@ -325,9 +330,9 @@ def _remark(topic: Topic, leaves: Leaves | None, paths: Sequence[str]) -> str:
     if leaves is None:
         return f"its messages cannot be read (encoded as `{topic.encoding}`)"
     if not paths:
-        return "no number, and no text of few words, has a place of its own in its messages"
+        return "its messages have no number and no enumeration text at a fixed path"
     if path(paths[0]) is None:
-        return "no path can name a topic that is called so"
+        return "a path cannot contain the name of this topic"
     return ""
 
 
@@ -362,8 +367,8 @@ def _max_age(topic: Topic) -> str:
     return "" if period is None else in_words(_nice(_AGES * period, _ROUND))
 
 
-def _tick(overview: Overview, signals: Sequence[Drafted]) -> tuple[int, str]:
-    """A tick in which each fast topic comes once, and what it was taken from."""
+def _tick(overview: Overview, signals: Sequence[DraftedSignal]) -> tuple[int, str]:
+    """A tick in which each fast topic sends one message, and the reason for its length."""
     topics = overview.recording.topics
     drafted = dict.fromkeys(signal.topic for signal in signals) or dict.fromkeys(
         name for name in topics if _fields(overview, name)
@@ -378,7 +383,7 @@ def _tick(overview: Overview, signals: Sequence[Drafted]) -> tuple[int, str]:
 
 
 def _dividing(tick: int, why: str, durations: Sequence[int]) -> tuple[int, str]:
-    """The longest tick, up to the given one, of which each duration is a whole number."""
+    """The longest tick up to `tick` that divides every duration."""
     whole = gcd(*durations)
     steps = (count * _SHORTEST for count in range(tick // _SHORTEST, 0, -1))
     longest = next((step for step in steps if whole % step == 0), tick)

@@ -1,4 +1,4 @@
-"""Which fields of well-known ROS messages are worth a signal, and in which unit they are.
+"""The fields of well-known ROS messages that are useful as signals, with their units.
 
 Sources: the comments in the definitions of common_interfaces (sensor_msgs, geometry_msgs,
 nav_msgs, std_msgs) and ackermann_msgs; REP 103 (metres, radians, seconds where a definition says
@@ -15,22 +15,22 @@ _REP_117 = '{ nan = "drop", "+inf" = "far", "-inf" = "near", other = "drop", emp
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A field of a message: what a signal of it is called, and how it is read."""
+    """A field of a message, with the name, unit and range of its signal."""
 
     field: str
     name: str
-    """The end of the signal's name."""
+    """The last part of the signal's name."""
     unit: str = ""
-    """Empty: a plain number, or one whose unit the definition leaves open."""
+    """The unit; empty: a plain number, or the definition leaves the unit open."""
     reduce: str = ""
     valid: str = ""
     invalid: str = ""
-    """As a table of TOML."""
+    """The key `invalid` as an inline table of TOML."""
     note: str = ""
 
 
 def _planar(prefix: str) -> tuple[Quantity, ...]:
-    """A geometry_msgs/Twist: m/s and rad/s, x forward and z up (REP 103)."""
+    """The fields of a geometry_msgs/Twist: m/s and rad/s, x forward and z up (REP 103)."""
     return (
         Quantity(f"{prefix}linear.x", "vx", "m/s"),
         Quantity(f"{prefix}linear.y", "vy", "m/s"),
@@ -39,12 +39,12 @@ def _planar(prefix: str) -> tuple[Quantity, ...]:
 
 
 def _place(prefix: str) -> tuple[Quantity, ...]:
-    """A geometry_msgs/Pose."""
+    """The fields of a geometry_msgs/Pose."""
     return tuple(Quantity(f"{prefix}position.{axis}", axis, "m") for axis in "xyz")
 
 
 def _force(prefix: str) -> tuple[Quantity, ...]:
-    """A geometry_msgs/Wrench."""
+    """The fields of a geometry_msgs/Wrench."""
     return (
         *(Quantity(f"{prefix}force.{axis}", f"f{axis}", "N") for axis in "xyz"),
         *(Quantity(f"{prefix}torque.{axis}", f"t{axis}", "Nm") for axis in "xyz"),
@@ -62,9 +62,9 @@ def _steered(prefix: str) -> tuple[Quantity, ...]:
     )
 
 
-_PLAIN = (Quantity("data", "", note="a plain number: the type says no unit"),)
+_PLAIN = (Quantity("data", "", note="a plain number: the type states no unit"),)
 _FLAG = (Quantity("data", "", note="true or false: its name alone is an expression"),)
-_WORD = (Quantity("data", "", note="the words of this log; add those that it lacks"),)
+_WORD = (Quantity("data", "", note="the values in this log; add the missing ones"),)
 
 QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
     "sensor_msgs/LaserScan": (
@@ -75,7 +75,8 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
             reduce="min",
             valid="range_min <= x and x <= range_max",
             invalid=_REP_117,
-            note="from the sensor to what is nearest; `outline` measures from the robot's outline",
+            note="from the sensor to the nearest obstacle; `outline` measures from the robot's "
+                "outline",
         ),
     ),
     "sensor_msgs/Range": (
@@ -91,7 +92,8 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
         *(Quantity(f"linear_acceleration.{axis}", f"a{axis}", "m/s^2") for axis in "xyz"),
     ),
     "sensor_msgs/Temperature": (
-        Quantity("temperature", "", note="degrees Celsius, which are no unit: a plain number"),
+        Quantity("temperature", "", note="degrees Celsius, which is not a unit of fretc: a "
+            "plain number"),
     ),
     "sensor_msgs/FluidPressure": (Quantity("fluid_pressure", "", "Pa"),),
     "sensor_msgs/RelativeHumidity": (Quantity("relative_humidity", "", note="from 0 to 1"),),
@@ -131,4 +133,4 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
         )
     },
 }  # fmt: skip
-"""By the short name of a type, as both ROS 1 and ROS 2 have it."""
+"""Quantities by the short name of a type, which is the same in ROS 1 and ROS 2."""

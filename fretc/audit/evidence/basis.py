@@ -1,4 +1,4 @@
-"""What a verdict rests on beside its log, as fingerprints of canonical meaning.
+"""The inputs of a verdict other than its log, as fingerprints of their canonical meaning.
 
 This is the one notion of change. Evidence records the basis of each of its results, a lock that of
 each review, and a later comparison uses the basis of now.
@@ -21,20 +21,21 @@ from fretish.documents import RequirementEntry
 SENTENCE, PARAMS, CLOCK, TOPICS = "sentence", "params", "clock", "topics"
 BINDINGS, MONITOR, FRETC = "bindings", "monitor", "fretc"
 KINDS = (SENTENCE, PARAMS, CLOCK, TOPICS, BINDINGS, MONITOR)
-"""The parts that evidence records of each result; the version of fretc is that of its file."""
+"""The inputs that evidence records for each result; the version of fretc is recorded once for each
+file."""
 
 _WHY = {
     SENTENCE: "the sentence has changed since the audit",
     PARAMS: "the numbers in `params` have changed since the audit",
     CLOCK: "the clock has changed since the audit",
-    TOPICS: "the topics that the audit reads, and its ticks begin with, have changed since then",
+    TOPICS: "the topics that the audit reads have changed since the audit",
     BINDINGS: "the bindings have changed since the audit",
-    MONITOR: "the monitor that is made now is not the one of the audit",
-    FRETC: "another version of fretc has made the audit",
+    MONITOR: "the generated monitor has changed since the audit",
+    FRETC: "the audit was made with another version of fretc",
 }
 
 Basis = Mapping[str, str]
-"""Each of `KINDS`, perhaps `FRETC` → its SHA-256 (of `FRETC` the version itself)."""
+"""SHA-256 of each of `KINDS`; for `FRETC` the version itself."""
 
 
 def basis(
@@ -44,14 +45,16 @@ def basis(
     topics: Iterable[str],
     monitor_sha256: str | None = None,
 ) -> Basis:
-    """What a verdict on a requirement would rest on now.
+    """The verdict inputs of a requirement in its present state.
 
     Args:
-        entry: as written.
-        requirement: None where it cannot be formalized: its wording stands for its sentence.
-        declarations: None where there are no bindings; what they say is then an empty text.
-        topics: which an audit of the project reads; its ticks begin with their messages.
-        monitor_sha256: of the monitor of the requirement, where it is known.
+        entry: the requirement as written.
+        requirement: None: it cannot be formalized, and its wording is hashed instead of its
+            formula.
+        declarations: None: there are no bindings, and an empty text is hashed instead.
+        topics: the topics that an audit of the project reads; the first tick depends on their
+            messages.
+        monitor_sha256: SHA-256 of the requirement's monitor, if it is known.
     """
     wording = " ".join(entry.wording.text.split())
     return {
@@ -65,7 +68,7 @@ def basis(
 
 
 def _of_monitor(requirement: FormalizedRequirement | None) -> str:
-    """Of an empty text if nothing is formalized, or its monitor would be too deep for Python."""
+    """SHA-256 of the monitor, or of an empty text if there is none or Python cannot parse it."""
     return sha256(
         monitor.text(requirement) if requirement and monitor.is_readable(requirement) else ""
     )
@@ -74,32 +77,32 @@ def _of_monitor(requirement: FormalizedRequirement | None) -> str:
 def of_bindings(
     requirement: FormalizedRequirement | None, declarations: Declarations | None
 ) -> str:
-    """What a verdict would rest on of the bindings; empty where there is none."""
+    """SHA-256 of the bindings that a verdict depends on; empty without bindings."""
     return digest(bound(declarations, requirement.watched)) if declarations and requirement else ""
 
 
 def outdated(recorded: Mapping[str, object], now: Basis) -> tuple[str, ...]:
-    """The kinds that are not as they were recorded, without what only follows from another one.
+    """The kinds of inputs that differ from the recorded ones, without mere consequences of others.
 
     Args:
-        recorded: by an audit; what it does not have was not known to it.
-        now: what is compared is what this has.
+        recorded: the inputs at the time of the audit; kinds that it lacks are not compared.
+        now: the inputs at present; only its kinds are compared.
     """
     kinds = [kind for kind in (FRETC, *KINDS) if kind in now]
     changed = {kind for kind in kinds if recorded.get(kind) != now[kind]}
     follows = set()
     if changed & {FRETC, SENTENCE, CLOCK}:
         follows.add(MONITOR)
-    if now.get(CLOCK) == "":  # there are no bindings at all
+    if now.get(CLOCK) == "":  # there are no bindings
         follows |= {CLOCK, TOPICS}
     return tuple(kind for kind in kinds if kind in changed - follows)
 
 
 def why(kind: str) -> str:
-    """Why a result is not current, in words."""
+    """The reasons why a result is not current."""
     return _WHY[kind]
 
 
 def of_all(bindings: Mapping[str, str]) -> str:
-    """One SHA-256 for what the bindings say of several requirements: id → that of each."""
+    """One SHA-256 of the bindings of several requirements."""
     return digest(dict(bindings))

@@ -1,4 +1,4 @@
-"""What an audit is asked to judge: a requirement, and the text of its monitor."""
+"""A requirement to audit, with the text of its monitor."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from compiler.situations.situations import Situation
 from fretc.audit.evidence.basis import Basis
-from fretc.audit.measurements.count_trials import Chance
+from fretc.audit.measurements.count_trials import RequiredProbability
 from fretc.audit.measurements.violations import Demand
 
 
@@ -17,11 +17,11 @@ class AuditedRequirement:
     id: str
     sentence: str
     basis: Basis = field(compare=False)
-    """SHA-256 of all that a verdict on it rests on, but for the log."""
+    """SHA-256 of each input of the verdict other than the log."""
     monitor: str
     demand: Demand
-    """What is missing where it is violated."""
+    """The response that is missing when the requirement is violated."""
     situations: tuple[Situation, ...] = field(compare=False)
-    """In which runs are looked at: made from the sentence and the bindings."""
-    chance: Chance | None = None
-    """With a probability: all runs together are judged, and no run alone."""
+    """The situations to look for in runs, from the sentence and the bindings."""
+    chance: RequiredProbability | None = None
+    """The probability; with one, only all runs together are judged."""

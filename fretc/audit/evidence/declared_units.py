@@ -14,7 +14,7 @@ from fretish.bindings.declarations import Declarations, Signal
 
 
 def in_declared_units(result: Result, declared: Declarations | None) -> Result:
-    """The same result with every number in the unit that the bindings declare for its signal.
+    """The result with every number in the unit that the bindings declare for its signal.
 
     A signal that the bindings do not declare, or now in units of another dimension, stays in its
     base unit.
@@ -25,25 +25,25 @@ def in_declared_units(result: Result, declared: Declarations | None) -> Result:
 def thresholds_in_declared_units(
     thresholds: Sequence[Threshold], declared: Declarations | None
 ) -> tuple[Threshold, ...]:
-    """The same of thresholds alone."""
+    """The thresholds in declared units."""
     if declared is None:
         return tuple(thresholds)
-    return tuple(_threshold(each, declared.signals) for each in thresholds)
+    return tuple(_threshold(threshold, declared.signals) for threshold in thresholds)
 
 
 def without_samples(results: Sequence[Result], declared: Declarations | None) -> tuple[Result, ...]:
-    """Results as above, without the samples around their violations: those are many.
+    """Results in declared units, without the many samples around their violations.
 
     Args:
         results: in base units.
         declared: the bindings.
     """
-    return tuple(in_declared_units(bare(each), declared) for each in results)
+    return tuple(in_declared_units(bare(result), declared) for result in results)
 
 
 def bare(result: Result) -> Result:
-    """A result without those samples."""
-    violations = tuple(replace(each, surroundings=None) for each in result.violations)
+    """The result without the samples around its violations."""
+    violations = tuple(replace(violation, surroundings=None) for violation in result.violations)
     return replace(result, violations=violations)
 
 
@@ -52,8 +52,8 @@ def _result(result: Result, declared: Mapping[str, Signal]) -> Result:
     return replace(
         result,
         units={name: unit for name, (unit, _) in units.items()},
-        violations=tuple(_violation(each, units) for each in result.violations),
-        thresholds=tuple(_threshold(each, declared) for each in result.thresholds),
+        violations=tuple(_violation(violation, units) for violation in result.violations),
+        thresholds=tuple(_threshold(threshold, declared) for threshold in result.thresholds),
     )
 
 

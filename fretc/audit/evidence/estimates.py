@@ -1,4 +1,4 @@
-"""What all runs of an audit say of the requirements with a probability."""
+"""The answers of all runs of an audit for the requirements with a probability."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import cast
 
-from fretc.audit.evidence.briefs import Brief
 from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.probabilities import (
     AVERAGE,
@@ -18,20 +17,21 @@ from fretc.audit.evidence.probabilities import (
     low,
     times,
 )
-from fretc.audit.measurements import confidence_intervals as odds
+from fretc.audit.evidence.result_summaries import ResultSummary
+from fretc.audit.measurements import confidence_intervals as intervals
 from fretc.audit.measurements.confidence_intervals import INCONCLUSIVE, SUPPORTED
 from fretc.audit.measurements.trials import NO_TRIALS, Trials
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 
 def estimates(
-    claims: Sequence[AuditedRequirement], results: Sequence[Brief], confidence: float
+    claims: Sequence[AuditedRequirement], results: Sequence[ResultSummary], confidence: float
 ) -> tuple[Estimated, ...]:
-    """One for each claim with a probability.
+    """The answer for each audited requirement with a probability.
 
     Args:
-        claims: all of an audit.
-        results: theirs, of all runs.
+        claims: all requirements of an audit.
+        results: the results of all runs.
         confidence: between 0.5 and 1.
     """
     return tuple(
@@ -42,28 +42,30 @@ def estimates(
 
 
 def warnings(estimates: Sequence[Estimated]) -> Iterator[Diagnostic]:
-    """F506 for each that so few logs cannot support, whatever their triggers came to."""
-    for one in estimates:
-        least = odds.fewest(one.operator, Fraction(one.bound), one.confidence)
-        if one.answer == INCONCLUSIVE and one.logs.counted < least:
+    """F506 for each requirement that so few logs cannot support, whatever their triggers show."""
+    for estimate in estimates:
+        least = intervals.fewest(estimate.operator, Fraction(estimate.bound), estimate.confidence)
+        if estimate.answer == INCONCLUSIVE and estimate.logs.counted < least:
             yield Diagnostic(
                 Code.FEW_RUNS,
-                f"the probability of {one.requirement} is estimated from "
-                f"{times(one.logs.counted, 'log')} with a trigger",
+                f"the probability of {estimate.requirement} is estimated from "
+                f"{times(estimate.logs.counted, 'log')} with a trigger",
                 help=f"audit {least} or more: triggers of one log may depend on each other, so "
-                "logs count",
+                "logs are counted, not triggers",
                 severity=Severity.WARNING,
             )
 
 
-def _estimated(claim: AuditedRequirement, results: Sequence[Brief], level: float) -> Estimated:
+def _estimated(
+    claim: AuditedRequirement, results: Sequence[ResultSummary], level: float
+) -> Estimated:
     assert claim.chance is not None
     op, bound = claim.chance.op, Fraction(claim.chance.bound)
     distinct = _distinct(results)
     runs = [_trials(result) for result in distinct]
     damaged = sum(not result.intact for result in distinct)
-    estimate = odds.estimated(runs, odds.both_sides(op, level))
-    answer = odds.answer(estimate, op, bound)
+    estimate = intervals.estimated(runs, intervals.both_sides(op, level))
+    answer = intervals.answer(estimate, op, bound)
     undecided = answer == SUPPORTED and damaged > 0
     return Estimated(
         requirement=claim.id,
@@ -81,32 +83,32 @@ def _estimated(claim: AuditedRequirement, results: Sequence[Brief], level: float
         ),
         estimate=None if estimate.share is None else round(estimate.share, 9),
         bounds=estimate.bounds,
-        needed=odds.needed(estimate, op, bound) if answer == INCONCLUSIVE else None,
+        needed=intervals.needed(estimate, op, bound) if answer == INCONCLUSIVE else None,
         meaning=AVERAGE,
     )
 
 
-def _intact(results: Sequence[Brief]) -> int:
-    """Those that are intact and have a trigger."""
+def _intact(results: Sequence[ResultSummary]) -> int:
+    """The results of intact logs with a trigger."""
     return sum(bool(r.intact and _trials(r).count) for r in results)
 
 
-def _distinct(results: Sequence[Brief]) -> list[Brief]:
-    """Each content once: a copy of a log tells nothing new, nor does one that was written again."""
-    first: dict[str, Brief] = {}
+def _distinct(results: Sequence[ResultSummary]) -> list[ResultSummary]:
+    """One result for each content: a copy of a log adds no information."""
+    first: dict[str, ResultSummary] = {}
     for result in results:
         first.setdefault(result.content, result)
     return list(first.values())
 
 
-def _trials(result: Brief) -> Trials:
+def _trials(result: ResultSummary) -> Trials:
     return result.trials or NO_TRIALS
 
 
-# In words --------------------------------------------------------------------------------------
+# Texts -----------------------------------------------------------------------------------------
 
 
-def _reason(estimate: odds.Estimate, answer: str, text: str) -> str:
+def _reason(estimate: intervals.Estimate, answer: str, text: str) -> str:
     least, most = low(estimate.bounds.low), high(estimate.bounds.high)
     if not estimate.trials.count:
         return "there was no trigger"
@@ -115,10 +117,13 @@ def _reason(estimate: odds.Estimate, answer: str, text: str) -> str:
             f"it lies between {least} and {most}, so {'' if answer == SUPPORTED else 'not '}{text}"
         )
     if estimate.runs < 2:
-        return "one log does not tell a probability: its triggers depend on each other"
+        return "one log is not enough for a probability: its triggers may depend on each other"
     return f"it lies between {least} and {most}, which leaves {text} open"
 
 
 def _damaged(count: int) -> str:
     what = "log is" if count == 1 else "logs are"
-    return f"{count} {what} damaged or could not be read: what is lost could speak against it"
+    return (
+        f"{count} {what} damaged or could not be read: the lost part could "
+        "contradict the requirement"
+    )

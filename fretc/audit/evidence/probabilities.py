@@ -1,4 +1,4 @@
-"""What triggers came to, and what all runs say of a probability, as the evidence has them."""
+"""The outcomes of triggers and the probabilities over all runs, in the form of evidence."""
 
 from __future__ import annotations
 
@@ -8,41 +8,41 @@ from math import ceil, floor
 from typing import Annotated, Literal
 
 from compiler.files.records import Count, Meta, Name, Ordinal, Record, Share, about
-from fretc.audit.measurements import confidence_intervals as odds
+from fretc.audit.measurements import confidence_intervals as intervals
 from fretc.audit.measurements.confidence_intervals import Bounds
 from fretish.expressions import ComparisonOperator
 from fretish.units import number
 
 AnswerWord = Literal["supported", "refuted", "inconclusive"]
 AVERAGE = (
-    "this is the average over the triggers seen; PCTL demands it of every reachable state with a "
-    "trigger, which is more"
+    "this is the average over the recorded triggers; PCTL demands the probability in "
+    "every reachable state with a trigger, which is stronger"
 )
-"""Said with every answer."""
+"""The note that accompanies every answer."""
 
 
 class Outcomes(Record, frozen=True):
-    """What triggers came to."""
+    """The outcomes of triggers."""
 
     answered: Annotated[Count, about("triggers whose demand was met")]
     failed: Annotated[Count, about("triggers whose demand was broken")]
     open: Annotated[
         Count,
-        about("triggers of which the log does not tell, and ticks that may be triggers"),
+        about("triggers whose outcome the log does not show, and ticks that may be triggers"),
     ]
 
 
 class Logs(Record, frozen=True):
-    """How many logs there are."""
+    """The number of logs of each kind."""
 
     counted: Annotated[Count, about("with a trigger")]
     silent: Annotated[Count, about("intact, and without a trigger")]
     damaged: Annotated[Count, about("damaged or not readable; what could be read of them counts")]
-    copies: Annotated[Count, about("of the same content as another one: not counted")]
+    copies: Annotated[Count, about("copies of another log: not counted")]
 
 
 class Estimated(Record, frozen=True):
-    """What all runs say of one requirement."""
+    """The answer of all runs for one requirement."""
 
     requirement: Name
     operator: ComparisonOperator
@@ -52,18 +52,24 @@ class Estimated(Record, frozen=True):
     confidence: Annotated[float, Meta(gt=0.5, lt=1)]
     triggers: Annotated[Outcomes, about("of all logs that count")]
     logs: Logs
-    estimate: Annotated[Share | None, about("answered ones of the decided; null: none is")]
+    estimate: Annotated[
+        Share | None,
+        about("share of answered triggers among the decided ones; null: none is decided"),
+    ]
     bounds: Annotated[
-        Bounds, about("by whole logs, one-sided each; open triggers count against either bound")
+        Bounds, about("one-sided bounds, over whole logs; open triggers count against either bound")
     ]
     needed: Annotated[
         Ordinal | None,
-        about("further logs, all of whose triggers are as they should be, that would support it"),
+        about(
+            "number of further logs, with every trigger answered as required, that would "
+            "support the requirement"
+        ),
     ]
-    meaning: Annotated[str, about("what the answer is about, and what PCTL would be")]
+    meaning: Annotated[str, about("the meaning of the answer, and its difference from PCTL")]
 
     def __post_init__(self) -> None:
-        """Raise ValueError where the bound is no probability."""
+        """Raise ValueError if the bound is not a probability."""
         try:
             stated = number(self.bound)
         except (ValueError, ZeroDivisionError):
@@ -78,7 +84,7 @@ class Estimated(Record, frozen=True):
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """For a person, the answer first."""
+        """Lines of text, the answer first."""
         return tuple(self._lines())
 
     def _lines(self) -> Iterator[str]:
@@ -88,7 +94,7 @@ class Estimated(Record, frozen=True):
         outcomes = f"{triggers.answered} of {count} triggers answered, {triggers.failed} failed"
         yield f"{outcomes}, {triggers.open} open, in {times(logs.counted, 'log')}{_others(logs)}"
         share = "not known" if self.estimate is None else f"{self.estimate:.4f}"
-        each = odds.both_sides(self.operator, self.confidence)
+        each = intervals.both_sides(self.operator, self.confidence)
         at = f"at {_percent(each)} each: {shown(self.bounds)}"
         stretch = f"bounds (the logs are the independent units) {at}"
         yield f"estimate {share}; {stretch}"
@@ -113,12 +119,12 @@ def shown(bounds: Bounds) -> str:
 
 
 def low(bound: float) -> str:
-    """Rounded down: never more than is known."""
+    """The number rounded down: a lower bound."""
     return f"{floor(bound * 10**4) / 10**4:.4f}"
 
 
 def high(bound: float) -> str:
-    """Rounded up."""
+    """The number rounded up: an upper bound."""
     return f"{ceil(bound * 10**4) / 10**4:.4f}"
 
 

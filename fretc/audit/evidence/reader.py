@@ -1,4 +1,4 @@
-"""The evidence file as checked values: the results of audits, or why that cannot be read.
+"""The evidence file as checked values, or the reason why it cannot be read.
 
 Nothing in the file is trusted: what its types (`fretc.audit.evidence.schema`) do not have is F503,
 never a report about half of it.
@@ -15,7 +15,13 @@ from compiler.files.checked_json import SchemaError, parsed
 from compiler.files.records import UnsetType, decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.briefs import Brief, Headed, RunFacts, brief, run_facts
+from fretc.audit.evidence.result_summaries import (
+    HeadProperties,
+    ResultSummary,
+    RunFacts,
+    brief,
+    run_facts,
+)
 from fretc.audit.evidence.schema import (
     Document,
     Result,
@@ -33,12 +39,12 @@ VERDICTS = (
     kernel.VACUOUS,
     kernel.SATISFIED,
 )
-"""What an audit can say, the worst first."""
+"""The verdicts, the worst first."""
 
 
 @dataclass(frozen=True)
-class EvidenceFile(Headed):
-    """A file of evidence, with its name and its SHA-256: a source of evidence, all in memory."""
+class EvidenceFile(HeadProperties):
+    """An evidence file in memory, with its name and its SHA-256: an `EvidenceSource`."""
 
     file: str
     sha256: str
@@ -46,18 +52,18 @@ class EvidenceFile(Headed):
 
     @property
     def head(self) -> Document:
-        """What it says of the audit as a whole."""
+        """The facts of the audit as a whole."""
         return self.document
 
     @property
     def results(self) -> tuple[Result, ...]:
-        """Each of a run and a requirement."""
+        """One result for each run and requirement."""
         return self.document.results
 
-    def briefs(self) -> Iterator[tuple[int, Brief]]:
-        """Each result with its place, in order."""
-        for place, result in enumerate(self.results):
-            yield place, brief(result)
+    def briefs(self) -> Iterator[tuple[int, ResultSummary]]:
+        """The summary of each result with its index, in order."""
+        for index, result in enumerate(self.results):
+            yield index, brief(result)
 
     def runs(self) -> Iterator[RunFacts]:
         """The facts of each run, in the order of their first results."""
@@ -67,44 +73,44 @@ class EvidenceFile(Headed):
             results_of.setdefault(key, []).append(result)
         yield from map(run_facts, results_of.values())
 
-    def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
-        """The whole results at some places, in order."""
-        for place in sorted({*places}):
-            yield place, self.results[place]
+    def details(self, indices: Collection[int]) -> Iterator[tuple[int, Result]]:
+        """The whole results at the given indices, in order."""
+        for index in sorted({*indices}):
+            yield index, self.results[index]
 
     def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
-        """Latencies in seconds of each result of some requirements, with its place, in order."""
-        for place, result in self._of(requirements):
-            yield place, result.latencies
+        """Latencies in seconds of each result of some requirements, with its index, in order."""
+        for index, result in self._of(requirements):
+            yield index, result.latencies
 
     def thresholds(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Sequence[Threshold]]]:
-        """The thresholds of each result of some requirements, with its place, in order."""
-        for place, result in self._of(requirements):
-            yield place, result.thresholds
+        """The thresholds of each result of some requirements, with its index, in order."""
+        for index, result in self._of(requirements):
+            yield index, result.thresholds
 
     def situations(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Situations | UnsetType]]:
-        """Which situations each result of some requirements shows, with its place, in order."""
-        for place, result in self._of(requirements):
-            yield place, result.situations
+        """The situations that each result of some requirements shows, with its index, in order."""
+        for index, result in self._of(requirements):
+            yield index, result.situations
 
     def _of(self, requirements: Collection[str]) -> Iterator[tuple[int, Result]]:
         return self.details([at for id in {*requirements} for at in self._places.get(id, ())])
 
     @cached_property
     def _places(self) -> Mapping[str, Sequence[int]]:
-        """Those of each requirement."""
-        places_of: dict[str, list[int]] = {}
-        for place, result in enumerate(self.results):
-            places_of.setdefault(result.requirement, []).append(place)
-        return places_of
+        """The indices of the results of each requirement."""
+        indices_of: dict[str, list[int]] = {}
+        for index, result in enumerate(self.results):
+            indices_of.setdefault(result.requirement, []).append(index)
+        return indices_of
 
 
 def read(path: str) -> EvidenceFile | Diagnostic:
-    """Read and check an evidence file; a note, not an error, where there is none yet."""
+    """Read and check an evidence file; a note, not an error, if it does not exist yet."""
     source = read_text(path)
     if isinstance(source, Diagnostic):
         return not_audited(path) if source.code is Code.NO_SUCH_FILE else source

@@ -1,4 +1,4 @@
-"""The samples around a violation: as an evidence file has them, and in seconds of the run."""
+"""The samples around a violation: in the form of an evidence file, and in seconds of the run."""
 
 from __future__ import annotations
 
@@ -14,29 +14,30 @@ _INFINITE = {"+inf": inf, "-inf": -inf}
 _FEW = Meta(max_length=50)
 
 Word = Annotated[str, Meta(min_length=1, max_length=100)]
-"""A value of an enumerated signal."""
+"""An enumeration value."""
 Reading = Annotated[
     Number | Literal["+inf", "-inf"] | None,
-    about("in base units; +inf: nothing in range, -inf: too near to measure, null: unknown"),
+    about("values in base units; +inf: nothing in range, -inf: too near to measure, null: unknown"),
 ]
 
 
 class Series(Record, frozen=True):
     """The sample of a signal in force at the start of a window, and those after it.
 
-    Of more than 50 some, with the least, the greatest and the last one at the first violated tick.
+    Of more than 50 samples, some are kept: among them the least, the greatest, and the one in force
+    at the first violated tick.
     """
 
     times_ns: Annotated[tuple[Whole, ...], _FEW]
     values: Annotated[tuple[Reading, ...], _FEW]
 
     def __post_init__(self) -> None:
-        """Raise ValueError where it is no series."""
+        """Raise ValueError if times and values do not form a series."""
         check_series(self.times_ns, self.values)
 
 
 def check_series(times: Sequence[int], values: Sequence[object]) -> None:
-    """Raise ValueError where they are no series."""
+    """Raise ValueError if times and values do not form a series."""
     if len(times) != len(values):
         raise ValueError("Expected as many times as values")
     if any(late < early for early, late in pairwise(times)):
@@ -44,13 +45,13 @@ def check_series(times: Sequence[int], values: Sequence[object]) -> None:
 
 
 class WordSeries(Record, frozen=True):
-    """The same of a signal of words."""
+    """The samples of an enumeration signal in a window."""
 
     times_ns: Annotated[tuple[Whole, ...], _FEW]
     words: Annotated[tuple[Word | None, ...], _FEW]
 
     def __post_init__(self) -> None:
-        """Raise ValueError where it is no series."""
+        """Raise ValueError if times and values do not form a series."""
         check_series(self.times_ns, self.words)
 
 
@@ -61,11 +62,12 @@ class Surroundings(Record, frozen=True):
     end_ns: Whole
     samples: dict[str, Series]
     words: Annotated[
-        dict[str, WordSeries] | UnsetType, about("of signals of words; left out: there are none")
+        dict[str, WordSeries] | UnsetType,
+        about("the values of enumeration signals; absent: there are none"),
     ] = UNSET
 
     def __post_init__(self) -> None:
-        """Raise ValueError where it ends before its start."""
+        """Raise ValueError if the window ends before its start."""
         if self.end_ns < self.start_ns:
             raise ValueError("Expected a stretch of time that ends after its start")
 
@@ -75,36 +77,36 @@ T = TypeVar("T", float, str)
 
 @dataclass(frozen=True, slots=True)
 class Samples(Generic[T]):
-    """Of one signal: each value holds from its time on; None: unknown."""
+    """The samples of one signal: each value holds from its time on; None: unknown."""
 
     times: tuple[float, ...]
-    """Seconds from the first tick, not decreasing; before it negative."""
+    """Seconds from the first tick, not decreasing; negative before the first tick."""
     values: tuple[T | None, ...]
-    """Of the same number; numbers may be infinite."""
+    """As many as times; numbers may be infinite."""
 
     def at(self, seconds: float) -> T | None:
-        """The value in force; None where it is unknown or there is none yet."""
+        """The value in force at a time; None: it is unknown, or there is none yet."""
         values = [v for t, v in zip(self.times, self.values, strict=True) if t <= seconds]
         return values[-1] if values else None
 
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """A stretch of a run, in seconds from its first tick, with the samples of some signals."""
+    """A part of a run, in seconds from its first tick, with the samples of some signals."""
 
     start: float
     end: float
     samples: Mapping[str, Samples[float]]
     words: Mapping[str, Samples[str]] = field(default_factory=dict)
-    """Those of signals of words."""
+    """The samples of enumeration signals."""
 
 
 def window(surroundings: Surroundings, first_ns: int) -> Window:
-    """The same in seconds, signals by their names.
+    """The samples around a violation, in seconds of the run, by the names of the signals.
 
     Args:
-        surroundings: of a violation.
-        first_ns: when the first tick of the run is, by the clock of the log.
+        surroundings: the window of a violation.
+        first_ns: the time of the first tick of the run, on the clock of the log.
     """
     return Window(
         (surroundings.start_ns - first_ns) / 1e9,

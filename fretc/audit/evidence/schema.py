@@ -48,14 +48,14 @@ SCHEMA: Final = "fretc-evidence-1"
 Verdict = Literal["satisfied", "violated", "inconclusive", "vacuous", "no data"]
 LabelName = Annotated[str, Meta(min_length=1, max_length=50)]
 LabelText = Annotated[str, Meta(min_length=1, max_length=200)]
-"""Texts of an untrusted log: they are escaped where they are shown."""
+"""Texts of an untrusted log: they are escaped when they are shown."""
 StateWord = Literal["idle", "open", "violated", "unknown"]
 Comparison = Literal["true", "false", "crossed"]
 Part = Annotated[
     str,
     Meta(
         pattern=r"^([0-9a-f]{64})?(?![\s\S])",
-        description="SHA-256; empty where nothing could be read of it, of a requirement that is "
+        description="SHA-256 of the log; empty if it could not be read, in a result that was "
         "not judged",
     ),
 ]
@@ -65,7 +65,7 @@ Part = Annotated[
 
 
 class Violation(Record, frozen=True):
-    """Ticks at which a demand was broken."""
+    """An interval of ticks at which a demand was broken."""
 
     first_tick: Count
     last_tick: Count
@@ -77,13 +77,17 @@ class Violation(Record, frozen=True):
     deadline: Annotated[
         Moment | None,
         about(
-            "by when the response had to come; null: there is none, or it is after the last tick"
+            "the last tick at which the response was in time; null: there is none, or it is "
+            "after the last tick"
         ),
     ]
-    missing: Annotated[str, about("the response that did not come, as the sentence writes it")]
+    missing: Annotated[str, about("the missing response, as written in the sentence")]
     values: Annotated[
         dict[str, Number | Word | None],
-        about("each signal at the first tick, in its base unit, or its word; null: unknown"),
+        about(
+            "each signal at the first tick, in its base unit, or its enumeration value; null: "
+            "unknown"
+        ),
     ]
     surroundings: Annotated[Surroundings | None, about("null after the first 100 violations")] = (
         field(name="window")
@@ -101,14 +105,14 @@ class Violation(Record, frozen=True):
 
     @property
     def window(self) -> Window | None:
-        """The signals around it, in seconds from the first tick; None where none were kept."""
+        """The signals around the violation, in seconds from the first tick; None: not kept."""
         if self.surroundings is None:
             return None
         return window(self.surroundings, self.start_ns - round(self.start_s * 1e9))
 
 
 class Instant(Record, frozen=True):
-    """A time of the log, which need not be that of a tick; before the first tick it is negative."""
+    """A time of the log, in nanoseconds and seconds; seconds are negative before the first tick."""
 
     ns: Whole
     seconds: Number
@@ -118,15 +122,15 @@ class Threshold(Record, frozen=True):
     """A comparison of a signal with a constant, over the audited time; known samples count."""
 
     proposition: str
-    signal: Annotated[str, about("or what is computed of some: abs(vx)")]
+    signal: Annotated[str, about("the signal, or an expression of signals: abs(vx)")]
     operator: Literal["<", "<=", ">", ">="]
-    bound: Annotated[Number, about("in the unit")]
+    bound: Annotated[Number, about("the bound, in `unit`")]
     unit: Annotated[str, about("the base unit; empty for a plain number")]
     least: Reading
     greatest: Reading
     comparison: Annotated[
         Comparison | None,
-        about("the truth value that it kept over the whole run; null: it was never known"),
+        about("the truth value over the whole run; null: it was always unknown"),
     ]
     margin: Annotated[
         Distance | None,
@@ -138,8 +142,8 @@ class Threshold(Record, frozen=True):
     nearest: Annotated[
         Instant | None,
         about(
-            "when it came nearest to the bound first; of one that was crossed, when it changed "
-            "first"
+            "the first time of the least distance; if the comparison was crossed, the time of "
+            "its first change"
         ),
     ]
 
@@ -157,13 +161,13 @@ class Finding(Record, frozen=True):
     line: Ordinal | None
     column: Ordinal | None
     help: str | None
-    subject: Annotated[Name, about("the topic, where a warning can be accepted")] | UnsetType = (
+    subject: Annotated[Name, about("the topic, for warnings that can be accepted")] | UnsetType = (
         UNSET
     )
 
 
 class Topic(Record, frozen=True):
-    """How one topic of a log is; null where its messages were only counted."""
+    """The condition of one topic of a log; null: its messages were only counted."""
 
     type: str
     count: Count
@@ -171,49 +175,50 @@ class Topic(Record, frozen=True):
     last_ns: Whole | None
     longest_gap_ns: Duration | None
     median_period_ns: Annotated[
-        Duration | None, about("from a message to the next; null: there are less than two")
+        Duration | None,
+        about("the longest time between two messages; null: there are fewer than two messages"),
     ]
-    out_of_order: Annotated[Count | None, about("messages that are earlier than one before them")]
-    equal_stamps: Annotated[Count | None, about("messages with the time of another")]
+    out_of_order: Annotated[Count | None, about("messages out of order")]
+    equal_stamps: Annotated[Count | None, about("messages with the same time as another message")]
     unstamped: Annotated[
         Count | None,
-        about("messages without the stamp that the clock goes by: their log time counts"),
+        about("messages without the declared stamp: their log time is used"),
     ]
     zero_stamps: Annotated[
-        Count | None, about("messages with a zero for a time: their samples are unknown")
+        Count | None, about("messages with the time 0: their samples are unknown")
     ]
     clock_jumps: Annotated[
         Count | None,
-        about("changes of the clock against log times by more than 1 s, between two messages"),
+        about("jumps of the clock against the log time by more than 1 s, between two messages"),
     ]
 
 
 class Checked(Record, frozen=True):
-    """What was looked at of the chunks of an MCAP file."""
+    """The numbers of chunks of an MCAP file that were checked, by kind of check."""
 
     by_index: Annotated[
-        bool, about("only the messages in question were read; false: every record was")
+        bool, about("true: only the bound messages were read; false: every record was read")
     ]
     chunks: Count
-    crc_checked: Annotated[Count, about("they have the CRC that they state")]
+    crc_checked: Annotated[Count, about("chunks whose stated CRC was checked")]
     crc_unchecked: Annotated[
-        Count, about("they state a CRC, and only their beginning was unpacked")
+        Count, about("chunks with a CRC that was not checked: only their beginning was unpacked")
     ]
-    without_crc: Annotated[Count, about("they were unpacked, and state no CRC")]
-    skipped: Annotated[Count, about("they hold none of the messages in question")]
+    without_crc: Annotated[Count, about("chunks that were unpacked and state no CRC")]
+    skipped: Annotated[Count, about("chunks without bound messages")]
 
 
 class Gap(Record, frozen=True):
-    """A stretch of time of which the log has nothing."""
+    """An interval of time without data of the log."""
 
     start_ns: Whole
     end_ns: Whole
 
 
 class Health(Record, frozen=True):
-    """Whether the data of a run can be trusted, and why not."""
+    """The integrity of the data of a run, and its diagnostics."""
 
-    intact: Annotated[bool, about("false: messages could have been lost")]
+    intact: Annotated[bool, about("false: messages may have been lost")]
     size: Annotated[Count | None, about("bytes; null: the log could not be read")]
     checked: Annotated[Checked | None, about("null: the log could not be read")]
     gaps: tuple[Gap, ...]
@@ -222,52 +227,54 @@ class Health(Record, frozen=True):
 
 
 class Hashes(Record, frozen=True, kw_only=True):
-    """SHA-256 of the log, and of what the verdict rests on beside it.
+    """SHA-256 of the log and of the other inputs of the verdict.
 
-    Of its meaning, so that `50 cm` and `0.5 m` are one. A result without one of them is older than
-    it, and suspect.
+    The inputs are hashed by their meaning: `50 cm` and `0.5 m` have one hash. A result without one
+    of these hashes is of an earlier version, and suspect.
     """
 
     log: Annotated[
         Sha256 | UnsetType,
-        about("absent where the log could not be read, or was not read whole"),
+        about("absent if the log could not be read, or was not read as a whole"),
     ] = UNSET
     log_summary: Annotated[
         Sha256 | UnsetType,
         about(
-            "of what follows the data and of the CRCs of its chunks, where the log was not read "
-            "whole (--integrity index)"
+            "SHA-256 of the summary section and of the CRCs of the chunks, if the log was not "
+            "read as a whole (--integrity index)"
         ),
     ] = UNSET
-    sentence: Annotated[Sha256, about("of the canonical wording")]
-    params: Annotated[Sha256 | UnsetType, about("of the numbers that the requirement states")] = (
-        UNSET
-    )
-    clock: Annotated[Part | UnsetType, about("of what a tick is")] = UNSET
+    sentence: Annotated[Sha256, about("SHA-256 of the canonical wording")]
+    params: Annotated[
+        Sha256 | UnsetType, about("SHA-256 of the numbers that the requirement states")
+    ] = UNSET
+    clock: Annotated[Part | UnsetType, about("SHA-256 of the clock")] = UNSET
     topics: Annotated[
         Part | UnsetType,
         about(
-            "of the names of the topics that the audit reads: the ticks begin with their messages"
+            "SHA-256 of the names of the topics that the audit reads: the first tick depends on "
+            "their messages"
         ),
     ] = UNSET
     bindings: Annotated[
-        Part, about("of the propositions of the sentence, and of the signals that they read")
+        Part, about("SHA-256 of the propositions of the sentence and of the signals that they read")
     ]
     monitor: Sha256
     messages: Annotated[
         Sha256 | UnsetType,
         about(
-            "of times and values of all signals that were read, where a probability is asked for: "
-            "logs that share it are copies of one run"
+            "SHA-256 of the times and values of all signals that were read, if a requirement "
+            "has a probability: logs with the same hash are copies of one run"
         ),
     ] = UNSET
 
 
-# The course of a run ---------------------------------------------------------------------------
+# Plot data of a run ----------------------------------------------------------------------------
 
 
 MOST_POINTS, MOST_WORDS = 300, 300
-"""Points of the way, and changes of one signal of words, that evidence keeps of a run."""
+"""The most points of a path, and the most changes of an enumeration signal, in the evidence of a
+run."""
 
 
 _FAR = 10**9
@@ -275,7 +282,7 @@ Metre = Annotated[int, Meta(ge=-_FAR, le=_FAR)] | Annotated[float, Meta(ge=-_FAR
 
 
 class Way(Record, frozen=True):
-    """Where the robot was, as lines with few points, for a map; no verdict depends on it."""
+    """The path of the robot, as lines with few points, for a map; no verdict depends on it."""
 
     times_ns: Annotated[tuple[Whole, ...], Meta(max_length=MOST_POINTS)]
     x: Annotated[tuple[Metre, ...], Meta(max_length=MOST_POINTS), about("in metres")]
@@ -283,19 +290,16 @@ class Way(Record, frozen=True):
     starts: Annotated[
         tuple[Count, ...],
         Meta(max_length=MOST_POINTS),
-        about("where a new line begins: between two lines the place is unknown"),
+        about("the indices at which a new line begins: between two lines the position is unknown"),
     ]
     error: Annotated[
         Distance,
-        about(
-            "metres: at the time of no sample the robot was farther from the place that the line "
-            "has at that time"
-        ),
+        about("metres: at the time of each sample the robot is at most this far from the line"),
     ]
-    lines_left_out: Annotated[Count, about("lines that are not kept, because there are too many")]
+    lines_left_out: Annotated[Count, about("number of lines left out, because there are too many")]
 
     def __post_init__(self) -> None:
-        """Raise ValueError where it is no way."""
+        """Raise ValueError if the numbers do not form a path."""
         if not len(self.times_ns) == len(self.x) == len(self.y):
             raise ValueError("Expected as many times as places")
         if any(late < early for early, late in pairwise(self.times_ns)):
@@ -306,29 +310,31 @@ class Way(Record, frozen=True):
 
 
 class Words(Record, frozen=True):
-    """When a signal of words changed, and to which; null: it is unknown from then on."""
+    """The changes of an enumeration signal; null: it is unknown from then on."""
 
     times_ns: Annotated[tuple[Whole, ...], Meta(max_length=MOST_WORDS)]
     words: Annotated[tuple[Word | None, ...], Meta(max_length=MOST_WORDS)]
-    changes_left_out: Annotated[Count, about("changes after these, of which there are too many")]
+    changes_left_out: Annotated[
+        Count, about("number of later changes left out, because there are too many")
+    ]
 
     def __post_init__(self) -> None:
-        """Raise ValueError where it is no series."""
+        """Raise ValueError if times and values do not form a series."""
         check_series(self.times_ns, self.words)
 
 
 class Course(Record, frozen=True):
-    """What the pictures of a run show beside its results; it stands in the first of them."""
+    """The plot data of a run, beside its results; present in the first of them."""
 
-    way: Annotated[Way | None, about("null: the bindings declare no map, or nothing is known")]
-    words: Annotated[dict[str, Words], about("each signal of words that the requirements read")]
+    way: Annotated[Way | None, about("null: the bindings declare no map, or no position is known")]
+    words: Annotated[dict[str, Words], about("each enumeration signal that the requirements read")]
 
 
 # Results ---------------------------------------------------------------------------------------
 
 
 class State(Record, frozen=True):
-    """A tick at which the state changed, with the new one; open: an answer is awaited."""
+    """A tick at which the state changed, with the new state; open: a response is awaited."""
 
     tick: Count
     ns: Whole
@@ -337,7 +343,7 @@ class State(Record, frozen=True):
 
 
 class Answer(Record, frozen=True):
-    """The first answer to a trigger that waits for one, with the tick of that trigger."""
+    """The first answer to a trigger, with the tick of that trigger."""
 
     tick: Count
     ns: Whole
@@ -346,7 +352,7 @@ class Answer(Record, frozen=True):
 
 
 class PhaseStretch(Record, frozen=True):
-    """Phases that have one verdict."""
+    """An interval of phases with one verdict."""
 
     first_ns: Count
     last_ns: Count
@@ -354,41 +360,46 @@ class PhaseStretch(Record, frozen=True):
 
 
 class PhaseVerdicts(Record, frozen=True):
-    """The verdict for each beginning of the grid of ticks.
+    """The verdict for each phase of the ticks.
 
-    Of a requirement with a probability that of the run alone.
+    For a requirement with a probability, the verdict of the run alone.
     """
 
     period_ns: Annotated[Ordinal, about("of a tick")]
     declared_ns: Annotated[Count, about("the phase that is audited")]
-    exact: Annotated[bool, about("whether every phase was judged")]
+    exact: Annotated[bool, about("true: every phase was judged")]
     nearest_ns: Annotated[
         Ordinal | None,
         about(
-            "from the declared phase to the nearest one with another verdict, or that was not "
-            "judged; phases go round; null: there is none"
+            "the distance from the declared phase to the nearest one with another verdict or "
+            "none, modulo the tick; null: there is none"
         ),
     ]
     stretches: Annotated[
         tuple[PhaseStretch, ...],
-        Meta(min_length=1, description="all phases from 0 to the whole tick, in their order"),
+        Meta(min_length=1, description="all phases from 0 to one tick, in order"),
     ]
 
 
 class Situations(Record, frozen=True):
-    """Which situations of its requirement a run came by, by their keys; all others it did not."""
+    """The situations of the requirement that a run showed, by their keys; it showed no others."""
 
-    seen: Annotated[dict[str, Moment], about("the first tick at which each has certainly been")]
+    seen: Annotated[
+        dict[str, Moment], about("the first tick at which each situation certainly occurred")
+    ]
     perhaps: Annotated[
         dict[str, Moment],
-        about("of others the first tick at which each may have been: something is unknown there"),
+        about(
+            "the first tick at which each other situation may have occurred: inputs are "
+            "unknown there"
+        ),
     ]
 
 
 class Result(Record, frozen=True, kw_only=True):
-    """What the audit of one run says of one requirement."""
+    """The result of one requirement in one run."""
 
-    run: Annotated[str, about("the log, as the user named it")]
+    run: Annotated[str, about("the log, as named on the command line")]
     requirement: Name
     verdict: Verdict
     finite: Annotated[bool | None, about("FRET's verdict of the whole finite trace; null: unknown")]
@@ -403,7 +414,7 @@ class Result(Record, frozen=True, kw_only=True):
     violations: tuple[Violation, ...]
     unknown: Annotated[
         tuple[tuple[Count, Count], ...],
-        about("stretches of ticks at which it cannot be known whether a demand was broken"),
+        about("intervals of ticks at which it is unknown whether a demand was broken"),
     ]
     open: Annotated[
         tuple[Moment, ...], about("triggers whose demand is open at the end of the log")
@@ -411,16 +422,15 @@ class Result(Record, frozen=True, kw_only=True):
     uncertain_ticks: Annotated[
         tuple[Count, ...] | UnsetType,
         about(
-            "triggers of `answers` and `open` of which that may be otherwise where propositions "
-            "are unknown; all others are certain. Absent in evidence of earlier versions: it was "
-            "not known"
+            "triggers of `answers` and `open` that are not certain, because propositions are "
+            "unknown; all others are certain. Absent in evidence of earlier versions"
         ),
     ] = field(name="uncertain", default=UNSET)
     latencies: Annotated[
         tuple[Seconds, ...],
-        about("from each answered trigger to its answer, in the order of the triggers"),
+        about("the time from each answered trigger to its answer, in the order of the triggers"),
     ] = field(name="latencies_s")
-    exercised: Annotated[Count, about("at how many ticks it was triggered")]
+    exercised: Annotated[Count, about("number of ticks with a trigger")]
     latency_median_s: Seconds | None
     latency_max_s: Seconds | None
     propositions: dict[str, Tally]
@@ -432,8 +442,8 @@ class Result(Record, frozen=True, kw_only=True):
     outcomes: Annotated[
         Outcomes | UnsetType,
         about(
-            "of a requirement with a probability: what its triggers came to in this run, which "
-            "alone decides nothing"
+            "for a requirement with a probability: the outcomes of its triggers in this run, "
+            "which alone decide nothing"
         ),
     ] = field(name="trials", default=UNSET)
     phases: Annotated[
@@ -443,46 +453,46 @@ class Result(Record, frozen=True, kw_only=True):
     course: Annotated[
         Course | UnsetType,
         about(
-            "in the first result of the run; absent, too, where the bindings declare no map, and "
-            "no signal of words is read"
+            "present in the first result of the run; absent if the bindings declare no map and "
+            "no enumeration signal is read"
         ),
     ] = UNSET
     situations: Annotated[
         Situations | UnsetType,
         about(
-            "of those that the requirement has; absent: not measured, as in evidence of earlier "
-            "versions, or where the log could not be read"
+            "the situations of the requirement; absent: not measured, as in evidence of earlier "
+            "versions, or because the log could not be read"
         ),
     ] = UNSET
     labels: Annotated[
         Annotated[dict[LabelName, LabelText], Meta(min_length=1, max_length=32)] | UnsetType,
         about(
-            "what is known of the run beside its messages: robot, version, commit, scenario, date "
-            "and others, as `[run.label]` of the bindings or `--label` says; no verdict rests on "
-            "them. Absent: there is none"
+            "labels of the run, such as robot, version, commit, scenario and date, from "
+            "`[run.label]` of the bindings or `--label`; no verdict depends on them. Absent: "
+            "there are none"
         ),
     ] = UNSET
 
     @property
     def hashes(self) -> Mapping[str, str]:
-        """Those that are known, by their names."""
+        """The known hashes by their names."""
         prints: Mapping[str, str] = plain(self.fingerprints)
         return prints
 
     @property
     def uncertain(self) -> frozenset[int]:
-        """Ticks of triggers whose answer, or whose open demand, depends on unknown values."""
+        """Ticks of triggers whose answer or open demand depends on unknown values."""
         return frozenset(self.uncertain_ticks or ())
 
     @property
     def trials(self) -> Trials | None:
-        """Of a requirement with a probability, where the log could be read."""
+        """The trials; None: no probability is required, or the log could not be read."""
         outcomes = self.outcomes
         return Trials(outcomes.answered, outcomes.failed, outcomes.open) if outcomes else None
 
     @property
     def content(self) -> str:
-        """What tells its log from another one: copies have the same."""
+        """Hash of the content of the log, to detect copies of it."""
         return self.fingerprints.log or self.fingerprints.log_summary or self.run
 
 
@@ -490,14 +500,14 @@ class Result(Record, frozen=True, kw_only=True):
 
 
 class Bindings(Record, frozen=True):
-    """The bindings that the logs were read by."""
+    """The bindings with which the logs were read."""
 
     file: str
     sha256: Annotated[
         Sha256,
         about(
-            "of what the requirements read of the bindings; comments, order and spelling do not "
-            "count"
+            "SHA-256 of the bindings that the requirements read, without comments, order and "
+            "spelling"
         ),
     ]
 
@@ -506,7 +516,7 @@ class Situation(Record, frozen=True):
     """A way in which a run can meet a requirement."""
 
     key: Annotated[str, about("unique within the requirement")]
-    words: Annotated[str, about("for people")]
+    words: Annotated[str, about("the title that people read")]
 
 
 class Requirement(Record, frozen=True):
@@ -514,28 +524,29 @@ class Requirement(Record, frozen=True):
 
     id: Name
     sentence: str
-    sha256: Annotated[Sha256, about("of the canonical wording")]
+    sha256: Annotated[Sha256, about("SHA-256 of the canonical wording")]
     situations: Annotated[
         tuple[Situation, ...] | UnsetType,
-        about("all that a run can come by; absent: they were not measured"),
+        about("all situations that a run can reach; absent: they were not measured"),
     ] = UNSET
 
 
 class Selection(Record, frozen=True):
-    """Which of the logs that were named were audited."""
+    """The selection of the named logs that were audited."""
 
     named: Annotated[Count, about("logs")]
-    since: Annotated[str | None, about("an instant of ISO 8601; null: whatever their dates")]
-    older: Annotated[Count, about("logs from before it: they were left out")]
+    since: Annotated[str | None, about("an instant in ISO 8601; null: no limit")]
+    older: Annotated[Count, about("number of logs left out because they are older")]
     sample_of: Annotated[
-        Count | None, about("of how many logs some were chosen by chance; null: all were audited")
+        Count | None,
+        about("number of logs from which the sample was drawn; null: all were audited"),
     ]
-    seed: Annotated[Whole | None, about("of the chance")]
+    seed: Annotated[Whole | None, about("the seed of the random selection")]
     audited: Annotated[Count, about("logs")]
 
 
 class Document(Record, frozen=True):
-    """A whole file."""
+    """A whole evidence file."""
 
     schema: Literal["fretc-evidence-1"]
     fretc: Annotated[str, about("version of the tool")]
@@ -545,8 +556,8 @@ class Document(Record, frozen=True):
     probabilities: Annotated[
         Annotated[tuple[Estimated, ...], Meta(min_length=1)] | UnsetType,
         about(
-            "what all runs together say of each requirement with a probability; absent: there is "
-            "none"
+            "the answer of all runs together for each requirement with a probability; absent: "
+            "there is none"
         ),
     ] = UNSET
     selection: Annotated[
@@ -559,7 +570,7 @@ def schema() -> dict[str, Any]:
     return json_schema(
         Document,
         SCHEMA,
-        "What audits have shown, as `fretc audit --evidence` writes it",
+        "The results of audits, as `fretc audit --evidence` writes them",
         "Seconds count from the first tick of the run, ticks from 0, intervals include both ends; "
         "`_ns` are nanoseconds of the log.",
     )

@@ -1,4 +1,4 @@
-"""Every verdict: its sign and what other tools take it for, the worst first.
+"""The symbol, level and severity of every verdict, the worst first.
 
 A verdict is what the evidence shows. Whether it is about the requirement as it is now is another
 fact, its currency: a verdict is suspect where something that it rests on has changed. A suspect
@@ -23,11 +23,11 @@ NOT_EXERCISED = "not exercised"
 RETIRED = "retired"
 WAIVED = "waived"
 SUSPECT, CURRENT = "suspect", "current"
-"""The two currencies of a verdict."""
+"""The currency of a verdict: whether its inputs are unchanged."""
 
 
 class Level(StrEnum):
-    """How bad it is for who reads results as messages."""
+    """The level of a verdict as a message."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -36,13 +36,13 @@ class Level(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """A verdict as it is shown and counted."""
+    """A verdict with its symbol, its level and its JUnit element."""
 
     word: str
     sign: StatusSymbol
     level: Level
     junit: str
-    """The element of JUnit for it; empty: the case passes."""
+    """The element of JUnit; empty: the case passes."""
 
 
 _ERROR, _WARNING, _NONE = Level.ERROR, Level.WARNING, Level.NONE
@@ -62,9 +62,9 @@ VERDICTS: Mapping[str, Verdict] = {
         Verdict(RETIRED, signs.RETIRED, _NONE, "skipped"),
     )
 }
-"""That of several runs is the worst of theirs."""
+"""Verdicts by word. The verdict of several runs is their worst."""
 BROKEN = (kernel.VIOLATED, REFUTED)
-"""The verdicts that tell of a violation."""
+"""The verdicts that report a violation."""
 SHOWN = (kernel.SATISFIED, SUPPORTED)
 """The verdicts that show a requirement, unless they are suspect."""
 _RANK = {word: rank for rank, word in enumerate(VERDICTS)}
@@ -76,17 +76,17 @@ def shows(word: str, *, suspect: bool) -> bool:
 
 
 def severity(word: str, *, suspect: bool = False) -> tuple[int, bool]:
-    """By which verdicts are sorted, the worst first.
+    """The order of verdicts, the worst first.
 
-    A suspect one follows the current one of its word; one that would show its requirement comes
-    after all that do not.
+    A suspect verdict follows the current one of its word; a suspect verdict that would otherwise
+    show its requirement comes after all that do not show theirs.
     """
     rank = _RANK[WAIVED] if suspect and word in SHOWN else _RANK[word]
     return rank, suspect
 
 
 def level(word: str, *, suspect: bool = False) -> Level:
-    """How bad it is: a suspect verdict is a warning at least."""
+    """The level of a verdict: a suspect one is a warning at least."""
     own = VERDICTS[word].level
     return Level.WARNING if suspect and own is Level.NONE else own
 

@@ -39,9 +39,9 @@ from fretc.audit.measurements.trials import Trials
 from fretc.audit.measurements.violations import Moment, Window
 from fretc.audit.measurements.violations import Violation as Broken
 from fretc.audit.phases.by_shift import Phases, Stretch
+from fretc.logs.signals.enum_values import enum_value
 from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.samples import Topic as Read
-from fretc.logs.signals.words import word_at
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.rendering import as_json
 from monitors.kernel import Outcome
@@ -52,7 +52,7 @@ U = TypeVar("U")
 
 @dataclass(frozen=True, slots=True)
 class RunResult:
-    """One run, one requirement."""
+    """The result of one requirement in one run."""
 
     run: str
     requirement: str
@@ -62,12 +62,13 @@ class RunResult:
     start_ns: int
     end_ns: int
     first_ns: int
-    """When the first tick is; the start of the run, where there is none."""
+    """The time of the first tick in nanoseconds; without ticks, the start of the run."""
     clock: str
     answers: tuple[tuple[Moment, Moment], ...]
-    """Trigger and answer, where a demand waits for one and it came."""
+    """Triggers with their answers, for demands that wait for one."""
     states: tuple[tuple[Moment, str], ...]
-    """When the state changed, and to what (`fretc.audit.measurements.states`)."""
+    """The ticks at which the state changed, with the new state
+    (`fretc.audit.measurements.states`)."""
     triggers: tuple[Moment, ...]
     violations: tuple[Broken, ...]
     open: tuple[Moment, ...]
@@ -75,9 +76,9 @@ class RunResult:
     latencies: tuple[float, ...]
     """Seconds from each trigger to its answer, in the order of the triggers."""
     propositions: Mapping[str, Tally]
-    """Of each proposition of the sentence how often it was true, false and unknown."""
+    """How often each proposition of the sentence was true, false and unknown."""
     margins: tuple[Margin, ...]
-    """How near the signals came to the thresholds of the propositions."""
+    """The distances of the signals to the thresholds of the propositions."""
     units: Mapping[str, str]
     """The base unit of each signal."""
     hashes: Mapping[str, str]
@@ -85,16 +86,16 @@ class RunResult:
     health: Health
     assumptions: tuple[str, ...]
     trials: Trials | None = None
-    """Of a requirement with a probability: what its triggers came to."""
+    """The outcomes of its triggers, for a requirement with a probability."""
     situations: Situations | None = None
-    """That the run came by; None: not measured."""
+    """The situations that the run showed; None: not measured."""
     phases: Phases | None = None
-    """The verdict at each phase of the ticks, of one with a probability that of the run alone; None
-    where the clock ticks by message."""
+    """The verdict at each phase of the ticks, of the run alone for a requirement with a
+    probability; None: the clock ticks by message."""
 
 
 def health(recording: Recording) -> Health:
-    """Whether the data of the run can be trusted, and why not."""
+    """The integrity of the data of the run, and its diagnostics."""
     checked = recording.checked
     return Health(
         intact=recording.intact,
@@ -135,7 +136,7 @@ def _topic(topic: Read) -> Topic:
 
 
 def text(document: Document) -> str:
-    """The evidence file: the same values give the same bytes."""
+    """The text of the evidence file: equal values give equal bytes."""
     return f"{to_json(plain(document))}\n"
 
 
@@ -152,7 +153,7 @@ def as_record(evidence: RunResult) -> Result:
         ticks=outcome.ticks,
         start_ns=evidence.start_ns,
         end_ns=evidence.end_ns,
-        states=tuple(_state(*each) for each in evidence.states),
+        states=tuple(_state(*state) for state in evidence.states),
         answers=tuple(Answer(m.tick, m.ns, m.seconds, t.tick) for t, m in evidence.answers),
         triggers=evidence.triggers,
         violations=tuple(map(_violation, evidence.violations)),
@@ -175,16 +176,18 @@ def as_record(evidence: RunResult) -> Result:
     )
 
 
-def unread(run: str, requirement: str, diagnostic: Diagnostic, hashes: Mapping[str, str]) -> Result:
+def unread_result(
+    run: str, requirement: str, diagnostic: Diagnostic, hashes: Mapping[str, str]
+) -> Result:
     """The result of a run whose log could not be read: no data."""
     health = Health(False, None, None, (), (_finding(diagnostic),), {})
-    return unjudged(run, requirement, diagnostic.message, hashes, health)
+    return unjudged_result(run, requirement, diagnostic.message, hashes, health)
 
 
-def unjudged(
+def unjudged_result(
     run: str, requirement: str, reason: str, hashes: Mapping[str, str], health: Health
 ) -> Result:
-    """The result of a run and a requirement that could not be compared with it."""
+    """The result of a requirement that no log can be judged by: no data."""
     return Result(
         run=run,
         requirement=requirement,
@@ -228,7 +231,7 @@ def _outcomes(trials: Trials) -> Outcomes:
 
 
 def phase_verdicts(phases: Phases) -> PhaseVerdicts:
-    """The verdict at each phase."""
+    """The verdict at each phase, as evidence records it."""
     return PhaseVerdicts(
         phases.period,
         phases.declared,
@@ -242,8 +245,10 @@ def phase_verdicts(phases: Phases) -> PhaseVerdicts:
 
 
 def phases_of(record: PhaseVerdicts) -> Phases:
-    """The verdict at each phase, of its record."""
-    stretches = (Stretch(each.first_ns, each.last_ns, each.verdict) for each in record.stretches)
+    """The verdict at each phase, from its record."""
+    stretches = (
+        Stretch(stretch.first_ns, stretch.last_ns, stretch.verdict) for stretch in record.stretches
+    )
     return Phases(record.period_ns, record.declared_ns, tuple(stretches))
 
 
@@ -271,7 +276,7 @@ def _comparison(state: bool | str | None) -> Comparison | None:
 
 
 def _reading(value: float | None) -> Reading:
-    """A number that may be unknown (null) or infinite, for which JSON has no number."""
+    """A number that may be unknown (null) or infinite, in the form of JSON."""
     if value is None or isnan(value):
         return None
     if isinf(value):
@@ -303,7 +308,7 @@ def _surroundings(window: Window) -> Surroundings:
 
 
 def _words(samples: Samples) -> WordSeries:
-    words = (word_at(float(value), samples.words) for value in samples.values)
+    words = (enum_value(float(value), samples.words) for value in samples.values)
     return WordSeries(tuple(samples.times.tolist()), tuple(words))
 
 

@@ -1,15 +1,15 @@
-"""Bounds of a probability from independent trials: Clopper, Pearson, Biometrika 26, 1934."""
+"""Bounds of a probability from independent trials (Clopper, Pearson, Biometrika 26, 1934)."""
 
 from __future__ import annotations
 
 from math import comb, exp, log, log1p
 
 _GRAIN = 10**9
-"""Bounds are rounded outwards to this part of 1: the same on every machine."""
+"""The precision of bounds; they are rounded outwards, so that every machine gives the same."""
 
 
 def lowest(good: int, count: int, confidence: float) -> float:
-    """The largest p with which so many good trials, or more, are no likelier than 1 - confidence.
+    """The largest p with a probability of at most 1 - confidence for `good` or more successes.
 
     Rounded down.
     """
@@ -17,7 +17,7 @@ def lowest(good: int, count: int, confidence: float) -> float:
 
 
 def highest(good: int, count: int, confidence: float) -> float:
-    """The smallest p with which so many good trials, or fewer, are no likelier than 1 - confidence.
+    """The smallest p with a probability of at most 1 - confidence for `good` or fewer successes.
 
     Rounded up.
     """
@@ -25,7 +25,7 @@ def highest(good: int, count: int, confidence: float) -> float:
 
 
 def _least(good: int, count: int, chance: float) -> int:
-    """The most grains of p with which `good` trials or more have at most this chance."""
+    """The largest p, in grains, at which `good` or more successes have at most this probability."""
     if not good:
         return 0
     ways = log(comb(count, good))
@@ -38,13 +38,13 @@ def _least(good: int, count: int, chance: float) -> int:
 
 
 def _at_least(good: int, count: int, p: float, ways: float) -> float:
-    """The chance of `good` trials or more, by the sum on that side of it that is the smaller one.
+    """The probability of `good` or more successes, as a sum over the smaller side.
 
     Args:
-        good: at least 1.
-        count: of all trials.
-        p: of each trial, between 0 and 1.
-        ways: the logarithm of the number of ways to choose the good ones.
+        good: the number of successes, at least 1.
+        count: the number of trials.
+        p: the probability of success of each trial, between 0 and 1.
+        ways: the logarithm of the number of ways to choose the successes.
     """
     odds = p / (1 - p)
     term = exp(ways + good * log(p) + (count - good) * log1p(-p))

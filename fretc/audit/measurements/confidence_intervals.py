@@ -1,4 +1,4 @@
-"""From the trials of many runs to what is known of a probability.
+"""Confidence bounds of a probability from the trials of many runs.
 
 The unit of chance is the run: triggers of one run may depend on each other in any way. What is
 bounded is the share of answered triggers that is to be expected of runs with these numbers of
@@ -36,21 +36,22 @@ from fretish.expressions import ComparisonOperator
 
 SUPPORTED, REFUTED, INCONCLUSIVE = "supported", "refuted", "inconclusive"
 ANSWERS = (SUPPORTED, REFUTED, INCONCLUSIVE)
-"""What runs say of a probability."""
+"""The answers of runs about a probability."""
 CONFIDENCE = 0.95
 _GRAIN = 10**9
-"""Bounds are rounded outwards to this part of 1: the same on every machine."""
+"""The precision of bounds; they are rounded outwards, so that every machine gives the same."""
 _BETS = np.array([1, 7 / 8, 3 / 4, *(2.0**-k for k in range(1, 17))])
-"""Parts of what is at hand. All of it is best where no trigger failed, as with Clopper-Pearson's
-bound of so many runs; small parts are best where runs differ little and there are many."""
+"""Fractions of the capital that a bet stakes. The whole is best if no trigger failed, as with
+Clopper-Pearson's bound for so many runs; small fractions are best for many runs that differ
+little."""
 _STAKES = np.array([1 / 2, 1 / 8, 1 / 8, *(2.0 ** -min(k + 2, 17) for k in range(1, 17))])
-"""What each begins with: 1 in all."""
+"""The initial capital of each bet; their sum is 1."""
 _SLACK = 1e-9
-"""Of a logarithm: more than what rounding adds to it."""
+"""The tolerance of a logarithm, larger than its rounding error."""
 
 
 class Bounds(Record, frozen=True):
-    """With the stated confidence it is not below `low`; with the same, not above `high`."""
+    """One-sided bounds of a probability: each of the two holds with the stated confidence."""
 
     low: Share
     high: Share
@@ -61,21 +62,21 @@ NOTHING_KNOWN = Bounds(0.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """What trials say of the share that is answered."""
+    """The estimated share of answered triggers."""
 
     trials: Trials
-    """Of all runs together."""
+    """The trials of all runs together."""
     runs: int
-    """Those with a trigger."""
+    """The number of runs with a trigger."""
     confidence: float
     bounds: Bounds
-    """By whole runs; they say nothing where there are fewer than two."""
+    """Bounds over whole runs; from fewer than two runs they are 0 and 1."""
     counted: tuple[Trials, ...] = ()
-    """Those of each run with a trigger."""
+    """The trials of each run with a trigger."""
 
     @property
     def share(self) -> float | None:
-        """Of those that are decided; None where there are none."""
+        """The share of answered triggers among the decided ones; None: none is decided."""
         decided = self.trials.answered + self.trials.failed
         return self.trials.answered / decided if decided else None
 
@@ -104,7 +105,7 @@ def estimated(runs: Iterable[Trials], confidence: float = CONFIDENCE) -> Estimat
 
 
 def bounds(runs: Sequence[Trials], confidence: float) -> Bounds:
-    """Between which the share of answered triggers lies, each bound with the confidence.
+    """The bounds of the share of answered triggers, each with the confidence.
 
     One run does not show how runs differ, and bounds nothing.
 
@@ -120,9 +121,10 @@ def bounds(runs: Sequence[Trials], confidence: float) -> Bounds:
 
 
 Tally = Sequence[tuple[int, int]]
-"""Of each run, the triggers that came to something, and all of its triggers."""
+"""For each run, the number of its decided triggers and of all its triggers."""
 Table = NDArray[np.float64]
-"""Shape (3, n): both, as parts of the most triggers of a run; and how many runs are alike."""
+"""Shape (3, n): both numbers, as fractions of the most triggers of a run, and the number of equal
+runs."""
 
 
 def _table(runs: Tally) -> Table:
@@ -133,7 +135,7 @@ def _table(runs: Tally) -> Table:
 
 
 def _least(runs: Tally, confidence: float) -> float:
-    """The largest share that no fair bet leaves room for, rounded down."""
+    """The largest share that the bets refute, rounded down."""
     table, below, above = _table(runs), 0, _GRAIN
     while above - below > 1:
         middle = (below + above) // 2
@@ -143,14 +145,14 @@ def _least(runs: Tally, confidence: float) -> float:
 
 
 def _worths(table: Table, share: float) -> NDArray[np.float64]:
-    """The logarithm of what each bet against the share has become."""
+    """The logarithm of the capital of each bet against the share."""
     good, count, times = table
-    with np.errstate(divide="ignore"):  # who bets everything may lose everything
+    with np.errstate(divide="ignore"):  # a bet of the whole capital may lose all of it
         return np.asarray(np.log1p(np.outer(_BETS, good / share - count)) @ times)
 
 
 def _reaches(worths: NDArray[np.float64], confidence: float) -> bool:
-    """Whether all bets together are worth more than a fair game gives but rarely."""
+    """Whether the mean capital of all bets reaches the level of rejection."""
     each = worths + np.log(_STAKES)
     most = float(each.max())
     return most + log(float(np.exp(each - most).sum())) >= _SLACK - log(1 - confidence)
@@ -160,11 +162,11 @@ def _reaches(worths: NDArray[np.float64], confidence: float) -> bool:
 
 
 def answer(estimate: Estimate, op: ComparisonOperator, bound: Fraction) -> str:
-    """What the estimate says of `op bound`: supported, refuted or inconclusive.
+    """The answer of the estimate about `op bound`: supported, refuted or inconclusive.
 
-    That it is some number can only be refuted, that it is not can only be supported; both need
-    two bounds at once, so each has half of the doubt: `estimate` is then to be one of
-    `both_sides`. A single failure shows that it is not 1, and a single answer that it is not 0.
+    Equality can only be refuted and inequality only be supported; both need two bounds at once, so
+    each bound has half of the error: `estimate` is then to be one of `both_sides`. A single failure
+    shows that the probability is not 1, and a single answer that it is not 0.
     """
     if not estimate.trials.count:
         return INCONCLUSIVE
@@ -183,15 +185,15 @@ def answer(estimate: Estimate, op: ComparisonOperator, bound: Fraction) -> str:
 
 
 def both_sides(op: ComparisonOperator, confidence: float) -> float:
-    """The confidence that each bound needs, so that an answer about `op` has the stated one."""
+    """The confidence that each bound needs for an answer about `op` with the stated confidence."""
     return (1 + confidence) / 2 if op in ("=", "!=") else confidence
 
 
 def needed(estimate: Estimate, op: ComparisonOperator, bound: Fraction) -> int | None:
-    """How many further runs, all as they should be, it takes to support `op bound`.
+    """The number of further runs without a failure that would support `op bound`.
 
     All triggers of each are answered for `>=` and `>`, none for `<=` and `<`, and each has as many
-    as the run with most. None: no number is enough, or none is needed.
+    as the run with the most. None: no number is enough, or none is needed.
     """
     down = op in ("<", "<=")
     goal = ceil((1 - bound if down else bound) * _GRAIN) / _GRAIN
@@ -218,7 +220,7 @@ def needed(estimate: Estimate, op: ComparisonOperator, bound: Fraction) -> int |
 
 
 def fewest(op: ComparisonOperator, bound: Fraction, confidence: float) -> int:
-    """With fewer runs `op bound` is never supported, whatever their triggers come to."""
+    """The fewest runs that can support `op bound`, whatever their triggers show."""
     return needed(estimated((), both_sides(op, confidence)), op, bound) or 2
 
 

@@ -25,12 +25,12 @@ from monitors.kernel import Column
 
 
 @dataclass(frozen=True, slots=True)
-class Chance:
-    """With which probability each demand is to be met, and what that demand is."""
+class RequiredProbability:
+    """The required probability, and the demand that it is about."""
 
     op: ComparisonOperator
     bound: str
-    """As it is written: `0.99`."""
+    """The probability as it is written: `0.99`."""
     obligation: Obligation
 
     @property
@@ -40,33 +40,33 @@ class Chance:
 
 
 @with_recursion_limit
-def chance(requirement: FormalizedRequirement) -> Chance | None:
-    """None where the sentence gives no probability."""
-    odds = requirement.sentence.probability
-    if odds is None:
+def chance(requirement: FormalizedRequirement) -> RequiredProbability | None:
+    """The required probability; None: the sentence has none."""
+    probability = requirement.sentence.probability
+    if probability is None:
         return None
-    return Chance(
-        odds.op,
-        odds.digits,
+    return RequiredProbability(
+        probability.op,
+        probability.digits,
         obligation(requirement.sentence, requirement.ticks or 0, predicates.Past()),
     )
 
 
 @with_recursion_limit
 def trials(obligation: Obligation, columns: Mapping[str, Column], ticks: int) -> Trials:
-    """What each trigger of one run came to.
+    """The outcome of each trigger of one run.
 
-    What follows the log is unknown, for more ticks than any deadline lies ahead.
+    Propositions after the end of the log are unknown, for more ticks than any deadline lies ahead.
 
     Args:
-        obligation: the demand of each trigger.
+        obligation: the formula that each trigger demands.
         columns: one for each proposition of the obligation.
         ticks: the length of the run.
     """
     if not ticks:
         return Trials(0, 0, 0)
     triggers = evaluate_unknown(scope_formulas(obligation).trigger, columns, ticks)
-    # A deadline that no trigger of the run can reach is as far as any other one.
+    # All deadlines after the end of the run are equivalent.
     demand = replace(obligation.demand, ticks=min(obligation.demand.ticks, ticks))
     met = _met(demand, end_marker(obligation.scope, obligation.mode))
     longer = ticks + demand.ticks + _BEYOND
@@ -86,11 +86,12 @@ def trials(obligation: Obligation, columns: Mapping[str, Column], ticks: int) ->
 
 
 def _met(demand: Demand, end: Formula) -> Formula:
-    """The formula at a trigger; where the end of its interval is unknown, it still comes."""
+    """The formula at a trigger; an interval whose end is unknown still counts as open."""
     if Trait.LAST in TRAITS[demand.kind] and demand.response == FALSE:
         return FALSE
     return demanded_at(demand, end)
 
 
 _BEYOND = 3
-"""Ticks after the latest deadline: the last tick of all must not lie before any."""
+"""The number of ticks after the latest deadline, so that the last tick of all is not before any
+deadline."""

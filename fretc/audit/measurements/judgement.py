@@ -1,4 +1,4 @@
-"""The verdict on one trace: what its monitor shows, and what the log takes back of it."""
+"""The verdict on one trace, from its monitor and from the condition of the log."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from monitors.kernel import Column, Monitor, Outcome
 from monitors.kernel.verdicts import Verdict
 
 Engine = Callable[[Monitor, Mapping[str, Column], int, Verdict], tuple[Outcome, ...]]
-"""Monitor, columns, ticks and the verdict on what is open at the end → the outcome."""
+"""Monitor, columns, ticks and the verdict on open demands at the end → the outcome."""
 
 WITHOUT_VIOLATION = (kernel.SATISFIED, kernel.VACUOUS)
 
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """The outcome of a monitor over one trace, and what the end of the log changes."""
+    """The outcome of a monitor over one trace, and the effect of the end of the log."""
 
     outcome: Outcome
     longer: str | None
-    """The verdict where what came after the last whole tick is one more tick; None where that is
-    nothing, or changes nothing."""
+    """The verdict if the time after the last whole tick were one more tick; None: there is no such
+    time, or it changes nothing."""
     intact: bool
-    """Whether the log is whole."""
+    """Whether the log is undamaged."""
 
     @property
     def verdict(self) -> str:
-        """A damaged log can show a violation, and nothing else; a cut tick leaves things open."""
+        """The verdict: a damaged log shows violations only, and a cut tick leaves demands open."""
         if self.outcome.verdict not in WITHOUT_VIOLATION:
             return self.outcome.verdict
         if not self.intact:
@@ -38,11 +38,11 @@ class Judgement:
 
     @property
     def certain(self) -> bool:
-        """Whether the verdict is the same whatever the unknown values of the columns were."""
+        """Whether the verdict does not depend on the unknown values of the columns."""
         return kernel.NO_DATA not in (self.outcome.verdict, self.longer)
 
 
-def judged(
+def judge(
     monitor: Monitor,
     columns: Mapping[str, Column],
     cut: Mapping[str, bool | None] | None,
@@ -56,18 +56,18 @@ def judged(
 
     Args:
         monitor: of one requirement.
-        columns: one for each of its propositions.
-        cut: what a tick would see that the end of the log cuts short; None where there is none.
+        columns: one for each proposition of the monitor.
+        cut: the values of the tick that the end of the log cuts short; None: there is none.
         ticks: the length of the trace.
-        intact: whether the log is whole.
-        end: what a demand is that is open at the end.
-        engine: how the monitor is run.
+        intact: whether the log is undamaged.
+        end: the verdict on demands that are open at the end.
+        engine: the evaluator of the monitor.
     """
-    (judgement,) = each_judged(monitor, columns, cut, ticks, intact=intact, end=end, engine=engine)
+    (judgement,) = judge_each(monitor, columns, cut, ticks, intact=intact, end=end, engine=engine)
     return judgement
 
 
-def each_judged(
+def judge_each(
     monitor: Monitor,
     columns: Mapping[str, Column],
     cut: Mapping[str, bool | None] | None,
@@ -77,7 +77,7 @@ def each_judged(
     end: Verdict,
     engine: Engine = kernel.evaluate,
 ) -> tuple[Judgement, ...]:
-    """The same by each requirement of a monitor of several, in their order."""
+    """The judgements of each requirement of a monitor of several, in their order."""
     outcomes = engine(monitor, columns, ticks, end)
     matters = [each.verdict in WITHOUT_VIOLATION and intact for each in outcomes]
     longer: Sequence[str | None] = [None] * len(outcomes)
@@ -98,8 +98,8 @@ def _longer(
 ) -> list[str] | None:
     """The verdicts with the cut tick as one more.
 
-    What that shows is no verdict: the tick is cut short, and no duration counts it. Nor does a
-    tick that is as the last one, unless something is unknown: then it may be another one.
+    Such a verdict is not reported: the tick is cut short, and no duration counts it. A cut tick
+    that equals the last one adds nothing, unless something is unknown: then its values may differ.
     """
     cut = {name: cut[name] for name in columns}
     if not ticks:

@@ -1,4 +1,4 @@
-"""How near a run came to the thresholds of a requirement.
+"""The distances of a run to the thresholds of a requirement.
 
 Times are nanoseconds, numbers are in base units.
 """
@@ -21,25 +21,27 @@ CROSSED = "crossed"
 
 @dataclass(frozen=True, slots=True)
 class Margin:
-    """One threshold over the audited time of one run; what is unknown does not count.
+    """The distance to one threshold over the audited time of one run, without unknown samples.
 
-    `least` and `greatest` are None where nothing is known, and may be infinite: nothing in range,
-    or too near to measure.
+    `least` and `greatest` are None if nothing is known, and may be infinite: nothing in range, or
+    too near to measure.
     """
 
     threshold: Threshold
     comparison: bool | str | None
-    """The truth value that the comparison kept, or `CROSSED`; None: never known."""
+    """The truth value of the comparison over the whole run, or `CROSSED`; None: it is always
+    unknown."""
     least: float | None
     greatest: float | None
     distance: float | None
-    """The least distance to the bound, where the comparison kept one truth value."""
+    """The least distance to the bound, if the comparison kept one truth value."""
     nearest_ns: int | None
-    """When it came that near first; of one that was crossed, when it changed first."""
+    """The first time of the least distance; if the comparison was crossed, the time of its first
+    change."""
 
     @property
     def share(self) -> float | None:
-        """The margin as a part of the bound, so that those of different units compare."""
+        """The margin as a fraction of the bound, to compare margins of different units."""
         if self.distance is None:
             return None
         assert self.least is not None
@@ -54,14 +56,14 @@ def margins(
 ) -> tuple[Margin, ...]:
     """The margin of each threshold of the proposition.
 
-    All samples from the start of the first tick to the last tick count, also those of which `agg`
-    sees one in a tick; too old ones, and those of a gap, do not.
+    All samples from the start of the first tick to the last tick count, also those that `agg`
+    combines within a tick; samples that are too old or within a gap do not count.
 
     Args:
         proposition: over declared signals.
         declarations: signals and clock.
-        recording: with the samples of all signals that the proposition names.
-        ticks: when the whole ticks are.
+        recording: the recording with the samples of all signals that the proposition reads.
+        ticks: the times of the whole ticks.
     """
     bounds = thresholds(proposition, declarations.signals)
     if not bounds:
@@ -74,13 +76,13 @@ def margins(
 
 
 def worst(margins: Iterable[Margin]) -> Margin | None:
-    """The one that is least as a part of its bound; None where every threshold was crossed."""
+    """The margin that is smallest as a fraction of its bound; None: every threshold was crossed."""
     uncrossed = [margin for margin in margins if margin.share is not None]
     return min(uncrossed, key=lambda margin: margin.share or 0.0, default=None)
 
 
 def _audited(times: Times, ticks: Times, begin: int | None) -> slice:
-    """The events that the ticks see: those of the audited time, and the one in force before."""
+    """The events that the ticks use: those of the audited time, and the one in force before it."""
     if not len(ticks):
         return slice(0, 0)
     start = int(ticks[0]) if begin is None else begin
@@ -105,7 +107,7 @@ def _margin(threshold: Threshold, history: History, audited: slice) -> Margin:
         return Margin(threshold, CROSSED, least, greatest, None, changed)
     distances = Measure(np.abs(measured - bound), scale).base
     at = int(np.argmin(distances))
-    if not np.isfinite(distances[at]):  # it never came out of infinity
+    if not np.isfinite(distances[at]):  # all its values are infinite
         return Margin(threshold, bool(truths[0]), least, greatest, None, None)
     nearest, distance = int(times[at]), float(distances[at])
     return Margin(threshold, bool(truths[0]), least, greatest, distance, nearest)

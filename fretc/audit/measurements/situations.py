@@ -1,4 +1,4 @@
-"""Which situations of a requirement a run came by, over the columns that its monitor judges.
+"""The situations of a requirement that a run shows, over the columns that its monitor judges.
 
 A situation is a formula of the past (`compiler.situations`): a run has come by it at a tick where
 the formula is true. It is certain by a tick where every completion of the unknown values has come
@@ -21,35 +21,36 @@ from monitors.kernel import Column
 
 
 @dataclass(frozen=True, slots=True)
-class Encounter:
-    """The first ticks by which a situation has certainly been there, and may have been."""
+class SituationTicks:
+    """The first ticks by which a situation has certainly occurred, and may have occurred."""
 
     key: str
-    """Of the situation."""
+    """The key of the situation."""
     seen: int | None
     perhaps: int | None
-    """None, too, where it has been seen: nothing is left open then."""
+    """None also if the situation has certainly occurred."""
 
 
 Near = Callable[[ThresholdPosition], Column]
-"""A place of a number → at which ticks the number is there."""
+"""A position of a number relative to a bound → the ticks at which the number is there."""
 
 
 def nowhere_known(ticks: int) -> Near:
-    """Where no numbers are at hand: everywhere unknown."""
+    """The positions of numbers when no numbers are available: always unknown."""
     return lambda _: Column(0, (1 << ticks) - 1)
 
 
-def encounters(
+def situation_ticks(
     situations: Sequence[Situation], columns: Mapping[str, Column], ticks: int, near: Near
-) -> Iterator[Encounter]:
-    """What one run shows of each situation, in their order.
+) -> Iterator[SituationTicks]:
+    """The situations in one run, in their order.
 
     Args:
-        situations: of one requirement.
-        columns: of its propositions; one without a column is unknown throughout.
+        situations: the situations of one requirement.
+        columns: the values of its propositions; one without a column is unknown throughout.
         ticks: the length of the run.
-        near: is asked only where the rest of a situation may have been there.
+        near: the positions of numbers; it is called only if the rest of a situation may have
+            occurred.
     """
     unknown = Column(0, (1 << ticks) - 1)
     formulas = [each.formula for each in situations]
@@ -70,25 +71,25 @@ def encounters(
             formula = f.And((formula, f.Atom(_THERE)))
             true, may = true & there.true, may & (there.true | there.unknown)
         seen, perhaps = _first(true), _first(may)
-        if seen != perhaps:  # something is unknown, and the evaluation knows too little of it
+        if seen != perhaps:  # unknown values leave the bounds apart
             seen, perhaps = _exact(formula, known, ticks, counted, (seen, perhaps))
-        yield Encounter(situation.key, seen, perhaps if seen is None else None)
+        yield SituationTicks(situation.key, seen, perhaps if seen is None else None)
 
 
 _THERE = ""
-"""The name of a place: none of a proposition is empty."""
+"""The name of a position; no proposition has an empty name."""
 
 _Ticks = tuple[int | None, int | None]
-"""By which tick it was certainly there, and may have been."""
+"""The ticks by which a situation has certainly occurred, and may have occurred."""
 
 
 def _exact(
     formula: f.Formula, columns: Mapping[str, Column], ticks: int, counted: int, bounds: _Ticks
 ) -> _Ticks:
-    """The ticks of a situation, where the evaluation gives only bounds of them.
+    """The ticks of a situation, if the evaluation gives only bounds of them.
 
-    Two runs often settle it: all that is unknown is false, or true. Where the search would take too
-    long, the bounds stay: what they call seen is.
+    Two runs often settle it: all unknown values are false, or all are true. If the search would
+    take too long, the bounds stay, and an occurrence in them is certain.
     """
     seen, perhaps = bounds
     names = [*f.atoms(formula)]
@@ -100,10 +101,10 @@ def _exact(
         return bounds
     if seen is not None and seen == max(certain):
         return bounds
-    found = first_ticks(formula, columns, ticks, counted)
-    return bounds if found is None else (found.by_all, found.by_some)
+    bounds_of_ticks = first_ticks(formula, columns, ticks, counted)
+    return bounds if bounds_of_ticks is None else (bounds_of_ticks.by_all, bounds_of_ticks.by_some)
 
 
 def _first(column: int) -> int | None:
-    """The first tick at which it is true."""
+    """The first tick at which the column is true."""
     return (column & -column).bit_length() - 1 if column else None

@@ -1,4 +1,4 @@
-"""The state of one requirement over a run: when it changes, and to what."""
+"""The state of one requirement over a run: the ticks at which it changes."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ from collections.abc import Iterable, Iterator
 from monitors.kernel import Outcome
 
 IDLE, OPEN, VIOLATED, UNKNOWN = "idle", "open", "violated", "unknown"
-"""Nothing is demanded that could fail now; an answer is awaited; a demand is broken; it cannot be
-known whether one is."""
+"""No open demand; a response is awaited; a demand is broken; it is unknown whether one is."""
 _VIOLATED, _UNKNOWN, _OPEN = 1, 2, 4
 _STATES = (IDLE, VIOLATED, UNKNOWN, VIOLATED, OPEN, VIOLATED, UNKNOWN, VIOLATED)
-"""What a sum of these is: of several states at one tick the first one counts."""
+"""The state for a sum of these flags: if there are several at one tick, the first one counts."""
 
 
 def states(outcome: Outcome) -> tuple[tuple[int, str], ...]:
@@ -51,7 +50,7 @@ def _waits(outcome: Outcome) -> Iterator[tuple[int, int]]:
 
 
 def _union(runs: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """Runs in the order of their beginnings, as runs of which none overlaps another one."""
+    """The union of intervals, in order and without overlaps."""
     first, last = 0, -1
     for begin, end in runs:
         if begin <= last:

@@ -1,4 +1,4 @@
-"""How often a proposition was true, false and unknown, and how often it changed."""
+"""The number of ticks at which a proposition was true, false and unknown, and of its changes."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from monitors.kernel import Column
 
 
 class Tally(Record, frozen=True):
-    """The ticks of one proposition; what is unknown in between changes nothing."""
+    """The ticks of one proposition; unknown ticks between two values are no change."""
 
-    true: Annotated[Count, about("at how many ticks")]
+    true: Annotated[Count, about("the number of ticks")]
     false: Count
     unknown: Count
-    changes: Annotated[Count, about("how often a known value followed another one")]
+    changes: Annotated[Count, about("the number of changes from one known value to another")]
 
     def __add__(self, other: Tally) -> Tally:
-        """Over two runs: from one to the next nothing changes."""
+        """The sum over two runs; from one run to the next nothing changes."""
         return Tally(
             self.true + other.true,
             self.false + other.false,
@@ -31,7 +31,7 @@ NOTHING = Tally(0, 0, 0, 0)
 
 
 def tally(column: Column, ticks: int) -> Tally:
-    """Count the values of a column of so many ticks."""
+    """The tally of a column with the given number of ticks."""
     true, unknown = column.true.bit_count(), column.unknown.bit_count()
     return Tally(true, ticks - true - unknown, unknown, _changes(column, ticks))
 

@@ -10,28 +10,28 @@ from monitors.kernel import Column
 
 @dataclass(frozen=True, slots=True)
 class Trials:
-    """How many triggers of one run were answered, failed, and are open."""
+    """The numbers of triggers of one run that were answered, failed, and are open."""
 
     answered: int
-    """Their demand was met. One that only forbids (`always`, `until`, `before`) and is not broken
-    when the log ends is met, as it is in the verdict of the run."""
+    """The demand of these triggers was met. A demand that only forbids (`always`, `until`,
+    `before`) and is not broken when the log ends is met, as in the verdict of the run."""
     failed: int
-    """Their demand was broken."""
+    """The demand of these triggers was broken."""
     open: int
-    """The log does not tell: it ended before, or holds unknown values where it matters; also
-    triggers of which it is unknown whether they are any."""
+    """The outcome of these triggers is unknown: the log ended before, or values are unknown; also
+    ticks of which it is unknown whether they are triggers."""
     met_by_end: int = 0
-    """Of the answered ones, those that are met because the log ended."""
+    """The answered triggers whose demand was met because the log ended."""
 
     @property
     def count(self) -> int:
-        """All of them."""
+        """The number of all triggers."""
         return self.answered + self.failed + self.open
 
     def before(self, longer: Trials) -> Trials:
-        """The trials, where those of the same run with its last, cut tick are `longer`.
+        """The trials without effects of the cut tick, given the trials with it as `longer`.
 
-        What that tick shows is no verdict; but what it would break is not met either.
+        The cut tick gives no verdict, but a demand that it would break does not count as met.
         """
         if longer.failed <= self.failed:
             return self
@@ -51,4 +51,4 @@ class Trials:
 NO_TRIALS = Trials(0, 0, 0)
 
 Count = Callable[[Mapping[str, Column], int], Trials]
-"""The truth of each proposition, and the number of ticks → the trials."""
+"""The values of each proposition, and the number of ticks → the trials."""

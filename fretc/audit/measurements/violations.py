@@ -1,4 +1,4 @@
-"""A violation with what surrounds it: trigger, deadline, missing response, and the signals.
+"""Violations with their context: trigger, deadline, missing response, and samples of the signals.
 
 Times are nanoseconds, numbers are in base units.
 """
@@ -13,22 +13,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compiler.files.records import Count, Record, Seconds, Whole
+from fretc.logs.signals.enum_values import enum_value
 from fretc.logs.signals.samples import Recording, Samples, Values, scaled
-from fretc.logs.signals.words import word_at
 from monitors.kernel import Outcome
 
 SURROUNDINGS = 10**9
-"""Nanoseconds before the trigger and after the deadline that evidence has with a violation."""
+"""Nanoseconds before the trigger and after the deadline for which evidence keeps samples."""
 MOST_SAMPLES = 50
-"""Of one signal around one violation."""
+"""The most samples of one signal around one violation."""
 EVEN_SAMPLES = MOST_SAMPLES - 3
-"""How many of a larger number are kept, at even distances."""
+"""The number of samples that are kept at even distances, if there are more than `MOST_SAMPLES`."""
 MOST_WINDOWS = 100
-"""Violations of one run and requirement that evidence has with their samples."""
+"""The most violations of one run and requirement with their samples."""
 
 
 class Moment(Record, frozen=True):
-    """A tick with its time; `ns` is the log's clock, `seconds` counts from the first tick."""
+    """A tick with its time: `ns` on the clock of the log, `seconds` from the first tick."""
 
     tick: Count
     ns: Whole
@@ -37,12 +37,12 @@ class Moment(Record, frozen=True):
 
 @dataclass(frozen=True, slots=True)
 class Demand:
-    """What a requirement demands at each trigger, in words, and by when."""
+    """The demand of a requirement at each trigger, in words, and its deadline."""
 
     response: str = ""
-    """What must be true, as the sentence writes it."""
+    """The text of the expression that must be true, as the sentence writes it."""
     horizon: int | None = None
-    """Ticks from a trigger to the latest response; None: it has no deadline."""
+    """Ticks from a trigger to the latest response; None: there is no deadline."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,26 +52,26 @@ class Window:
     start_ns: int
     end_ns: int
     samples: Mapping[str, Samples]
-    """Of each signal at most `MOST_SAMPLES`, with the least and the greatest of them."""
+    """At most `MOST_SAMPLES` of each signal, with the least and the greatest of them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """A stretch of ticks at which a demand was broken, with the samples of its signals."""
+    """An interval of ticks at which a demand was broken, with the samples of the signals."""
 
     first: Moment
     last: Moment
     trigger: Moment | None
-    """The oldest trigger whose demand was broken; None where it needs none."""
+    """The oldest trigger whose demand was broken; None: the demand has no trigger."""
     deadline: Moment | None
-    """By when the response had to come; None where nothing says so, or after the last tick."""
+    """The last tick for the response; None: there is no deadline, or it is after the last tick."""
     missing: str
-    """The response that did not come."""
+    """The response that is missing."""
     values: Mapping[str, float | str | None]
-    """Each signal of the sentence at the first tick, a number in base units or a word; None:
-    unknown."""
+    """Each signal of the sentence at the first tick, a number in base units or an enumeration
+    value; None: unknown."""
     window: Window | None
-    """None for violations after the first `MOST_WINDOWS`."""
+    """The samples around the violation; None after the first `MOST_WINDOWS`."""
 
 
 def violations(
@@ -82,15 +82,15 @@ def violations(
     recording: Recording,
     signals: Sequence[str],
 ) -> tuple[Violation, ...]:
-    """Each stretch of ticks at which the requirement was violated, in their order.
+    """Each interval of ticks at which the requirement was violated, in their order.
 
     Args:
-        outcome: of the monitor.
-        demand: of the requirement.
+        outcome: the outcome of the monitor.
+        demand: the demand of the requirement.
         horizon: ticks after which a trigger demands nothing any more; None: there is no such end.
         at: the moment of a tick.
-        recording: with the samples of the signals.
-        signals: those that the sentence reads.
+        recording: the recording with the samples of the signals.
+        signals: the signals that the sentence reads.
     """
     answers, triggers = dict(outcome.answers), tuple(outcome.triggers)
     stretches = []
@@ -118,8 +118,8 @@ def _cause(
 ) -> int | None:
     """The oldest trigger whose demand can be the one that is broken at tick `first`.
 
-    That is one within the horizon which had no answer up to then; where there is no horizon, and
-    the demand is not open at the end either, the last trigger.
+    It is one within the horizon without an answer up to then; without a horizon, and if the demand
+    is not open at the end either, the last trigger.
     """
     upto = bisect_right(triggers, first)
     if horizon is not None:
@@ -136,16 +136,16 @@ def _cause(
 
 
 def value_at(recording: Recording, signal: str, ns: int) -> float | str | None:
-    """The last sample of a signal at or before a time; None where there is none or it is unknown.
+    """The last sample of a signal at or before a time; None: it is unknown, or there is none.
 
-    Infinite values (nothing in range) are None too: JSON has no word for them.
+    Infinite values (nothing in range) are None too: JSON has no infinite numbers.
     """
     samples = recording.samples.get(signal)
     if samples is None:
         return None
     i = int(np.searchsorted(samples.times, ns, "right")) - 1
     if samples.words:
-        return word_at(float(samples.values[i]), samples.words) if i >= 0 else None
+        return enum_value(float(samples.values[i]), samples.words) if i >= 0 else None
     value = scaled(float(samples.values[i]), samples.scale) if i >= 0 else float("nan")
     return value if np.isfinite(value) else None
 
@@ -164,9 +164,9 @@ def _window(
 
 
 def _around(samples: Samples, start: int, end: int, broken: int) -> Samples:
-    """The samples of a stretch of time, and the one in force at its start; not too many.
+    """The samples of an interval of time, and the one in force at its start, thinned.
 
-    The one that is the last at the time `broken` is always among them: readers need its age.
+    The sample in force at the time `broken` is always among them: readers need its age.
     """
     first = max(0, int(np.searchsorted(samples.times, start, "right")) - 1)
     upto = int(np.searchsorted(samples.times, end, "right"))
@@ -176,11 +176,11 @@ def _around(samples: Samples, start: int, end: int, broken: int) -> Samples:
 
 
 def _thinned(values: Values, always: int) -> NDArray[np.intp]:
-    """The places of at most `MOST_SAMPLES` values: evenly, with the least and the greatest.
+    """The indices of at most `MOST_SAMPLES` values: evenly, with the least and the greatest.
 
     Args:
-        values: of one signal.
-        always: the place of one that is kept.
+        values: the values of one signal.
+        always: the index of a value that is kept.
     """
     count = len(values)
     if count <= MOST_SAMPLES:

@@ -1,4 +1,4 @@
-"""The results of an audit, as a log of its own that Foxglove plays beside the audited one.
+"""The results of an audit as an annotation log, which Foxglove plays beside the audited log.
 
 `/fretc/<id>` tells the state of a requirement whenever it changes, `/fretc/verdicts` says it in
 words, with each violation, and the verdict at the end; nothing else is a message. Times are
@@ -36,7 +36,7 @@ from monitors import kernel
 VERDICTS = "/fretc/verdicts"
 _INFO, _WARNING, _ERROR = 2, 3, 4
 _LEVELS: Mapping[str, int] = {kernel.SATISFIED: _INFO, kernel.VIOLATED: _ERROR}
-"""Of the verdicts; any other one is a warning."""
+"""Levels of verdicts; any other verdict is a warning."""
 _SECOND = 10**9
 _LOGS = (".mcap", ".bag", ".db3")
 
@@ -62,7 +62,7 @@ _STATE = _schema("fretc.State", requirement=_TEXT, state=_TEXT)
 
 @dataclass(frozen=True, slots=True)
 class _Event:
-    """What happened at one time, for one requirement."""
+    """A state change or text at one time, for one requirement."""
 
     ns: int
     topic: str
@@ -72,12 +72,12 @@ class _Event:
 def sidecars(
     results: Sequence[Result], requirements: Sequence[FormalizedRequirement], folder: Path
 ) -> dict[Path, bytes]:
-    """A file for each run that could be read; the same results give the same bytes.
+    """An annotation file for each run that could be read; equal results give equal bytes.
 
     Args:
-        results: each of a run and a requirement, in declared units.
+        results: one for each run and requirement, in declared units.
         requirements: all requirements of the results.
-        folder: where the files go.
+        folder: the folder of the files.
     """
     runs: dict[str, list[Result]] = {}
     for result in results:
@@ -88,10 +88,10 @@ def sidecars(
 
 
 def sidecar(results: Sequence[Result], requirements: Sequence[FormalizedRequirement]) -> bytes:
-    """The log of one run: what happened, in order of time.
+    """The annotation log of one run, in order of time.
 
     Args:
-        results: of that run, one for each requirement, in declared units.
+        results: the results of the run, one for each requirement, in declared units.
         requirements: all requirements of the results.
     """
     by_id = {requirement.id: requirement for requirement in requirements}
@@ -123,7 +123,7 @@ def state_topic(id: str) -> str:
 
 
 def _events(result: Result, requirements: Mapping[str, FormalizedRequirement]) -> Iterator[_Event]:
-    """The events of one requirement; those of one time stand in the order of cause and effect."""
+    """The events of one requirement; at equal times, causes come before effects."""
     id = result.requirement
     place = requirements[id].entry.wording
 
@@ -137,12 +137,12 @@ def _events(result: Result, requirements: Mapping[str, FormalizedRequirement]) -
         content = {"requirement": id, "state": state.state}
         yield _Event(max(0, state.ns), state_topic(id), content)
         if state.state == OPEN:
-            yield event(state.ns, _INFO, f"{id}: triggered, an answer is awaited")
+            yield event(state.ns, _INFO, f"{id}: triggered, waiting for the response")
         elif state.state == UNKNOWN:
             yield event(state.ns, _WARNING, f"{id}: unknown from here on")
         elif before == OPEN and state.tick in answers:
             waited = duration(answers[state.tick] / _SECOND)
-            yield event(state.ns, _INFO, f"{id}: answered after {waited}")
+            yield event(state.ns, _INFO, f"{id}: response after {waited}")
         elif before == UNKNOWN:
             yield event(state.ns, _INFO, f"{id}: known again")
         before = state.state
@@ -169,7 +169,7 @@ def _longest_waits(result: Result) -> dict[int, int]:
 
 
 def _metadata(results: Sequence[Result]) -> dict[str, str]:
-    """The hashes of what the run was judged by, and the verdicts."""
+    """The hashes of the inputs of the verdicts, and the verdicts."""
     first = results[0]
     entries = {"fretc": __version__, "run": first.run, "clock": first.clock}
     names = ("log", "log_summary", CLOCK, TOPICS)
@@ -183,7 +183,7 @@ def _metadata(results: Sequence[Result]) -> dict[str, str]:
 
 
 def _names(runs: Sequence[str]) -> dict[str, Path]:
-    """A file name for each run; those of the same name keep the folders in which they differ."""
+    """A file name for each run; runs with equal names keep the folders in which they differ."""
     runs_of: dict[str, list[str]] = {}
     for run in runs:
         runs_of.setdefault(_safe(_stem(run)), []).append(run)
@@ -202,7 +202,7 @@ def _names(runs: Sequence[str]) -> dict[str, Path]:
 
 
 def _shared(one: Sequence[str], other: Sequence[str]) -> int:
-    """How many folders they begin with in common."""
+    """The number of leading folders that the paths have in common."""
     pairs = takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False))
     return sum(1 for _ in pairs)
 
@@ -213,7 +213,7 @@ def _stem(run: str) -> str:
 
 
 def _safe(text: str) -> str:
-    """A name for a file or a folder, and never one that leads elsewhere."""
+    """A name for a file or a folder that never leads elsewhere."""
     return re.sub(r"[^\w.-]|^\.+", "_", text)
 
 

@@ -25,18 +25,18 @@ LAYOUT = "foxglove-layout.json"
 _PLAIN = re.compile(r"/?\w+(?:/\w+)*", re.ASCII)
 """A topic that needs no quotes in a message path."""
 _MOST_PLOTTED = 8
-"""Signals in one plot."""
+"""The most signals in one plot."""
 
 
 def layout_file(
     results: Sequence[Result], requirements: Sequence[FormalizedRequirement], folder: Path
 ) -> dict[Path, bytes]:
-    """The file; nothing where no run could be read.
+    """The layout file; empty if no run could be read.
 
     Args:
-        results: each of a run and a requirement.
+        results: one for each run and requirement.
         requirements: all requirements of the results.
-        folder: where the annotations go.
+        folder: the folder of the annotations.
     """
     read = [result for result in results if result.start_ns is not None]
     ids = dict.fromkeys(result.requirement for result in read)
@@ -86,7 +86,7 @@ def _split(direction: str, first: Any, second: Any, share: int) -> dict[str, Any
 
 
 def _states(requirement: FormalizedRequirement) -> dict[str, Any]:
-    """The line of states of a requirement."""
+    """The row of states of a requirement."""
     title = (
         f"{requirement.entry.title} ({requirement.id})"
         if requirement.entry.title
@@ -97,7 +97,7 @@ def _states(requirement: FormalizedRequirement) -> dict[str, Any]:
 
 
 def _signals(requirement: FormalizedRequirement) -> list[Signal]:
-    """The numbers that the requirement reads: no words, and no arrays."""
+    """The numeric signals that the requirement reads, without arrays."""
     declared = requirement.declarations
     if declared is None:
         return []
@@ -108,11 +108,13 @@ def _signals(requirement: FormalizedRequirement) -> list[Signal]:
         for signal in declared.propositions[name].signals
     )
     signals = (declared.signals[name] for name in names if name in declared.signals)
-    return [each for each in signals if not each.values and not each.path.each][:_MOST_PLOTTED]
+    return [signal for signal in signals if not signal.values and not signal.path.each][
+        :_MOST_PLOTTED
+    ]
 
 
 def _line(signal: Signal) -> dict[str, Any]:
-    """The line of a signal in a plot, in the numbers of the messages."""
+    """The line of a signal in a plot, in the unit of the messages."""
     path = signal.path
     index = "" if path.index is None else f"[{path.index}]"
     value = f"{_topic(path.topic)}.{'.'.join(path.fields)}{index}"
@@ -122,7 +124,7 @@ def _line(signal: Signal) -> dict[str, Any]:
 
 
 def _topic(name: str) -> str:
-    """As a message path writes it."""
+    """The topic, quoted for a message path if necessary."""
     if _PLAIN.fullmatch(name):
         return name
     return '"{}"'.format(name.replace("\\", "\\\\").replace('"', '\\"'))

@@ -1,4 +1,4 @@
-"""Results of an audit in the forms of other tools: JUnit XML, and annotations of GitHub Actions.
+"""Results of an audit for other tools: JUnit XML, and annotations of GitHub Actions.
 
 Sources: the JUnit schema of the Jenkins xUnit plugin, https://github.com/jenkinsci/xunit-plugin;
 GitHub, Workflow commands for GitHub Actions.
@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from xml.etree import ElementTree
 
 from fretc.audit.evidence import verdicts
-from fretc.audit.evidence.briefs import audited_s
 from fretc.audit.evidence.probabilities import AVERAGE, Estimated
+from fretc.audit.evidence.result_summaries import audited_s
 from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import Level
 from fretc.audit.outputs.totals import runs
@@ -34,9 +34,9 @@ def junit(
     """One test suite for each run, one test case for each requirement.
 
     Args:
-        results: each of a run and a requirement, in declared units.
-        estimates: those that are judged over all runs, which is a suite of its own.
-        requirements: whose titles the cases have.
+        results: one for each run and requirement, in declared units.
+        estimates: the answers of all runs, which form a suite of their own.
+        requirements: the requirements, for the titles of the cases.
     """
     root = ElementTree.Element("testsuites", name="fretc audit")
     names = {requirement.id: requirement.name for requirement in requirements}
@@ -52,14 +52,14 @@ def junit(
 
 
 def as_text(root: ElementTree.Element) -> str:
-    """The whole file, indented."""
+    """The text of the whole file, indented."""
     ElementTree.indent(root)
     text = ElementTree.tostring(root, encoding="unicode")
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
 
 
 def counted(kinds: Sequence[str]) -> dict[str, str]:
-    """The attributes of a test suite with cases of these kinds; an empty one: passed."""
+    """The attributes of a test suite with cases of these kinds; an empty kind: passed."""
     names = {"failures": "failure", "errors": "error", "skipped": "skipped"}
     return {"tests": str(len(kinds))} | {n: str(kinds.count(k)) for n, k in names.items()}
 
@@ -67,7 +67,7 @@ def counted(kinds: Sequence[str]) -> dict[str, str]:
 def _suite_of_all(
     root: ElementTree.Element, estimates: Sequence[Estimated], titled: Mapping[str, str]
 ) -> None:
-    counts = counted([verdicts.junit(one.answer) for one in estimates])
+    counts = counted([verdicts.junit(estimate.answer) for estimate in estimates])
     suite = ElementTree.SubElement(root, "testsuite", {"name": "all runs", **counts})
     for one in estimates:
         name = valid(titled.get(one.requirement, one.requirement))
@@ -96,14 +96,14 @@ def _case(suite: ElementTree.Element, run: str, case: Result, titled: Mapping[st
 
 
 def _lines(case: Result) -> Iterator[str]:
-    """Each stretch at which the requirement was violated, with the values of its signals."""
+    """A line for each interval of violation, with the values of its signals."""
     for broken in case.violations:
         stretch = f"{seconds(broken.start_s)} to {seconds(broken.end_s)}"
         yield f"{stretch}: {values(case, broken)}" if broken.values else stretch
 
 
 def valid(text: str) -> str:
-    """The text without what XML cannot hold, or a terminal obeys."""
+    """The text without characters that XML cannot hold or that control a terminal."""
     return _NOT_XML.sub("\ufffd", text)
 
 
@@ -114,12 +114,13 @@ def github(
 ) -> str:
     """A line for each result, at the sentence of its requirement.
 
-    Of a run that only counts (`trials`) it is a notice: what all runs say follows.
+    A run that only contributes to an estimate (`trials`) gives a notice: the answer of all runs
+    follows.
 
     Args:
-        results: each of a run and a requirement, in declared units.
-        requirements: of the results.
-        estimates: those that are judged over all runs.
+        results: one for each run and requirement, in declared units.
+        requirements: the requirements of the results.
+        estimates: the answers of all runs.
     """
     places = {requirement.id: requirement.wording for requirement in requirements}
     names = {requirement.id: requirement.name for requirement in requirements}
@@ -129,10 +130,13 @@ def github(
         title = f"{names[result.requirement]} {result.verdict}"
         message = f"{result.run}: {reason(result)}"
         lines.append(_annotation(level, places[result.requirement], title, message))
-    for one in estimates:
-        level, title = _GITHUB[verdicts.level(one.answer)], f"{names[one.requirement]} {one.answer}"
-        message = f"all runs: {one.reason}; {one.lines[1]}; {AVERAGE}"
-        lines.append(_annotation(level, places[one.requirement], title, message))
+    for estimate in estimates:
+        level, title = (
+            _GITHUB[verdicts.level(estimate.answer)],
+            f"{names[estimate.requirement]} {estimate.answer}",
+        )
+        message = f"all runs: {estimate.reason}; {estimate.lines[1]}; {AVERAGE}"
+        lines.append(_annotation(level, places[estimate.requirement], title, message))
     return "".join(lines)
 
 

@@ -1,4 +1,4 @@
-"""What is in a log, and whether it can be trusted: for a person, and as an object for programs."""
+"""The summary of a log and its integrity, as text and as a JSON object."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from fretish.bindings import amounts
 from fretish.diagnostics.rendering import visible
 
 _MOST = 8
-"""At most so many fields of a topic stand in the text for a person."""
+"""The most fields of a topic in the text."""
 _WIDEST = 60
-"""Characters of a topic's name that the others stand clear of."""
+"""The widest topic name, in characters, that determines the column."""
 
 
 def as_record(overview: Overview) -> dict[str, Any]:
-    """Plain values, in a fixed order of keys."""
+    """Plain values, with the keys in a fixed order."""
     recording = overview.recording
     record = plain(health(recording))
     for name, topic in record["topics"].items():
@@ -41,7 +41,7 @@ def as_record(overview: Overview) -> dict[str, Any]:
 
 
 def text(overview: Overview, *, whole: bool) -> str:
-    """Some lines; with `whole`, every field that a signal can read."""
+    """Lines of text; with `whole`, all fields that a signal can read."""
     lines = [*_head(overview.recording), *_topics(overview, whole=whole)]
     return "".join(f"{visible(line)}\n" for line in lines)
 
@@ -55,7 +55,7 @@ def _head(recording: Recording) -> Iterator[str]:
 
 
 def _moment(ns: int) -> str:
-    """A time of the log; as a date where it can be one."""
+    """A time of the log, as a date if it can be one."""
     seconds = ns // 10**9
     if not 10**8 < seconds < 10**10:  # a simulated clock begins near 0
         return amounts.seconds(ns / 1e9)
@@ -89,9 +89,9 @@ def _oddities(topic: Topic) -> Iterator[str]:
     if topic.out_of_order:
         yield f", {topic.out_of_order} out of order"
     if topic.equal_stamps:
-        yield f", {topic.equal_stamps} with the time of another"
+        yield f", {topic.equal_stamps} with the same time as another"
     if topic.zero_stamps:
-        yield f", {topic.zero_stamps} with a zero for a time"
+        yield f", {topic.zero_stamps} with the time 0"
 
 
 def _fields(overview: Overview, name: str, *, whole: bool) -> Iterator[str]:
@@ -107,7 +107,7 @@ def _fields(overview: Overview, name: str, *, whole: bool) -> Iterator[str]:
 
 
 def _field(path: str, leaf: Leaf) -> str:
-    """A field, and what it holds where that is no plain number."""
+    """A field with its type, unless it is a plain number."""
     if leaf.names:
         few = ", ".join(list(leaf.names)[:_MOST])
         return f".{path} ({few}{', ...' if len(leaf.names) > _MOST else ''})"

@@ -1,7 +1,7 @@
-"""Results of an audit as SARIF 2.1.0, which code scanning services and editors show.
+"""Results of an audit as SARIF 2.1.0, for code scanning services and editors.
 
-A requirement is a rule, and each run that does not show it gives one result, at its sentence. What
-is shown is no finding and gives none.
+A requirement is a rule of SARIF, and each run that does not show it gives one result, at its
+sentence. A run that shows it gives none.
 
 Sources: OASIS, SARIF Version 2.1.0; GitHub, SARIF support for code scanning.
 """
@@ -38,15 +38,15 @@ _SCHEMA = (
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 )
 _ROOT = "%SRCROOT%"
-"""What relative paths start from, as GitHub calls it."""
+"""The base of relative paths, as GitHub names it."""
 _ROOT_MEANING = "the root of the repository, or the folder in which fretc ran outside of one"
 _RESERVED = "%/:?#[]@!$&'()*+,;="
-"""What has a meaning in an address, and what is quoted in it already."""
+"""The reserved characters of an address, and the percent sign."""
 
 
 @dataclass(frozen=True, slots=True)
 class OneRun:
-    """A result with its verdict, and the reasons why that is suspect."""
+    """A result with its verdict, and the reasons why the verdict is suspect."""
 
     result: Result
     verdict: str
@@ -54,12 +54,12 @@ class OneRun:
 
     @staticmethod
     def of(result: Result) -> OneRun:
-        """What an audit has just found."""
+        """The result of the present audit, which is not suspect."""
         return OneRun(result, result.verdict)
 
     @property
     def level(self) -> Level:
-        """How bad it is; a run that alone decides nothing counts with all others, in `AllRuns`."""
+        """The level; a run that alone decides nothing counts with all others, in `AllRuns`."""
         if self.result.trials is not None and self.result.verdict != kernel.NO_DATA:
             return Level.NONE
         return verdicts.level(self.verdict, suspect=bool(self.suspicions))
@@ -67,7 +67,7 @@ class OneRun:
 
 @dataclass(frozen=True, slots=True)
 class AllRuns:
-    """What all runs together say of a requirement, and why that does not count, if it does not."""
+    """The answer of all runs for a requirement, and the reasons why it is suspect."""
 
     requirement: str
     answer: str
@@ -76,12 +76,12 @@ class AllRuns:
 
     @staticmethod
     def of(one: Estimated) -> AllRuns:
-        """What an audit has just found."""
+        """The answer of the present audit, which is not suspect."""
         return AllRuns(one.requirement, one.answer, "; ".join((one.reason, *one.lines[1:])))
 
     @property
     def level(self) -> Level:
-        """How bad it is."""
+        """The level of the answer."""
         return verdicts.level(self.answer, suspect=bool(self.suspicions))
 
 
@@ -92,22 +92,22 @@ def sarif(
     estimates: Sequence[AllRuns] = (),
     failed: Sequence[RequirementEntry] = (),
 ) -> str:
-    """One SARIF run; the same inputs give the same bytes.
+    """One SARIF run; equal inputs give equal bytes.
 
     Args:
-        results: each of a run and a requirement, in declared units, in the order of the evidence.
+        results: one for each run and requirement, in declared units, in the order of the evidence.
         rules: all requirements of the results; others are left out.
-        diagnostics: what there is to say of the logs.
-        estimates: requirements that are judged over all runs: each gives one more result.
-        failed: requirements without a rule.
+        diagnostics: the diagnostics of the logs.
+        estimates: the answers of all runs: each gives one more result.
+        failed: requirements that could not be formalized.
     """
-    found = [one for one in results if one.level is not Level.NONE]
-    of_all = [one for one in estimates if one.level is not Level.NONE]
-    ids = {one.result.requirement for one in found} | {one.requirement for one in of_all}
+    shown_results = [result for result in results if result.level is not Level.NONE]
+    of_all = [estimate for estimate in estimates if estimate.level is not Level.NONE]
+    ids = {one.result.requirement for one in shown_results} | {one.requirement for one in of_all}
     named = {r.id: r for r in (*(rule.entry for rule in rules), *failed)}
     occurring = [requirement for id, requirement in named.items() if id in ids]
     by_id = {rule.id: rule for rule in rules}
-    files = _files(found, occurring)
+    files = _files(shown_results, occurring)
     places = _Places(
         {requirement.id: number for number, requirement in enumerate(occurring)},
         {name: number for number, name in enumerate(files)},
@@ -120,7 +120,7 @@ def sarif(
         "artifacts": list(files.values()),
         "columnKind": "unicodeCodePoints",
         "results": [
-            *(_result(one, places) for one in found),
+            *(_result(one, places) for one in shown_results),
             *(_result_of_all(one, places) for one in of_all),
         ],
     }
@@ -129,7 +129,7 @@ def sarif(
 
 @dataclass(frozen=True, slots=True)
 class _Places:
-    """The places of rules and files in their lists."""
+    """The indices of rules and files in their lists."""
 
     rules: Mapping[str, int]
     files: Mapping[str, int]
@@ -155,7 +155,7 @@ def _driver(
 
 
 def _rule(requirement: RequirementEntry, rule: FormalizedRequirement | None) -> dict[str, Any]:
-    """A requirement; without a rule nothing says what it means."""
+    """The SARIF rule of a requirement."""
     sentence = wording(requirement)
     words = meaning(rule.written, rule.ticks, rule.clock) if rule else ""
     paragraphs = [words, requirement.text, requirement.rationale]
@@ -175,14 +175,14 @@ def _rule(requirement: RequirementEntry, rule: FormalizedRequirement | None) -> 
 def _files(
     results: Sequence[OneRun], used: Sequence[RequirementEntry]
 ) -> dict[str, dict[str, Any]]:
-    """Each file by its name: the logs, and where the sentences are."""
+    """Each file by its name: the logs, and the files with the sentences."""
     files: dict[str, dict[str, Any]] = {}
-    for one in results:
-        run = one.result.run
+    for result in results:
+        run = result.result.run
         artifact = files.setdefault(
             run, {"location": _place(path_of(run)), "roles": ["analysisTarget"]}
         )
-        size, sha256 = one.result.health.size, one.result.hashes.get("log")
+        size, sha256 = result.result.health.size, result.result.hashes.get("log")
         artifact |= {"length": size} if size is not None else {}
         artifact |= {"hashes": {"sha-256": sha256}} if sha256 else {}
     for requirement in used:
@@ -225,7 +225,7 @@ def _currency(suspicions: Sequence[str]) -> str:
 
 
 def _at_sentence(id: str, run: str, places: _Places) -> dict[str, Any]:
-    """What every result of a requirement has; `run` is empty for all of them together."""
+    """The fields that all results of a requirement share; `run` is empty for all runs together."""
     number = places.rules[id]
     span = places.requirements[number].wording
     where = _place(span.source.name) | {"index": places.files[span.source.name]}
@@ -285,7 +285,7 @@ def _root(here: Path) -> Path:
 
 
 def _place(path: str) -> dict[str, Any]:
-    """A relative address below the root, an absolute one elsewhere."""
+    """The address of a file: relative below the root, absolute elsewhere."""
     if "://" in path:
         return {"uri": quote(path, safe=_RESERVED)}
     inside = os.path.relpath(path, _root(Path.cwd()))

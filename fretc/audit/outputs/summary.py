@@ -1,4 +1,4 @@
-"""Questions to a table of runs, in SQL: how many of which verdict, the worst runs, slow answers.
+"""SQL queries on a table of runs: counts of verdicts, the worst runs, the longest latencies.
 
 The only module that imports duckdb.
 """
@@ -16,11 +16,11 @@ from monitors import kernel
 if TYPE_CHECKING:
     import duckdb
 
-    from fretc.audit.outputs.table import Known
+    from fretc.audit.outputs.table import EvidenceTables
 
 SCHEMA = "fretc-summary-1"
 MOST = 10
-"""Runs, and answers, that are listed."""
+"""The most runs, and the most latencies, that are listed."""
 
 COUNTED: Mapping[str, str] = {
     "satisfied": kernel.SATISFIED,
@@ -36,7 +36,7 @@ _COUNTS = ", ".join(
 )
 _NOT_SHOWN = f"verdict NOT IN ('{kernel.SATISFIED}', '{kernel.VIOLATED}')"
 _LOG = "coalesce('log ' || log_sha256, 'summary ' || log_summary_sha256, 'run ' || run)"
-"""What tells a log from another one: copies have the same; of one that was not read, its name."""
+"""The identity of a log, equal for copies; for a log that was not read, its name."""
 _WORST_FIRST = " ".join(
     f"WHEN '{verdict}' THEN {rank}"
     for rank, verdict in enumerate(
@@ -51,7 +51,7 @@ _COUNTED = f"""
         PARTITION BY log, requirement
         ORDER BY CASE verdict {_WORST_FIRST} END, violations DESC, place) = 1
     ORDER BY run, requirement"""
-"""Each log once for a requirement: the worst of what several audits say, under one name."""
+"""Each log once for a requirement, under one name: the worst result of several audits."""
 _WHOLE = """
     SELECT count(DISTINCT log) AS runs, count(DISTINCT requirement) AS requirements,
         (SELECT round(coalesce(sum(seconds), 0.0), 3) FROM (
@@ -87,7 +87,7 @@ _TORN = f"""
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a query gives."""
+    """The result of a query."""
 
     columns: tuple[str, ...]
     rows: tuple[tuple[Any, ...], ...]
@@ -100,7 +100,7 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """What a table says as a whole."""
+    """The summary of a table."""
 
     whole: Mapping[str, Any]
     requirements: Answer
@@ -108,7 +108,7 @@ class Summary:
     """Runs in which not every requirement is satisfied, the worst first."""
     slowest: Answer
     remarks: tuple[Diagnostic, ...]
-    """Requirements that were audited as different ones, and logs with several verdicts."""
+    """Requirements with several fingerprints, and logs with several verdicts."""
 
     @property
     def violated(self) -> bool:
@@ -133,7 +133,7 @@ class Summary:
         }
 
 
-def summarized(known: Known) -> Summary:
+def summarize(known: EvidenceTables) -> Summary:
     """The summary of all results."""
     with _asked(known, _COUNTED) as ask:
         (totals,) = _answer(ask, _WHOLE).records
@@ -149,8 +149,8 @@ def summarized(known: Known) -> Summary:
         )
 
 
-def answered(known: Known, query: str) -> Answer | Diagnostic:
-    """The answer to a query of the user; it can read these tables, and nothing else."""
+def run_query(known: EvidenceTables, query: str) -> Answer | Diagnostic:
+    """The answer to a query of the user, which can read only these tables."""
     import duckdb
 
     with _asked(known) as ask:
@@ -169,8 +169,8 @@ def _answer(ask: duckdb.DuckDBPyConnection, query: str) -> Answer:
 
 
 @contextmanager
-def _asked(known: Known, *more: str) -> Iterator[duckdb.DuckDBPyConnection]:
-    """A connection with the tables, each result once; `more` are statements."""
+def _asked(known: EvidenceTables, *more: str) -> Iterator[duckdb.DuckDBPyConnection]:
+    """A connection with the tables, each result once; `more` are further statements."""
     import duckdb
 
     # A query reads no file, writes none, and fetches no extension from anywhere.
@@ -191,7 +191,7 @@ def _mixed(requirement: str, kinds: int) -> Diagnostic:
         Code.STALE_EVIDENCE,
         f"{requirement} was audited as {kinds} different requirements: its sentence, its bindings "
         "or its monitor have changed between these runs",
-        help="audit the runs again, or tell them apart: `--query` with `sentence_sha256`",
+        help="audit the runs again, or select one version: `--query` with `sentence_sha256`",
         severity=Severity.WARNING,
     )
 
@@ -216,7 +216,7 @@ def _torn(rows_of_all: Sequence[Mapping[str, Any]]) -> Iterator[Diagnostic]:
 def _bad_query(message: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_QUERY,
-        f"the query cannot be answered: {message}",
-        help="it is SQL of DuckDB on the tables `results`, `violations`, `runs`: "
+        f"the query fails: {message}",
+        help="write DuckDB SQL on the tables `results`, `violations`, `runs`: "
         "`SELECT run, reason FROM results WHERE verdict = 'violated'`",
     )

@@ -1,4 +1,4 @@
-"""Evidence as tables that questions are asked of: a row for each run and requirement."""
+"""Evidence as tables for queries, with a row for each run and requirement."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from compiler.files.text_files import open_regular, unreadable
-from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Result
 from fretc.audit.store.anywhere import required_source
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pyarrow import Table as Table
 
 SCHEMA, OLDER = "fretc-table-2", "fretc-table-1"
-"""The older one does not have the last column, and is read all the same."""
+"""The versions of the table that can be read; the older one lacks the last column."""
 _TYPES = {
     "run": "string",
     "requirement": "string",
@@ -55,8 +55,8 @@ _TYPES = {
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
-    """What can be asked of: a row a result; of stores and evidence a row a violation and a run."""
+class EvidenceTables:
+    """Tables for queries, of results; from stores and evidence also of violations and runs."""
 
     results: Table
     violations: Table
@@ -64,7 +64,7 @@ class Known:
 
 
 def parquet(results: Table) -> bytes:
-    """The content of a Parquet file: the same rows give the same bytes."""
+    """The content of a Parquet file: equal rows give equal bytes."""
     import pyarrow
     from pyarrow.parquet import write_table
 
@@ -78,28 +78,28 @@ def table(source: EvidenceSource) -> Table:
     return _known(source).results
 
 
-def read(paths: Sequence[str]) -> Known | Diagnostic:
-    """The rows of all the files; a row that is in several comes once for each.
+def read(paths: Sequence[str]) -> EvidenceTables | Diagnostic:
+    """The rows of all the files; a row that several files contain comes once for each.
 
     Args:
-        paths: stores, evidence in files, tables that `--parquet` wrote.
+        paths: stores, evidence files, and tables that `--parquet` wrote.
     """
     import pyarrow
 
-    found = []
+    tables = []
     for path in paths:
-        one = _read(path)
-        if isinstance(one, Diagnostic):
-            return one
-        found.append(one)
-    return Known(
-        pyarrow.concat_tables([one.results for one in found]),
-        pyarrow.concat_tables([one.violations for one in found]),
-        pyarrow.concat_tables([one.runs for one in found]),
+        tables_of_path = _read(path)
+        if isinstance(tables_of_path, Diagnostic):
+            return tables_of_path
+        tables.append(tables_of_path)
+    return EvidenceTables(
+        pyarrow.concat_tables([tables_of_path.results for tables_of_path in tables]),
+        pyarrow.concat_tables([tables_of_path.violations for tables_of_path in tables]),
+        pyarrow.concat_tables([tables_of_path.runs for tables_of_path in tables]),
     )
 
 
-def _read(path: str) -> Known | Diagnostic:
+def _read(path: str) -> EvidenceTables | Diagnostic:
     if not os.path.isdir(path):
         try:
             with open_regular(path) as file:
@@ -115,24 +115,24 @@ def _read(path: str) -> Known | Diagnostic:
     return evidence if isinstance(evidence, Diagnostic) else _known(evidence)
 
 
-def _alone(results: Table) -> Known:
+def _alone(results: Table) -> EvidenceTables:
     from fretc.audit.store.tables import RUNS, VIOLATIONS, schema
 
-    return Known(results, schema(VIOLATIONS).empty_table(), schema(RUNS).empty_table())
+    return EvidenceTables(results, schema(VIOLATIONS).empty_table(), schema(RUNS).empty_table())
 
 
-def _known(source: EvidenceSource) -> Known:
+def _known(source: EvidenceSource) -> EvidenceTables:
     from fretc.audit.store.reader import Store
-    from fretc.audit.store.tables import RESULTS, RUNS, VIOLATIONS, Tables, tabled
+    from fretc.audit.store.tables import RESULTS, RUNS, VIOLATIONS, Tables, to_tables
 
     of_name: Tables
     if isinstance(source, Store):
         of_name = {name: source.whole(name) for name in (RESULTS, VIOLATIONS, RUNS)}
     else:
         places = [place for place, _ in source.briefs()]
-        of_name = tabled([result for _, result in source.details(places)], source.fretc)
+        of_name = to_tables([result for _, result in source.details(places)], source.fretc)
     rows = of_name[RESULTS].select([*_TYPES]).cast(_schema())
-    return Known(rows, of_name[VIOLATIONS], of_name[RUNS])
+    return EvidenceTables(rows, of_name[VIOLATIONS], of_name[RUNS])
 
 
 def rows(results: Sequence[Result], fretc: str) -> Table:
@@ -140,11 +140,11 @@ def rows(results: Sequence[Result], fretc: str) -> Table:
 
     Args:
         results: records of evidence.
-        fretc: the version that made them.
+        fretc: the version of fretc that wrote the results.
     """
-    from fretc.audit.store.tables import RESULTS, tabled
+    from fretc.audit.store.tables import RESULTS, to_tables
 
-    return tabled(results, fretc)[RESULTS].select([*_TYPES]).cast(_schema())
+    return to_tables(results, fretc)[RESULTS].select([*_TYPES]).cast(_schema())
 
 
 def _read_parquet(path: str) -> Table | Diagnostic:
@@ -162,7 +162,7 @@ def _read_parquet(path: str) -> Table | Diagnostic:
         last = schema.field(len(schema) - 1)
         return table.append_column(last, pyarrow.nulls(len(table), last.type)).cast(schema)
     if name != SCHEMA or not table.schema.equals(schema):
-        return _no_table(path, f"is no table of `{SCHEMA}`")
+        return _no_table(path, f"is not a table of `{SCHEMA}`")
     return table
 
 

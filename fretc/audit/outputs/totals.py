@@ -1,4 +1,4 @@
-"""How many results of an audit have which verdict, and the one to look at first."""
+"""The number of results with each verdict, and the result to look at first."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
-from fretc.audit.evidence.briefs import Brief
 from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.result_summaries import ResultSummary
 from fretc.audit.evidence.schema import Result, Violation
 from fretc.audit.evidence.verdicts import BROKEN, SHOWN, VERDICTS
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
@@ -17,12 +17,12 @@ from fretish.diagnostics.status_symbols import StatusSymbol
 from monitors import kernel
 
 NOT_JUDGED = "not judged"
-"""Of a requirement that no run can be compared with: no data, and not for want of a log."""
+"""The word for a requirement that no log can be judged by."""
 COUNTED = "counted over all runs"
-"""Of a run that alone decides nothing: its triggers are counted with those of all others."""
+"""The word for a run that alone decides nothing: its triggers count with those of all others."""
 _SEVERITY = {
-    word: place
-    for place, word in enumerate(
+    word: index
+    for index, word in enumerate(
         word
         for verdict in VERDICTS
         for word in (
@@ -39,22 +39,22 @@ _SEVERITY = {
 
 @dataclass(frozen=True, slots=True)
 class Total:
-    """The results of one word."""
+    """The number of results with one word."""
 
     word: str
     results: int
     requirements: int
     runs: int
-    """In how many runs they are; 0: they are about all runs together."""
+    """Number of runs with such a result; 0: the results are about all runs together."""
 
     @property
     def colour(self) -> str | None:
-        """In a terminal."""
+        """The colour in a terminal."""
         return sign_of(self.word).colour if self.word != COUNTED else None
 
 
-class Judged(Protocol):
-    """A result or the brief of one."""
+class HasVerdict(Protocol):
+    """A result or its summary."""
 
     @property
     def run(self) -> str:
@@ -62,18 +62,18 @@ class Judged(Protocol):
 
     @property
     def requirement(self) -> str:
-        """Its id."""
+        """The id of the requirement."""
 
     @property
     def verdict(self) -> str:
-        """Of the run."""
+        """The verdict of the run."""
 
     @property
     def trials(self) -> Trials | None:
-        """Of a requirement with a probability."""
+        """Present for a requirement with a probability."""
 
 
-J = TypeVar("J", bound=Judged)
+J = TypeVar("J", bound=HasVerdict)
 
 
 def runs(results: Iterable[J]) -> Iterator[tuple[J, ...]]:
@@ -90,11 +90,11 @@ def runs(results: Iterable[J]) -> Iterator[tuple[J, ...]]:
         yield tuple(group.values())
 
 
-def word_of(result: Judged, refused: Collection[str] = ()) -> str:
-    """The word under which a result counts: its verdict, where it is one by itself.
+def word_of(result: HasVerdict, refused: Collection[str] = ()) -> str:
+    """The word under which a result counts: its verdict, unless the run alone decides nothing.
 
     Args:
-        result: of a run and a requirement.
+        result: the result of a run and a requirement.
         refused: the ids of requirements that could not be compared with any run.
     """
     if result.requirement in refused:
@@ -104,21 +104,21 @@ def word_of(result: Judged, refused: Collection[str] = ()) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Marks:
-    """The word of every result, and which one to look at first."""
+class VerdictWords:
+    """The word of every result, and the result to look at first."""
 
     names: Sequence[str]
-    """Of the runs, in their order."""
+    """The names of the runs, in their order."""
     ids: Sequence[str]
     words: Sequence[Mapping[str, str]]
-    """Of each run: the word of each requirement."""
+    """For each run, the word of each requirement."""
     answers: Mapping[str, str]
-    """What all runs say of a requirement with a probability."""
+    """The answer of all runs for each requirement with a probability."""
     worst: int | None
-    """The place of the result to look at first: the worst verdict, broken at most ticks.
+    """The index of the result to look at first: the worst verdict, violated at most ticks.
 
-    Of equal ones it is the first; None: all are good. A run that only counts is none of them.
-    """
+    The first of equal ones; None: all are good. A run that alone decides nothing is never the
+    worst."""
     violated: bool
     """Whether any requirement is violated in any run, or refuted by all of them."""
     shown: bool
@@ -126,23 +126,23 @@ class Marks:
 
     @staticmethod
     def of(
-        briefs: Iterable[Brief],
+        briefs: Iterable[ResultSummary],
         estimates: Iterable[Estimated] = (),
         refused: Collection[str] = (),
-    ) -> Marks:
-        """Those of an audit.
+    ) -> VerdictWords:
+        """The words of all results of an audit.
 
         Args:
-            briefs: of all results, in their order.
-            estimates: what all runs say of requirements with a probability.
+            briefs: the summaries of all results, in their order.
+            estimates: the answers of all runs.
             refused: the ids of requirements that could not be compared with any run.
         """
-        answers = {one.requirement: one.answer for one in estimates}
+        answers = {estimate.requirement: estimate.answer for estimate in estimates}
         names: list[str] = []
         words: list[Mapping[str, str]] = []
         ids: dict[str, None] = {}
         first: tuple[tuple[int, int], int] | None = None
-        place = 0
+        index = 0
         verdicts: set[str] = set()
         alone: set[str] = set()
         for run in runs(briefs):
@@ -152,13 +152,13 @@ class Marks:
             for each in run:
                 word = words[-1][each.requirement]
                 if word not in (*SHOWN, COUNTED):
-                    found = (severity(word), -each.violated_ticks), place
-                    first = min(first or found, found)
+                    rank = (severity(word), -each.violated_ticks), index
+                    first = min(first or rank, rank)
                 verdicts.add(each.verdict)
                 if each.requirement not in answers:
                     alone.add(each.verdict)
-                place += 1
-        return Marks(
+                index += 1
+        return VerdictWords(
             names,
             [*ids],
             words,
@@ -169,24 +169,24 @@ class Marks:
         )
 
     def word(self, id: str) -> str:
-        """The worst of a requirement."""
+        """The worst word of a requirement."""
         words = (of_run[id] for of_run in self.words if id in of_run)
         return min((*words, *filter(None, [self.answers.get(id)])), key=severity)
 
 
 def sign_of(word: str) -> StatusSymbol:
-    """The sign of a word; of a run that only counts that of what is open."""
+    """The symbol for a word; a run that alone decides nothing has that of an open verdict."""
     own = {NOT_JUDGED: kernel.NO_DATA, COUNTED: kernel.INCONCLUSIVE}.get(word, word)
     return VERDICTS[own].sign
 
 
 def severity(word: str) -> int:
-    """By which words are sorted, the worst first."""
+    """The order of words, the worst first."""
     return _SEVERITY[word]
 
 
-def totals(marks: Marks) -> tuple[Total, ...]:
-    """Each result and each estimate in exactly one of them, the worst word first."""
+def totals(marks: VerdictWords) -> tuple[Total, ...]:
+    """The number of results and estimates of each word, the worst word first."""
     counts: Counter[str] = Counter()
     ids: dict[str, set[str]] = {}
     of_runs: Counter[str] = Counter()
@@ -202,7 +202,7 @@ def totals(marks: Marks) -> tuple[Total, ...]:
 
 
 def longest(result: Result) -> Violation | None:
-    """The longest violation of a result that is violated, the first of equal ones."""
+    """The longest violation of a violated result, the first of equal ones."""
     if result.verdict not in BROKEN:
         return None
     return max(result.violations, key=_ticks, default=None)

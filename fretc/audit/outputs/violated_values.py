@@ -11,7 +11,7 @@ def values(result: Result, violation: Violation) -> str:
 
     Args:
         result: in declared units (`fretc.audit.evidence.declared_units`).
-        violation: one of its violations.
+        violation: one violation of the result.
     """
     return ", ".join(
         f'{name} = "{known}"'
@@ -22,7 +22,7 @@ def values(result: Result, violation: Violation) -> str:
 
 
 def reason(result: Result) -> str:
-    """The reason of the verdict, with the values at the first violation where it is violated.
+    """The reason of the verdict; for a violated one, with the values at the first violation.
 
     Args:
         result: in declared units.
@@ -34,6 +34,6 @@ def reason(result: Result) -> str:
 
 
 def _bounds(result: Result, signal: str) -> list[float]:
-    """What a signal, or its absolute value, is compared with."""
+    """The bounds with which a signal, or its absolute value, is compared."""
     thresholds = (t for t in result.thresholds if t.signal in (signal, f"abs({signal})"))
-    return [sign * each.bound for each in thresholds for sign in (1, -1)]
+    return [sign * threshold.bound for threshold in thresholds for sign in (1, -1)]

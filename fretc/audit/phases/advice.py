@@ -1,6 +1,6 @@
-"""What there is to say of phases: verdicts that depend on them, and a phase that keeps them.
+"""Diagnostics about phases: verdicts that depend on the phase, and a better phase.
 
-Phases are nanoseconds, and go round: after the last one of a tick comes the first.
+Phases are nanoseconds modulo the tick: after the last one comes the first.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Span
 from monitors import kernel
 
-_STAMPS = 'or let the messages tell their time: `time = "header.stamp"`'
+_STAMPS = 'or use the stamps of the messages: `time = "header.stamp"`'
 
 
 def findings(phases_of: Mapping[str, Phases], declarations: Declarations) -> Iterator[Diagnostic]:
-    """F425 for each requirement that one log violates at some phases and not at others; F426.
+    """F425 for each requirement that one log violates at some phases and not at others, and F426.
 
     Args:
-        phases_of: of one log, by requirement.
-        declarations: with the clock that they are about.
+        phases_of: the verdicts of one log at each phase, by requirement.
+        declarations: the bindings with the clock.
     """
     for id, phases in phases_of.items():
         if phases.varies and kernel.VIOLATED in phases.verdicts:
@@ -38,16 +38,17 @@ def findings(phases_of: Mapping[str, Phases], declarations: Declarations) -> Ite
         if not phases.exact:
             yield Diagnostic(
                 Code.PHASES_NOT_JUDGED,
-                f"the verdict on {id} was computed for some phases of the ticks only: too much "
-                "changes within a tick",
+                f"the verdict on {id} was computed only for some phases of the ticks: too many "
+                "values change within a tick",
                 place(declarations),
-                help="the evidence names the phases that were not judged; shorter logs take less",
+                help="the evidence lists the phases that were not judged; a shorter log needs "
+                "less work",
                 severity=Severity.WARNING,
             )
 
 
 def place(declarations: Declarations) -> Span:
-    """The table of the clock."""
+    """The place of the table `[clock]`."""
     source = declarations.source
     start = max(0, source.text.find("[clock]"))
     return source.span(start, start + len("[clock]") if source.text[start:] else start)
@@ -55,17 +56,17 @@ def place(declarations: Declarations) -> Span:
 
 @dataclass(frozen=True, slots=True)
 class Arc:
-    """Phases `first`, and those after it, at which every verdict is the same."""
+    """An interval of phases, modulo the tick, at which no verdict changes."""
 
     first: int
     length: int
 
     def offset(self, phase: int, period: int) -> int:
-        """How far a phase is behind the first one."""
+        """The distance of a phase from the first one."""
         return (phase - self.first) % period
 
     def margin(self, phase: int, period: int) -> int:
-        """Nanoseconds from a phase within to the nearest one outside."""
+        """Nanoseconds from a phase within the interval to the nearest one outside."""
         behind = self.offset(phase, period)
         return min(behind + 1, self.length - behind)
 
@@ -81,10 +82,10 @@ class Arc:
 
 
 def longest(phases_of_all: Sequence[Phases]) -> Arc | None:
-    """The longest stretch of phases at which no verdict changes; None where none ever does.
+    """The longest interval of phases at which no verdict changes; None: no verdict ever does.
 
     Args:
-        phases_of_all: of any logs and requirements, with one clock.
+        phases_of_all: the phases of any logs and requirements, with one clock.
     """
     edges = sorted({edge for phases in phases_of_all for edge in _edges(phases)})
     if not edges:
@@ -97,7 +98,7 @@ def longest(phases_of_all: Sequence[Phases]) -> Arc | None:
 
 
 def _edges(phases: Phases) -> Iterator[int]:
-    """The phases at which another verdict begins, or what was not judged."""
+    """The phases at which another verdict begins, or at which none was computed."""
     yield from (stretch.first for stretch in phases.stretches[1:])
     if phases.stretches[0].verdict != phases.stretches[-1].verdict:
         yield 0
@@ -112,9 +113,9 @@ Runs = Sequence[tuple[str, Mapping[str, Phases]]]
 
 
 def proposal(runs: Runs, declarations: Declarations) -> Diagnostic | None:
-    """F427: a phase that lies farther from any change of a verdict than the declared one.
+    """F427: a phase that is farther from any change of a verdict than the declared one.
 
-    None where no verdict depends on the phase, or the declared one is about as good.
+    None if no verdict depends on the phase, or the declared one is about as good.
     """
     every = [phases for _, phases_of in runs for phases in phases_of.values()]
     arc = longest(every)

@@ -1,4 +1,4 @@
-"""For which phases of the ticks each verdict holds.
+"""The phases of the ticks at which each verdict holds.
 
 A phase is where the grid of ticks begins: whole nanoseconds from where it would begin, less than a
 tick. The verdict at a phase is that of an audit whose clock declares it. It changes at finitely
@@ -17,8 +17,8 @@ from fractions import Fraction
 from heapq import heappop, heappush
 from itertools import pairwise
 
-from fretc.audit.measurements.judgement import Judgement, judged
-from fretc.audit.phases.sliding import Slide, Sliding, sliding
+from fretc.audit.measurements.judgement import Judgement, judge
+from fretc.audit.phases.sliding import PropositionByPhase, PropositionsByPhase, sliding
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
 from fretish.clock import in_words
@@ -26,16 +26,17 @@ from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Verdict
 
 MOST = 1 << 22
-"""Ticks that are judged for the phases of one requirement and log; what is left is not judged."""
+"""The most ticks that are evaluated for the phases of one requirement and log; other phases are not
+judged."""
 FEWEST = 64
-"""Judgements, however long the log is."""
+"""The fewest evaluations, however long the log is."""
 _OVERHEAD = 4096
-"""Ticks that a judgement costs beside its own."""
+"""The fixed cost of an evaluation, in ticks."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """The phases `first..last`, in nanoseconds and both included; None was not judged."""
+    """The phases `first..last`, in nanoseconds and both included; None: not judged."""
 
     first: int
     last: int
@@ -49,7 +50,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class Phases:
-    """The verdict at each phase: stretches that follow each other, from 0 to the whole tick."""
+    """The verdict at each phase: adjoining intervals from 0 to one tick."""
 
     period: int
     """Nanoseconds of a tick."""
@@ -59,7 +60,7 @@ class Phases:
 
     @property
     def verdict(self) -> str:
-        """At the declared phase."""
+        """The verdict at the declared phase."""
         (declared,) = (s.verdict for s in self.stretches if s.first <= self.declared <= s.last)
         assert declared is not None, "the declared phase is judged first"
         return declared
@@ -79,14 +80,15 @@ class Phases:
 
     @property
     def varies(self) -> bool:
-        """Whether there are two verdicts."""
+        """Whether there are at least two verdicts."""
         return len(self.verdicts.keys() - {None}) > 1
 
     @property
     def nearest(self) -> int | None:
-        """Nanoseconds from the declared phase to one that has not its verdict; None: all have it.
+        """Nanoseconds from the declared phase to the nearest other verdict; None: there is none.
 
-        Phases go round: the grid of the last one is that of phase -1 ns, but for its first tick.
+        Phases are modulo the tick: the grid of the last one is that of phase -1 ns, except for its
+        first tick.
         """
         distances = [
             _apart(end, self.declared, self.period)
@@ -98,7 +100,7 @@ class Phases:
 
     @property
     def text(self) -> str:
-        """What there is to say of it in a sentence; empty where all phases have one verdict."""
+        """A sentence about the verdicts by phase; empty: all phases have one verdict."""
         if self.nearest is None:
             return ""
         shares = [
@@ -115,7 +117,7 @@ def _apart(one: int, other: int, period: int) -> int:
 
 
 def _share(part: int, total: int) -> str:
-    """`18 %`: never 0 % of something, nor 100 % of less than all."""
+    """A percentage: `0 %` only of nothing, and `100 %` only of all."""
     percent = Fraction(100 * part, total)
     if percent < 1:
         return "less than 1 %"
@@ -125,12 +127,12 @@ def _share(part: int, total: int) -> str:
 def phases(
     declarations: Declarations, recording: Recording, monitors: Sequence[Monitor]
 ) -> dict[str, Phases]:
-    """The verdict of each requirement at each phase; none where the clock ticks by message.
+    """The verdict of each requirement at each phase; empty: the clock ticks by message.
 
     Args:
         declarations: clock, signals and propositions.
-        recording: with the samples of all signals of all the monitors' propositions.
-        monitors: each of one requirement.
+        recording: the recording with the samples of all signals of all the monitors' propositions.
+        monitors: monitors of one requirement each.
     """
     names = dict.fromkeys(name for monitor in monitors for name in monitor.PROPOSITIONS)
     slides, end = sliding(declarations, recording, names), Verdict(declarations.clock.end)
@@ -145,25 +147,27 @@ def phases(
 
 
 class _Search:
-    """Divides the phases until each range has one verdict, the longest range first.
+    """A search that divides the phases until each interval has one verdict, the longest first.
 
-    A class is a range of phases at which no tick sees anything else: `first..last` of them.
+    A class is an interval of phases at which the values of all ticks are equal: `first..last`.
     """
 
-    def __init__(self, slides: Sliding, monitor: Monitor, *, intact: bool, end: Verdict) -> None:
+    def __init__(
+        self, slides: PropositionsByPhase, monitor: Monitor, *, intact: bool, end: Verdict
+    ) -> None:
         self._slides, self._monitor = slides, monitor
         self._columns = {name: slides.of[name] for name in monitor.PROPOSITIONS}
         self._intact, self._end = intact, end
-        own: Sequence[Slide] = tuple(self._columns.values())
+        own: Sequence[PropositionByPhase] = tuple(self._columns.values())
         self._breaks = slides.breaks(own)
-        """Phases on whose two sides the end of the log is another one."""
+        """Phases at which the end of the log changes."""
         self._starts = slides.starts(own, self._breaks)
         self._left = max(FEWEST, MOST // (slides.most_ticks + _OVERHEAD))
         self._waiting: list[tuple[int, int, int]] = []
         self._found: list[Stretch] = []
 
     def stretches(self) -> list[Stretch]:
-        """In their order, of classes or more."""
+        """The verdict of each interval, in order; an interval has one class or more."""
         declared = self._class_of(self._slides.declared)
         self._settle(declared, declared)
         edges = [self._class_of(phase) for phase in self._breaks]
@@ -182,7 +186,7 @@ class _Search:
         return sorted(self._found, key=lambda stretch: stretch.first)
 
     def _settle(self, first: int, last: int) -> bool:
-        """Judge the classes as one; whether that gives a verdict on all of them."""
+        """Judge the classes together; whether that gives one verdict for all of them."""
         judgement = self._judge(first, last)
         if first != last and not judgement.certain:
             return False
@@ -194,7 +198,7 @@ class _Search:
         low, high = self._starts[first], self._starts[last]
         ticks = self._slides.ticks(low)
         columns = {name: slide.column(low, high, ticks) for name, slide in self._columns.items()}
-        return judged(
+        return judge(
             self._monitor,
             columns,
             self._slides.cut(self._columns, low),
@@ -218,7 +222,7 @@ class _Search:
 
 
 def _merged(stretches: Sequence[Stretch]) -> Iterator[Stretch]:
-    """Neighbours with one verdict as one."""
+    """The intervals, with neighbours of one verdict merged."""
     first = stretches[0]
     for stretch in stretches[1:]:
         assert stretch.first == first.last + 1

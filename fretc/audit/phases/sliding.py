@@ -1,7 +1,7 @@
-"""What ticks see of the propositions at each phase of their grid.
+"""The values of the propositions at each phase of the tick grid.
 
 Times and phases are nanoseconds. Phase 0 is where the grid would begin; at phase s every tick is s
-later. A tick k sees another state only at finitely many phases, and each of them is known.
+later. The value at tick k changes only at finitely many phases, and each of them is computed.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from monitors.kernel import Column
 
 
 @dataclass(frozen=True, slots=True)
-class Slide:
-    """One proposition.
+class PropositionByPhase:
+    """The values of one proposition.
 
-    `base` has shape (ticks at phase 0,): its states there. From `phases[i]` on, tick `ticks[i]`
-    sees `states[i]`; all three have shape (changes,), phases do not decrease. `cut_states[i]` is
-    what the cut tick sees from `cut_phases[i]` on; phases increase, and the first one is 0.
+    `base` has shape (ticks at phase 0,): its states there. From `phases[i]` on, tick `ticks[i]` has
+    `states[i]`; all three have shape (changes,), phases do not decrease. The cut tick has
+    `cut_states[i]` from `cut_phases[i]` on; phases increase, and the first one is 0.
     """
 
     base: States
@@ -44,45 +44,47 @@ class Slide:
     cut_states: States
 
     def column(self, low: int, high: int, ticks: int) -> Column:
-        """What the first so many ticks see from phase `low` to `high`; unknown where it changes."""
+        """The values at the first ticks for phases `low` to `high`; unknown where they change."""
         done, more = np.searchsorted(self.phases, [low, high], "right").tolist()
         states = self.base.copy()
-        states[self.ticks[:done]] = self.states[:done]  # of several changes the last one stays
+        states[self.ticks[:done]] = self.states[
+            :done
+        ]  # of several changes of a tick the last one counts
         states[self.ticks[done:more]] = UNKNOWN
         return packed(states[:ticks])
 
     def cut(self, phase: int) -> bool | None:
-        """What the cut tick sees."""
+        """The value at the cut tick."""
         place = int(np.searchsorted(self.cut_phases, phase, "right")) - 1
         return truth_values(self.cut_states[place : place + 1])[0]
 
 
 @dataclass(frozen=True, slots=True)
-class Sliding:
-    """All propositions of one log; `length` is the time from phase 0 of the grid to the end."""
+class PropositionsByPhase:
+    """The values of all propositions of one log; `length` is the time from phase 0 to its end."""
 
     period: int
     declared: int
     length: int
-    of: Mapping[str, Slide]
+    of: Mapping[str, PropositionByPhase]
 
     @property
     def most_ticks(self) -> int:
-        """How many there are at phase 0."""
+        """The number of ticks at phase 0."""
         return self.ticks(0)
 
     def ticks(self, phase: int) -> int:
-        """How many whole ticks there are."""
+        """The number of whole ticks."""
         return int(self.length - phase) // self.period + 1
 
     def cut(self, names: Iterable[str], phase: int) -> dict[str, bool | None] | None:
-        """What the cut tick sees of some propositions; None where there is no such tick."""
+        """The values of some propositions at the cut tick; None: there is no such tick."""
         if not self.ticks(phase) or (self.length - phase) % self.period == 0:
             return None
         return {name: self.of[name].cut(phase) for name in names}
 
-    def breaks(self, slides: Sequence[Slide]) -> list[int]:
-        """The phases from which on the end is another one: its last tick, or what is cut short."""
+    def breaks(self, slides: Sequence[PropositionByPhase]) -> list[int]:
+        """The phases at which the end changes: the last tick, or the values of the cut tick."""
         end = self.length % self.period  # here the last tick is at the very end
         places = {0, end, end + 1}
         for slide in slides:
@@ -90,20 +92,20 @@ class Sliding:
             places |= {*slide.cut_phases.tolist(), *slide.phases[slide.ticks == last].tolist()}
         return sorted(places - {self.period})
 
-    def starts(self, slides: Sequence[Slide], breaks: Sequence[int]) -> Times:
-        """Shape (classes,): each phase from which on anything is another one, in order."""
+    def starts(self, slides: Sequence[PropositionByPhase], breaks: Sequence[int]) -> Times:
+        """Shape (classes,): the phases at which any value changes, in order."""
         return distinct(np.concatenate([np.array(breaks, np.int64), *(s.phases for s in slides)]))
 
 
 def sliding(
     declarations: Declarations, recording: Recording, names: Iterable[str]
-) -> Sliding | None:
-    """The propositions at each phase; None where the clock ticks by message and has no phase.
+) -> PropositionsByPhase | None:
+    """The propositions at each phase; None: the clock ticks by message and has no phase.
 
     Args:
         declarations: clock, signals and propositions.
-        recording: with the samples of all signals that the propositions name.
-        names: of propositions that are declared.
+        recording: the recording with the samples of all signals that the propositions read.
+        names: the names of declared propositions.
     """
     period = declarations.clock.period
     if period is None:
@@ -114,7 +116,7 @@ def sliding(
         name: _slide(declarations.propositions[name], declarations, recording, start, length)
         for name in names
     }
-    return Sliding(period, declarations.clock.phase, length, slides)
+    return PropositionsByPhase(period, declarations.clock.phase, length, slides)
 
 
 def _slide(
@@ -123,7 +125,7 @@ def _slide(
     recording: Recording,
     start: int,
     length: int,
-) -> Slide:
+) -> PropositionByPhase:
     period = declarations.clock.period
     assert period is not None
     late = late_messages(proposition, declarations, recording)
@@ -139,7 +141,7 @@ def _slide(
 
 
 Seen = tuple[Times, States]
-"""What a tick sees where it is at each of these times, and until the next of them."""
+"""A step function: the value at a tick from each of these times on, until the next one."""
 
 
 def _joined(
@@ -150,10 +152,10 @@ def _joined(
     start: int,
     length: int,
     period: int,
-) -> Slide:
+) -> PropositionByPhase:
     """The slide of the first ticks, one after the other, and of all later ones.
 
-    Each is given as if no message had been `late`.
+    Each is computed as if no message had been `late`.
     """
     end = np.array([start + length], np.int64)
     if any(each.at(end)[0] for each in late):
@@ -170,12 +172,14 @@ def _joined(
     states = np.concatenate([states for _, states in changes])
     ticks, phases = np.divmod(times - start, period)
     order = np.argsort(phases, kind="stable")
-    order = order[phases[order] > 0]  # at phase 0 it is the base
-    return Slide(np.concatenate(base), phases[order], ticks[order], states[order], *cut)
+    order = order[phases[order] > 0]  # changes at phase 0 are in `base`
+    return PropositionByPhase(
+        np.concatenate(base), phases[order], ticks[order], states[order], *cut
+    )
 
 
 def _masked(seen: Seen, late: Sequence[Late], last: int) -> Seen:
-    """The same, and unknown at ticks for which a message was late; it counts up to `last`."""
+    """The slide with unknown values at ticks for which a message was late, up to tick `last`."""
     for each in late:
         times, states = seen
         if not len(times):
@@ -190,10 +194,10 @@ def _masked(seen: Seen, late: Sequence[Late], last: int) -> Seen:
 
 def _slide_of_past(
     past: PastValues, late: Sequence[Late], start: int, length: int, period: int
-) -> Slide:
-    """Of a proposition that looks back by ticks: a tick sees what each of them has in force.
+) -> PropositionByPhase:
+    """The slide of a proposition that looks back by ticks.
 
-    So its state changes where something comes, and a tick, two ticks, and so on, later.
+    Its state changes when a sample comes, and one tick, two ticks, and so on, later.
     """
     back = min(past.back, length // period + 1)
     shifts = np.arange(past.back + 1, dtype=np.int64) * period
@@ -210,7 +214,7 @@ def _slide_of_past(
 
 
 def _places(past: PastValues, times: Times, before: int, period: int) -> list[Places]:
-    """What is in force at a tick at each of these times, and at so many ticks before it."""
+    """The samples in force at a tick at each of these times, and at so many ticks before it."""
     return [_in_force(past, times - back * period) for back in range(before + 1)]
 
 
@@ -219,7 +223,10 @@ def _in_force(past: PastValues, times: Times) -> Places:
 
 
 def _cut_of_past(past: PastValues, start: int, length: int, period: int) -> Seen:
-    """As `_cut`: the tick before the cut one is the last whole one, if there is any."""
+    """The values at the cut tick, for a proposition that looks back by ticks.
+
+    The tick before the cut one is the last whole one, if there is any.
+    """
     end = start + length
     shifts = np.arange(past.back, dtype=np.int64) * period
     lasts = _within((past.times[:, None] + shifts).ravel(), end - period + 1, end)
@@ -238,16 +245,16 @@ def _cut_of_past(past: PastValues, start: int, length: int, period: int) -> Seen
 def _first(
     steps: Steps, proposition: Proposition, begun: tuple[int, int], start: int, more: int
 ) -> Seen:
-    """What the first tick sees where it is at each of these times, and until the next of them."""
+    """The values at the first tick, from each of these times on."""
     times = _within(steps.times, start, start + more)
     upto = np.searchsorted(steps.times, times, "right")
     return times, combined(steps, first_before(steps, begun, upto), upto, proposition)
 
 
 def _later(steps: Steps, proposition: Proposition, start: int, length: int, period: int) -> Seen:
-    """What a later tick sees where it is at each of these times, and until the next of them.
+    """The values at a later tick, from each of these times on.
 
-    It sees as much as a tick is long: that changes where a step comes, and where one goes.
+    Its window is one tick long: the value changes when a step enters it, and when one leaves it.
     """
     moments = np.concatenate([steps.times, steps.times + period])
     times = _within(moments, start + period, start + length)
@@ -256,22 +263,22 @@ def _later(steps: Steps, proposition: Proposition, start: int, length: int, peri
 
 
 def _within(times: Times, first: int, last: int) -> Times:
-    """The first time, and those after it up to the last one; none where that is before it.
+    """The first time, and the times after it up to the last one; empty if the last one is earlier.
 
-    They are in order; equal ones are no harm, and to find them costs more than to keep them.
+    They are in order, with duplicates: to remove them would cost more than to keep them.
     """
     inside = times[(times > first) & (times <= last)]
     return np.sort(np.append(inside, first), kind="stable") if first <= last else inside
 
 
 def _changes(times: Times, states: States) -> Seen:
-    """Where the state is another one than the nanosecond before, with that state."""
+    """The phases at which the state differs from that one nanosecond before, with the new state."""
     new = np.append(False, states[1:] != states[:-1])[: len(states)]
     return times[new], states[new]
 
 
 def _cut(steps: Steps, proposition: Proposition, start: int, length: int, period: int) -> Seen:
-    """The phases from which on the cut tick sees another state, with that state."""
+    """The phases from which on the state at the cut tick changes, with the new state."""
     end = start + length
     lasts = _within(steps.times, end - period + 1, end)
     ends = np.array([0, (length + 1) % period], np.int64)
@@ -282,6 +289,6 @@ def _cut(steps: Steps, proposition: Proposition, start: int, length: int, period
 
 
 def _once(phases: Times, states: States) -> Seen:
-    """Without those at which the state stays what it was."""
+    """The changes, without those that keep the state."""
     changed = np.append(True, states[1:] != states[:-1])
     return phases[changed], states[changed]

@@ -1,7 +1,7 @@
-"""When a log was recorded, and whether that is since a time.
+"""The date of a log, and whether it is before a given time.
 
-The date of a log is the start of its recording where its summary states it, else when it changed
-last. A clock that counts from its own zero states none.
+The date of a log is the start of its recording if its summary states it, else its last change. A
+clock that counts from its own zero states none.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from fretish.reading.limits import with_budget
 from fretish.units import nanoseconds
 
 _FIRST_DATE = 10**17
-"""Nanoseconds, in 1973: a clock that tells less is simulated."""
+"""Nanoseconds, in 1973: an earlier time is that of a simulated clock."""
 _DAYS = re.compile(r"\s*([0-9]{1,5})\s*d\s*")
 
 
 def since(text: str) -> datetime | Diagnostic:
-    """The time that a user means: `2026-11-22`, `2026-11-22T18:00+01:00`, `24 h`, `7 d` ago.
+    """The time that a user gives: `2026-11-22`, `2026-11-22T18:00+01:00`, `24 h`, `7 d` ago.
 
-    Without a zone it is UTC. Now is `SOURCE_DATE_EPOCH`, where that is set.
+    The default time zone is UTC. Now is `SOURCE_DATE_EPOCH`, if it is set.
     """
     days, length = _DAYS.fullmatch(text), nanoseconds(text)
     try:
@@ -43,25 +43,25 @@ def since(text: str) -> datetime | Diagnostic:
     except (ValueError, OverflowError):
         return Diagnostic(
             Code.BAD_USAGE,
-            f"`--since {text}` is neither a date nor a time ago",
+            f"`--since {text}` is neither a date nor a length of time",
             help="write `--since 2026-11-22`, `--since 2026-11-22T18:00`, `--since 24h` or "
             "`--since 7d`",
         )
 
 
 def is_older(log: str, than: datetime) -> bool:
-    """Whether a log is known to be older: one without a date is not."""
+    """Whether a log is older than a time: a log without a date is not."""
     limit = int(than.timestamp()) * 10**9 + than.microsecond * 1000
     if is_store(log):
         change = changed(log)
         if change is not None and change < limit:
-            return True  # a store has its own clock: what came before was recorded before
+            return True  # an object store has its own clock, but it is later than the recording
     date = _recorded(log) or _changed(log)
     return date is not None and date < limit
 
 
 def _recorded(log: str) -> int | None:
-    """The start of the recording in nanoseconds since 1970, where the log states a date."""
+    """The start of the recording in nanoseconds since 1970, if the log states a date."""
     try:
         start = _start_of_folder(log) if is_folder(log) else _start_of_file(log)
     except OSError:  # the reader of the log reports what is wrong with it
@@ -81,14 +81,18 @@ def _start_of_file(log: str) -> int | None:
         if isinstance(source, Diagnostic) or source.stream.read(len(MAGIC)) != MAGIC:
             return None
         place = Source(name_of(log), "").span()
-        found = with_budget(source.size, place, lambda: summary(source.stream, source.size))
-        if found is None or isinstance(found, Diagnostic) or found.statistics is None:
+        file_summary = with_budget(source.size, place, lambda: summary(source.stream, source.size))
+        if (
+            file_summary is None
+            or isinstance(file_summary, Diagnostic)
+            or file_summary.statistics is None
+        ):
             return None
-        return int(found.statistics.message_start_time)
+        return int(file_summary.statistics.message_start_time)
 
 
 def _changed(log: str) -> int | None:
-    """When any of its files changed last."""
+    """The time of the last change of any file of the log."""
     if log == STDIN or is_url(log):
         return changed(log) if is_store(log) else None
     try:

@@ -1,7 +1,7 @@
-"""Whether the tables of a part agree on what is violated, without making its results of them.
+"""A quick check that the tables of a part agree on verdicts and violations.
 
-That is what a reader needs to know before it counts verdicts of many runs. Whether each column is
-the one that the results give takes all tables (`fretc.audit.store.reader.Store.check_tables`).
+A reader needs this before it counts the verdicts of many runs. The check of every column needs all
+tables (`fretc.audit.store.reader.Store.check_tables`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from compiler.files.checked_json import SchemaError
 from compiler.files.checked_json import plain as parsed
 from compiler.files.records import decoded
-from fretc.audit.evidence.briefs import brief, judgement_of
+from fretc.audit.evidence.result_summaries import brief, judgement_of
 from fretc.audit.evidence.schema import Result
 from fretc.audit.store.tables import (
     EVENTS,
@@ -25,8 +25,8 @@ from fretc.audit.store.tables import (
     SAMPLES,
     VIOLATIONS,
     TableName,
+    TableRows,
     Tables,
-    Taken,
 )
 
 Ticks = Sequence[int]
@@ -39,17 +39,17 @@ COLUMNS: Mapping[TableName, Sequence[str]] = {
     SAMPLES: ("violation_row",),
     RUNS: ("run", "results"),
 }
-"""Those of each table that `check` reads."""
+"""The columns of each table that `check` reads."""
 
 
 def check(tables: Tables) -> None:
-    """Hold verdict, run, requirement and violations of each result against the other tables.
+    """Check verdict, run, requirement and violations of each result against the other tables.
 
     Args:
-        tables: of a part, with at least `COLUMNS`.
+        tables: the tables of a part, with at least `COLUMNS`.
 
     Raises:
-        SchemaError: they contradict each other.
+        SchemaError: the tables contradict each other.
     """
     main, broken = tables[RESULTS], tables[VIOLATIONS]
     _check_names(main, tables[EVENTS], "events")
@@ -59,28 +59,28 @@ def check(tables: Tables) -> None:
     run_rows = _rows(main["run_row"], runs.num_rows)
     results = np.bincount(run_rows, minlength=runs.num_rows)
     if results.tolist() != runs["results"].to_pylist():
-        raise SchemaError("`results` does not have the rows that `runs` says")
+        raise SchemaError("`results` does not have the rows that `runs` states")
     if not _same(main["run"], runs["run"].take(run_rows)):
-        raise SchemaError("`results` names other runs than `runs`")
+        raise SchemaError("the runs in `results` and in `runs` differ")
     counts = np.bincount(rows, minlength=main.num_rows).tolist()
     known = zip(*_lists(main, "verdict", "judgement", "violations"), counts, strict=True)
     if [*known] != [*_expected(main, broken, tables[EVENTS], counts)]:
-        raise SchemaError("`results` does not count what is in the other tables")
+        raise SchemaError("the counts in `results` differ from the other tables")
 
 
-def _check_names(main: Taken, other: Taken, name: str) -> None:
+def _check_names(main: TableRows, other: TableRows, name: str) -> None:
     for column in _KEY:
         if not _same(main[column], other[column]):
             raise SchemaError(f"`{column}` of `{name}` is not that of `results`")
 
 
 def _same(column: Any, other: Any) -> bool:
-    is_same: bool = column.equals(other)  # however they are cut into pieces
+    is_same: bool = column.equals(other)  # independent of chunks
     return is_same
 
 
 def _rows(column: Any, count: int) -> Any:
-    """Numbers of rows of a table that has so many."""
+    """The row numbers of a table with so many rows."""
     rows = column.to_numpy()
     if column.null_count or (len(rows) and not 0 <= rows[0] <= rows[-1] < count):
         raise SchemaError("a table names a row that another one does not have")
@@ -90,9 +90,9 @@ def _rows(column: Any, count: int) -> Any:
 
 
 def _expected(
-    main: Taken, broken: Taken, events: Taken, counts: Sequence[int]
+    main: TableRows, broken: TableRows, events: TableRows, counts: Sequence[int]
 ) -> Iterator[tuple[str, str, int, int]]:
-    """Verdict, judgement and number of violations of each result, and how many rows these have."""
+    """Verdict, fingerprint and number of violations of each result, and its number of rows."""
     spans = [[*ticks] for ticks in zip(*_lists(broken, "first_tick", "last_tick"), strict=True)]
     open_at = (_ticks(moments or ()) for moments in events["open"].to_pylist())
     rows = zip(*_lists(main, *_JUDGED, EXACT), _cut(spans, counts), open_at, strict=True)
@@ -106,15 +106,15 @@ def _expected(
 
 
 def _ticks(moments: Sequence[Mapping[str, int] | None]) -> list[int | None]:
-    """Those of moments; a moment that is missing has none, and no judgement is about that."""
-    return [None if each is None else each["tick"] for each in moments]
+    """The ticks of moments; a missing moment has none."""
+    return [None if moment is None else moment["tick"] for moment in moments]
 
 
-def _lists(table: Taken, *columns: str) -> Iterator[list[Any]]:
+def _lists(table: TableRows, *columns: str) -> Iterator[list[Any]]:
     return (table[name].to_pylist() for name in columns)
 
 
 def _cut(items: Sequence[Ticks], counts: Sequence[int]) -> Iterator[Sequence[Ticks]]:
-    """The items in pieces of these lengths."""
+    """The items in lists of these lengths."""
     for start, end in pairwise(accumulate(counts, initial=0)):
         yield items[start:end]

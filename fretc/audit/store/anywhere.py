@@ -1,4 +1,4 @@
-"""Evidence wherever it is: in a JSON file or in a store."""
+"""Evidence in a JSON file or in a store."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import os
 from dataclasses import replace
 
 from fretc.audit.evidence import reader as files
-from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.reader import EvidenceFile
+from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.store.errors import StoreError
 from fretish.diagnostics.diagnostic import Diagnostic, Severity
 
 
 def read(path: str) -> EvidenceFile | Diagnostic:
-    """Read and check evidence; a note, not an error, where there is none yet.
+    """Read and check evidence; a note, not an error, if it does not exist yet.
 
     Args:
-        path: a file, or the folder of a store: that is read into memory as a whole.
+        path: a file, or the folder of a store, which is read into memory as a whole.
     """
     if not os.path.isdir(path):
         return files.read(path)
@@ -32,13 +32,13 @@ def read(path: str) -> EvidenceFile | Diagnostic:
 
 
 def source(path: str, *, in_full: bool = False) -> EvidenceSource | Diagnostic:
-    """Evidence to read from, of a store little at a time; a note where there is none yet.
+    """An evidence source that reads a store piece by piece; a note if it does not exist yet.
 
-    Its methods raise `StoreError` where a store turns out not to be what it must be.
+    Its methods raise `StoreError` if a store turns out to be invalid.
 
     Args:
         path: a file, or the folder of a store.
-        in_full: hold each table of a store against its results; else the verdicts alone.
+        in_full: check each table of a store against its results; otherwise only the verdicts.
     """
     if not os.path.isdir(path):
         return files.read(path)
@@ -55,13 +55,15 @@ def source(path: str, *, in_full: bool = False) -> EvidenceSource | Diagnostic:
 
 
 def required_source(path: str, *, in_full: bool = False) -> EvidenceSource | Diagnostic:
-    """The same; an error where there is none."""
-    found = source(path, in_full=in_full)
-    return replace(found, severity=Severity.ERROR) if isinstance(found, Diagnostic) else found
+    """An evidence source; an error if the evidence does not exist."""
+    evidence = source(path, in_full=in_full)
+    return (
+        replace(evidence, severity=Severity.ERROR) if isinstance(evidence, Diagnostic) else evidence
+    )
 
 
 def required(path: str) -> EvidenceFile | Diagnostic:
-    """The same; an error where there is none."""
+    """The evidence, or an error if it does not exist."""
     evidence = read(path)
     if isinstance(evidence, Diagnostic):
         return replace(evidence, severity=Severity.ERROR)

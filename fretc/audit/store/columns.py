@@ -1,7 +1,7 @@
-"""Columns of a table, made of the types of records: values become a column, and come back.
+"""Columns of a table from the types of records: conversion of values to columns and back.
 
-A column says of a value whether it holds it exactly. What no column holds (a time beyond 64 bits, a
-whole number where numbers have a point) is kept as text beside them.
+A column reports values that it cannot hold exactly (a time beyond 64 bits, a whole number in a
+column of real numbers); they are stored as text beside it.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ _INFINITE_WORDS = {inf: "+inf", -inf: "-inf"}
 
 
 class InexactError(ValueError):
-    """A column does not hold a value as it is."""
+    """A column cannot hold a value exactly."""
 
 
 class Column(Protocol):
-    """One kind of value, in Arrow's form and in Python's. None and `UNSET` are null."""
+    """The conversion of one kind of value between Python and Arrow. None and `UNSET` are null."""
 
     @property
     def type(self) -> pa.DataType:
-        """Of Arrow."""
+        """The type in Arrow."""
 
     def array(self, values: Sequence[Any], *, exact: bool) -> pa.Array:
-        """The column.
+        """The values as an Arrow array.
 
         Args:
-            values: of records.
+            values: values of records.
             exact: raise an error instead of the nearest value.
 
         Raises:
@@ -46,7 +46,7 @@ class Column(Protocol):
         """
 
     def values(self, array: pa.Array) -> list[Any]:
-        """Plain values, as JSON has them; None for null."""
+        """Plain values, as in JSON; None for null."""
 
 
 # Single values ---------------------------------------------------------------------------------
@@ -58,15 +58,15 @@ def _kinds(values: Sequence[Any]) -> set[type]:
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A text, or one of some words."""
+    """A text, or one of some enumeration values."""
 
     @property
     def type(self) -> pa.DataType:
-        """A text."""
+        """The type of texts."""
         return pa.string()
 
     def array(self, values: Sequence[Any], *, exact: bool) -> pa.Array:
-        """Half of a character, as a name of a file may have it, cannot be held."""
+        """The texts as an array; an unpaired surrogate, as in some file names, cannot be held."""
         if type(UNSET) in _kinds(values):
             values = [None if value is UNSET else value for value in values]
         try:
@@ -88,11 +88,11 @@ class Flag:
 
     @property
     def type(self) -> pa.DataType:
-        """A bit."""
+        """The type of truth values."""
         return pa.bool_()
 
     def array(self, values: Sequence[Any], *, exact: bool) -> pa.Array:
-        """Always exact."""
+        """The truth values as an array, always exact."""
         return pa.array(values, self.type)
 
     def values(self, array: pa.Array) -> list[Any]:
@@ -106,11 +106,11 @@ class Whole:
 
     @property
     def type(self) -> pa.DataType:
-        """Of 64 bits."""
+        """The type of whole numbers of 64 bits."""
         return pa.int64()
 
     def array(self, values: Sequence[Any], *, exact: bool) -> pa.Array:
-        """A larger number cannot be held: without `exact` it is null."""
+        """The numbers as an array; without `exact` a larger number becomes null."""
         try:
             return pa.array(values, self.type)
         except OverflowError as error:
@@ -126,20 +126,22 @@ class Whole:
 
 @dataclass(frozen=True, slots=True)
 class Real:
-    """A number, which may be infinite where its type has words for that."""
+    """A number, which may be infinite if its type has words for infinity."""
 
     @property
     def type(self) -> pa.DataType:
-        """Of 64 bits."""
+        """The type of numbers of 64 bits."""
         return pa.float64()
 
     def array(self, values: Sequence[Any], *, exact: bool) -> pa.Array:
-        """A whole number cannot be held: `1` is another text than `1.0`."""
+        """The numbers as an array; whole numbers cannot be held, because `1` is not `1.0`."""
         kinds = _kinds(values)
         if exact and int in kinds:
             raise InexactError
         if kinds & {int, str}:
-            values = [None if each is None else float(_INFINITE.get(each, each)) for each in values]
+            values = [
+                None if value is None else float(_INFINITE.get(value, value)) for value in values
+            ]
         return pa.array(values, self.type)
 
     def values(self, array: pa.Array) -> list[Any]:
@@ -150,27 +152,27 @@ class Real:
         return found  # type: ignore[no-any-return]
 
 
-# What is made of others -------------------------------------------------------------------------
+# Composite values -------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """A part of a record."""
+    """A field of a record."""
 
     name: str
-    """In the file."""
+    """The name in the file."""
     attribute: str
-    """Where the part is: a path of attributes."""
+    """The path of attributes to the field."""
     column: Column
     absent: bool = False
-    """Whether null is a key that is left out."""
+    """Whether null means that the key is left out."""
 
     def below(self, path: str) -> Field:
-        """The same part of a part."""
+        """The field as part of a nested record."""
         return replace(self, attribute=f"{path}.{self.attribute}")
 
     def array(self, records: Sequence[Any], *, exact: bool) -> pa.Array:
-        """The column of these records."""
+        """The column of the field in these records."""
         return self.column.array([*map(attrgetter(self.attribute), records)], exact=exact)
 
 
@@ -182,19 +184,19 @@ class Struct:
 
     @property
     def type(self) -> pa.DataType:
-        """A field for each part."""
-        return pa.struct([pa.field(each.name, each.column.type) for each in self.fields])
+        """A struct with a field for each field of the record."""
+        return pa.struct([pa.field(field.name, field.column.type) for field in self.fields])
 
     def array(self, values: Sequence[Any], *, exact: bool) -> pa.Array:
-        """The column."""
+        """The records as an array."""
         null = [value is None or value is UNSET for value in values]
         if not any(null):
-            parts = [each.array(values, exact=exact) for each in self.fields]
+            parts = [field.array(values, exact=exact) for field in self.fields]
             return pa.StructArray.from_arrays(parts, fields=[*self.type])
         there = [value for value, no in zip(values, null, strict=True) if not no]
         places = iter(range(len(there)))
         rows = pa.array([None if no else next(places) for no in null], pa.int64())
-        parts = [each.array(there, exact=exact).take(rows) for each in self.fields]
+        parts = [field.array(there, exact=exact).take(rows) for field in self.fields]
         return pa.StructArray.from_arrays(parts, fields=[*self.type], mask=pa.array(null))
 
     def values(self, array: pa.Array) -> list[Any]:
@@ -208,10 +210,10 @@ class Struct:
 
 def objects(fields: Sequence[Field], arrays: Sequence[pa.Array]) -> list[Any]:
     """An object for each row."""
-    names = [each.name for each in fields]
+    names = [field.name for field in fields]
     parts = [each.column.values(array) for each, array in zip(fields, arrays, strict=True)]
     rows = [dict(zip(names, row, strict=True)) for row in zip(*parts, strict=True)]
-    for name in (each.name for each in fields if each.absent):
+    for name in (field.name for field in fields if field.absent):
         for row in rows:
             if row[name] is None:
                 del row[name]
@@ -220,7 +222,7 @@ def objects(fields: Sequence[Field], arrays: Sequence[pa.Array]) -> list[Any]:
 
 @dataclass(frozen=True, slots=True)
 class Items:
-    """Several values of one kind, in their order."""
+    """A list of values of one kind."""
 
     item: Column
 
@@ -230,7 +232,7 @@ class Items:
         return pa.list_(self.item.type)
 
     def array(self, values: Sequence[Any], *, exact: bool) -> pa.Array:
-        """The column."""
+        """The lists as an array."""
         offsets = _offsets(values)
         inner = self.item.array(_flat(values), exact=exact)
         return pa.ListArray.from_arrays(offsets, inner, type=self.type)
@@ -242,7 +244,7 @@ class Items:
 
 @dataclass(frozen=True, slots=True)
 class Entries:
-    """Values by their names, in their order."""
+    """A map from names to values."""
 
     item: Column
 
@@ -252,7 +254,7 @@ class Entries:
         return pa.map_(pa.string(), self.item.type)
 
     def array(self, values: Sequence[Any], *, exact: bool) -> pa.Array:
-        """The column."""
+        """The maps as an array."""
         keys = Text().array(_flat(values), exact=exact)
         rows = [value.values() for value in values if value]
         items = self.item.array([*chain.from_iterable(rows)], exact=exact)
@@ -267,7 +269,7 @@ class Entries:
         rows = _cut(array, pairs)
         found = [None if row is None else dict(row) for row in rows]
         if sum(map(len, filter(None, found))) != len(pairs):
-            raise InexactError("a name is there twice")
+            raise InexactError("a name occurs twice")
         return found
 
 
@@ -299,7 +301,7 @@ def _cut(array: pa.Array, items: Sequence[Any]) -> list[Any]:
 
 @dataclass(frozen=True, slots=True)
 class Tuple:
-    """So many values, each of its own kind."""
+    """A tuple of values, each of its own kind."""
 
     items: tuple[Column, ...]
 
@@ -309,7 +311,7 @@ class Tuple:
         return pa.struct([(f"{n + 1}", item.type) for n, item in enumerate(self.items)])
 
     def array(self, values: Sequence[Any], *, exact: bool) -> pa.Array:
-        """The column; of tuples none is null."""
+        """The tuples as an array; no tuple is null."""
         columns = zip(*values, strict=True) if values else [()] * len(self.items)
         parts = [
             item.array(column, exact=exact)
@@ -329,11 +331,11 @@ class NumberOrWord:
 
     @property
     def type(self) -> pa.DataType:
-        """A struct of both; where neither is known, both are null."""
+        """A struct of both; both are null if the value is unknown."""
         return pa.struct([("number", pa.float64()), ("word", pa.string())])
 
     def array(self, values: Sequence[Any], *, exact: bool) -> pa.Array:
-        """The column."""
+        """The values as an array."""
         numbers = [None if isinstance(value, str) else value for value in values]
         words = [value if isinstance(value, str) else None for value in values]
         parts = [Real().array(numbers, exact=exact), Text().array(words, exact=exact)]
@@ -346,26 +348,26 @@ class NumberOrWord:
         return [number if word is None else word for number, word in pairs]
 
 
-# Of types ---------------------------------------------------------------------------------------
+# Columns of types -------------------------------------------------------------------------------
 
 
 @cache
 def fields_of(record: type) -> tuple[Field, ...]:
-    """A column for each part of a record, by the names of its file."""
+    """A column for each field of a record, by its name in the file."""
     return _fields(types.type_info(record))
 
 
 def _fields(kind: Any) -> tuple[Field, ...]:
     return tuple(
-        Field(each.encode_name, each.name, column_of(each.type), not each.required)
-        for each in kind.fields
+        Field(field.encode_name, field.name, column_of(field.type), not field.required)
+        for field in kind.fields
     )
 
 
 def column_of(kind: Any) -> Column:
-    """The column of a type, as `types.type_info` describes it."""
+    """The column for a type, as `types.type_info` describes it."""
     options = _options(kind)
-    names = {type(each) for each in options}
+    names = {type(option) for option in options}
     if names == {types.FloatType, types.StrType}:
         return NumberOrWord()
     if types.FloatType in names:
@@ -391,12 +393,12 @@ def column_of(kind: Any) -> Column:
 
 
 def _options(kind: Any) -> list[Any]:
-    """Which kinds of values there may be beside null; a number may be whole."""
+    """The kinds of values other than null; a number may be whole."""
     while isinstance(kind, types.Metadata):
         kind = kind.type
     if not isinstance(kind, types.UnionType):
         return [kind]
-    options = [each for inner in kind.types for each in _options(inner)]
-    some = [each for each in options if not isinstance(each, types.NoneType)]
-    has_point = any(isinstance(each, types.FloatType) for each in some)
-    return [each for each in some if not (has_point and isinstance(each, types.IntType))]
+    options = [option for inner in kind.types for option in _options(inner)]
+    present = [option for option in options if not isinstance(option, types.NoneType)]
+    has_point = any(isinstance(each, types.FloatType) for each in present)
+    return [each for each in present if not (has_point and isinstance(each, types.IntType))]

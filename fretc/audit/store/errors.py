@@ -1,4 +1,4 @@
-"""What is wrong with a store, while it is read."""
+"""The error for invalid stores."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 
 class StoreError(Exception):
-    """A table of a store is not what it must be."""
+    """A table of a store is invalid."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)

@@ -1,4 +1,4 @@
-"""Tables as files: the same table gives the same bytes, and no untrusted file costs too much."""
+"""Tables as files: equal tables give equal bytes, and untrusted files have limited cost."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from compiler.files.checked_json import SchemaError
 from fretc.audit.store.manifest import Table
 
 LARGEST = 2**30
-"""Bytes of a table, as a file and in memory."""
+"""The most bytes of a table, as a file and in memory."""
 ROWS = 2048
-"""Rows of a group: what is in memory at once of a table that is read row by row."""
+"""Rows of a row group, the unit that is decoded at once when a table is read by row."""
 MOST_VALUES = 2**27
-"""Values of a column of a table, with all that is nested."""
+"""The most values of a column of a table, with nested ones."""
 
 
 def encoded(table: pa.Table) -> tuple[bytes, Table]:
-    """The file of a table, and what a manifest says of it."""
+    """The file of a table, and its entry in a manifest."""
     stream = pa.BufferOutputStream()
-    whole = table.combine_chunks()  # how it was put together must not show
+    whole = table.combine_chunks()  # the bytes must not depend on its chunks
     write_table(whole, stream, compression="zstd", row_group_size=ROWS)
     data = stream.getvalue().to_pybytes()
     return data, Table(hashlib.sha256(data).hexdigest(), len(data), len(whole))
@@ -39,8 +39,8 @@ def content(path: Path, file: Table) -> bytes:
     """The bytes of a table.
 
     Raises:
-        SchemaError: they are not those that the manifest names.
-        OSError: they cannot be read.
+        SchemaError: the bytes are not those that the manifest lists.
+        OSError: the file cannot be read.
     """
     if file.size > LARGEST:
         raise SchemaError(f"`{path}` would be larger than {LARGEST // 2**20} MiB")
@@ -52,7 +52,7 @@ def content(path: Path, file: Table) -> bytes:
 
 
 def _opened(path: Path) -> int:
-    """A descriptor of a regular file: neither it nor its folder is a link to somewhere else."""
+    """A descriptor of a regular file; neither the file nor its folder is a link."""
     own = os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW
     folder = os.open(path.parent, own | os.O_DIRECTORY)
     try:
@@ -71,7 +71,7 @@ def decoded(
     """A table, or some of its columns.
 
     Raises:
-        SchemaError: it is none of this kind.
+        SchemaError: the file is not a table of this kind.
     """
     wanted = types.names if columns is None else [*columns]
     with _parquet(data, file, types) as parquet:
@@ -80,11 +80,11 @@ def decoded(
 
 
 LATER = frozenset({"situations"})
-"""Columns that the first stores do not have: nothing is known of them there."""
+"""Columns that the first stores do not have: they are read as unknown."""
 
 
 def _with_later(table: pa.Table, types: pa.Schema, wanted: Sequence[str]) -> pa.Table:
-    """The table with all columns that are wanted; those of `LATER` that it lacks are null."""
+    """The table with all wanted columns; those of `LATER` that it lacks are null."""
     for place, name in enumerate(wanted):
         if name not in table.schema.names:
             empty = pa.nulls(table.num_rows, types.field(name).type)
@@ -104,9 +104,9 @@ def _parquet(data: bytes, file: Table, types: pa.Schema) -> Iterator[ParquetFile
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """A table that stays encoded: what is asked for is decoded, a group of rows after the other.
+    """A table that stays encoded: rows are decoded on demand, one row group after the other.
 
-    The methods raise `SchemaError` where it is none of its kind.
+    The methods raise `SchemaError` if the file is not a table of its kind.
     """
 
     data: bytes
@@ -115,7 +115,7 @@ class Rows:
 
     @property
     def num_rows(self) -> int:
-        """As a table of Arrow says it."""
+        """The number of rows."""
         return self.file.rows
 
     def __getitem__(self, column: str) -> pa.ChunkedArray:
@@ -123,7 +123,7 @@ class Rows:
         return decoded(self.data, self.file, self.types, (column,))[column]
 
     def take(self, rows: pa.Array) -> pa.Table:
-        """Some rows, which rise."""
+        """Some rows, in rising order."""
         wanted = rows.to_numpy()
         parts = [self.types.empty_table()]
         with _parquet(self.data, self.file, self.types) as parquet:
@@ -144,7 +144,7 @@ class Rows:
 
 
 def _spans(parquet: ParquetFile) -> Iterator[tuple[int, int, int]]:
-    """Each group of rows with its first row, and the first behind it."""
+    """Each row group with its first row and the row after its last one."""
     start = 0
     for number in range(parquet.num_row_groups):
         end = start + parquet.metadata.row_group(number).num_rows
@@ -157,8 +157,8 @@ def _check(parquet: ParquetFile, file: Table, types: pa.Schema) -> None:
     if about.num_rows != file.rows:
         raise SchemaError("a table does not have as many rows as the manifest says")
     there = parquet.schema_arrow
-    known = [each for each in types if each.name in there.names or each.name not in LATER]
-    if not there.equals(pa.schema(known)):
+    expected = [each for each in types if each.name in there.names or each.name not in LATER]
+    if not there.equals(pa.schema(expected)):
         raise SchemaError("a table does not have the columns of this version of fretc")
     groups = [about.row_group(number) for number in range(about.num_row_groups)]
     chunks = [group.column(number) for group in groups for number in range(group.num_columns)]

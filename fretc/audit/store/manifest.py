@@ -1,7 +1,7 @@
-"""The manifest of a store: what its tables are about, and the SHA-256 of each.
+"""The manifest of a store: the facts of the audit, and the SHA-256 of each table.
 
-A table is called by the beginning of its SHA-256, so no name in a manifest leads anywhere, and a
-new manifest takes the place of an old one without touching what that one needs.
+The file name of a table is the beginning of its SHA-256. So no name in a manifest leads elsewhere,
+and a new manifest replaces an old one without touching the tables of the old one.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ from fretc.audit.store.tables import TableName
 SCHEMA: Final = "fretc-store-1"
 FILE = "manifest.json"
 UNFINISHED = "unfinished.json"
-"""The manifest of an audit that goes on, or was stopped."""
+"""The manifest of an audit that is in progress or was stopped."""
 REUSE = {FILE: "reuse.json", UNFINISHED: "unfinished-reuse.json"}
-"""Manifest → the file that vouches for it (`fretc.audit.store.register`)."""
+"""Manifest → the file that authenticates it (`fretc.audit.store.register`)."""
 REGISTER = "register"
 SUFFIX = ".parquet"
 _NAME = 32
-"""Digits of a SHA-256 that make the name of a file."""
+"""Digits of a SHA-256 that form the name of a file."""
 
 
 class Table(Record, frozen=True):
-    """A file of a store."""
+    """A table file of a store."""
 
     sha256: Sha256
     size: Annotated[Count, about("bytes")]
@@ -46,7 +46,7 @@ class Table(Record, frozen=True):
 
 
 class Part(Record, frozen=True):
-    """Some logs that follow each other."""
+    """A part: some consecutive logs."""
 
     runs: Count
     results: Count
@@ -54,7 +54,7 @@ class Part(Record, frozen=True):
 
 
 class Manifest(Record, frozen=True):
-    """What a store is about."""
+    """The manifest of a store."""
 
     schema: Literal["fretc-store-1"]
     fretc: Annotated[str, about("version of the tool")]
@@ -62,10 +62,10 @@ class Manifest(Record, frozen=True):
     requirements: tuple[Requirement, ...]
     confidence: Annotated[
         Annotated[float, Meta(gt=0.5, lt=1)] | None,
-        about("of what all runs say of a probability; null: it is not known"),
+        about("over all runs, for a requirement with a probability; null: it is unknown"),
     ]
     parts: Annotated[tuple[Part, ...], about("in the order of the logs")]
-    register: Annotated[Table | UnsetType, about("which log is known by what")] = UNSET
+    register: Annotated[Table | UnsetType, about("how each log was identified")] = UNSET
     probabilities: Annotated[
         Annotated[tuple[Estimated, ...], Meta(min_length=1)] | UnsetType,
         about("what all runs together say of each requirement with a probability"),
@@ -76,12 +76,12 @@ class Manifest(Record, frozen=True):
 
 
 def place(table: str, file: Table) -> PurePosixPath:
-    """Where a table is, in the folder of its store."""
+    """The path of a table in the folder of its store."""
     return PurePosixPath(table, f"{file.sha256[:_NAME]}{SUFFIX}")
 
 
 def text(manifest: Manifest) -> str:
-    """The file: the same values give the same bytes."""
+    """The text of the manifest: equal values give equal bytes."""
     return f"{to_json(plain(manifest))}\n"
 
 
@@ -91,6 +91,6 @@ def schema() -> dict[str, Any]:
         Manifest,
         SCHEMA,
         "The manifest of a store of evidence, as `fretc audit` writes it",
-        "A table lies in a folder of its name, and is called by the first 32 digits of its "
-        "SHA-256.",
+        "A table is a file in a folder with the name of the table; the file name is the first "
+        "32 digits of its SHA-256.",
     )

@@ -1,4 +1,4 @@
-"""Where a list of logs is cut into parts: by names alone, so that a new log changes one part."""
+"""The division of a list of logs into parts, by names alone, so that a new log changes one part."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import hashlib
 from collections.abc import Iterator, Sequence
 
 AVERAGE = 64
-"""Logs of a part: one name in so many ends it."""
+"""The average number of logs of a part: one name in so many ends it."""
 MOST = 2 * AVERAGE
-"""Logs of a part."""
+"""The most logs of a part."""
 
 
 def parts(names: Sequence[str]) -> Iterator[range]:
-    """The places of each part's logs, in their order.
+    """The indices of each part's logs, in their order.
 
     Args:
-        names: of the logs.
+        names: the names of the logs.
     """
     start = 0
     for place, name in enumerate(names):

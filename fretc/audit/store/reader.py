@@ -20,8 +20,8 @@ from compiler.files.checked_json import plain as parsed
 from compiler.files.records import UNSET, UnsetType, decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.briefs import Brief, Headed, RunFacts, brief
 from fretc.audit.evidence.reader import EvidenceFile
+from fretc.audit.evidence.result_summaries import HeadProperties, ResultSummary, RunFacts, brief
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
 from fretc.audit.evidence.schema import (
     Document,
@@ -39,17 +39,17 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
 T = TypeVar("T")
-_BEGUN = "its audit has not come to its end"
+_BEGUN = "its audit was not finished"
 _BATCH = 512
-"""Results that are read at once."""
+"""The number of results that are read at once."""
 
 
 def opened(path: str, name: str = FILE) -> Store | Diagnostic:
-    """A store whose tables are those of its manifest.
+    """A store whose tables match its manifest.
 
     Args:
-        path: its folder.
-        name: of the manifest.
+        path: the folder of the store.
+        name: the file name of the manifest.
     """
     source = read_text(f"{path}/{name}")
     if isinstance(source, Diagnostic):
@@ -58,10 +58,12 @@ def opened(path: str, name: str = FILE) -> Store | Diagnostic:
         is_begun = os.path.exists(f"{path}/{UNFINISHED}")
         return _wrong(path, "has no manifest: " + _BEGUN if is_begun else "has no manifest")
     try:
-        found = decoded(parsed(source.text), Manifest)
+        store_manifest = decoded(parsed(source.text), Manifest)
     except SchemaError as error:
-        return _wrong(path, f"has a manifest that is none of fretc: {error}")
-    store = Store(str(Path(path)), sha256(source.text), found)  # signatures stand beside it
+        return _wrong(path, f"has a manifest that fretc did not write: {error}")
+    store = Store(
+        str(Path(path)), sha256(source.text), store_manifest
+    )  # signatures are beside the manifest
     try:
         store.check()
     except StoreError as error:
@@ -70,7 +72,7 @@ def opened(path: str, name: str = FILE) -> Store | Diagnostic:
 
 
 def manifest(folder: Path, name: str) -> Manifest | None:
-    """A manifest; None where there is none."""
+    """A manifest; None: the file does not exist."""
     source = read_text(str(folder / name))
     try:
         return None if isinstance(source, Diagnostic) else decoded(parsed(source.text), Manifest)
@@ -79,7 +81,7 @@ def manifest(folder: Path, name: str) -> Manifest | None:
 
 
 @dataclass(frozen=True)
-class Store(Headed):
+class Store(HeadProperties):
     """An `EvidenceSource`. The methods that read tables raise `StoreError`."""
 
     file: str
@@ -88,14 +90,14 @@ class Store(Headed):
 
     @property
     def head(self) -> Manifest:
-        """What it says of the audit as a whole."""
+        """The facts of the audit as a whole."""
         return self.manifest
 
     def check(self) -> None:
-        """Hold every table against the manifest: its bytes, and how many rows there are."""
+        """Check every table against the manifest: its bytes, and its number of rows."""
         for part in self.manifest.parts:
             if part.tables.keys() != TABLES.keys():
-                raise self._error("names other tables than fretc writes")
+                raise self._error("lists tables that fretc does not write")
             rows = {name: file.rows for name, file in part.tables.items()}
             if (rows[RESULTS], rows[EVENTS], rows[RUNS]) != (part.results, part.results, part.runs):
                 raise self._error("has a manifest that contradicts itself")
@@ -104,8 +106,8 @@ class Store(Headed):
         if self.manifest.register:
             self._content(REGISTER, self.manifest.register)
 
-    def briefs(self) -> Iterator[tuple[int, Brief]]:
-        """Each result with its place, in order: the requirements of a run stand together."""
+    def briefs(self) -> Iterator[tuple[int, ResultSummary]]:
+        """The summary of each result with its index, in order; the results of a run adjoin."""
         for start, part in self._parts():
             yield from enumerate(self._read(part, RESULTS, tables.briefs), start)
 
@@ -114,9 +116,9 @@ class Store(Headed):
         for _, part in self._parts():
             yield from self._read(part, RUNS, tables.facts)
 
-    def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
-        """The whole results at some places, in order."""
-        wanted = sorted({*places})
+    def details(self, indices: Collection[int]) -> Iterator[tuple[int, Result]]:
+        """The whole results at the given indices, in order."""
+        wanted = sorted({*indices})
         for start, part in self._parts():
             rows = [at - start for at in wanted if start <= at < start + part.results]
             if rows:
@@ -125,24 +127,24 @@ class Store(Headed):
     def _details(self, part: Part, start: int, rows: Sequence[int]) -> Iterator[tuple[int, Result]]:
         of_part = {name: self._rows(part, name) for name in TABLES}
         for at in range(0, len(rows), _BATCH):
-            some = rows[at : at + _BATCH]
+            batch = rows[at : at + _BATCH]
             try:
-                counted = of_part[RESULTS].take(pa.array(some, pa.int64()))
-                found = tables.results(of_part, some)
-                if tables.briefs(counted) != [*map(brief, found)]:
-                    raise SchemaError("`results` does not count what is in the other tables")
+                counted = of_part[RESULTS].take(pa.array(batch, pa.int64()))
+                results = tables.results(of_part, batch)
+                if tables.briefs(counted) != [*map(brief, results)]:
+                    raise SchemaError("the counts in `results` differ from the other tables")
             except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
-            yield from zip((start + row for row in some), found, strict=True)
+            yield from zip((start + row for row in batch), results, strict=True)
 
     def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
-        """Latencies in seconds of each result of some requirements, with its place, in order."""
+        """Latencies in seconds of each result of some requirements, with its index, in order."""
         yield from self._nested(requirements, "latencies_s")
 
     def thresholds(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Sequence[Threshold]]]:
-        """The thresholds of each result of some requirements, with its place, in order."""
+        """The thresholds of each result of some requirements, with its index, in order."""
         for at, value in self._nested(requirements, "thresholds"):
             try:
                 yield at, decoded(value, list[Threshold])
@@ -152,7 +154,7 @@ class Store(Headed):
     def situations(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Situations | UnsetType]]:
-        """Which situations each result of some requirements shows, with its place, in order."""
+        """The situations that each result of some requirements shows, with its index, in order."""
         for at, value in self._nested(requirements, "situations"):
             try:
                 yield at, UNSET if value is None else decoded(value, Situations)
@@ -161,12 +163,12 @@ class Store(Headed):
 
     def _nested(self, requirements: Collection[str], column: str) -> Iterator[tuple[int, Any]]:
         for start, part in self._parts():
-            some: dict[TableName, pa.Table] = {
+            tables_of_part: dict[TableName, pa.Table] = {
                 RESULTS: self._table(part, RESULTS, ("requirement", EXACT)),
                 EVENTS: self._table(part, EVENTS, (column,)),
             }
             try:
-                found = tables.nested(some, column, requirements)
+                found = tables.nested(tables_of_part, column, requirements)
             except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
             yield from ((start + row, value) for row, value in found)
@@ -174,63 +176,65 @@ class Store(Headed):
     def tallies(self) -> Iterator[dict[str, Tally]]:
         """The tally of each proposition in each run."""
         for _, part in self._parts():
-            some: dict[TableName, pa.Table] = {
+            tables_of_part: dict[TableName, pa.Table] = {
                 RESULTS: self._table(part, RESULTS, ("run_row",)),
                 EVENTS: self._table(part, EVENTS, ("propositions",)),
                 RUNS: self._table(part, RUNS, ("run",)),
             }
             try:
-                yield from tables.tallies(some)
+                yield from tables.tallies(tables_of_part)
             except (SchemaError, IndexError) as error:
                 raise self._error(f"cannot be read: {error}") from None
 
     def whole(self, name: TableName) -> pa.Table:
         """All rows of a table."""
-        found = [self._table(part, name) for _, part in self._parts()]
-        return pa.concat_tables([tables.schema(name).empty_table(), *found])
+        tables_of_parts = [self._table(part, name) for _, part in self._parts()]
+        return pa.concat_tables([tables.schema(name).empty_table(), *tables_of_parts])
 
     def counts(self) -> Iterator[int]:
-        """How many results each run has."""
+        """The number of results of each run."""
         for _, part in self._parts():
             yield from self._table(part, RUNS, ("results",))["results"].to_pylist()
 
     def check_verdicts(self) -> None:
-        """Hold what `results` says of violations against the tables that have them.
+        """Check the violations in `results` against the tables that list them.
 
         Raises:
-            StoreError: they contradict each other.
+            StoreError: the tables contradict each other.
         """
         for _, part in self._parts():
-            some = {name: self._table(part, name, agreement.COLUMNS[name]) for name in TABLES}
+            tables_of_part = {
+                name: self._table(part, name, agreement.COLUMNS[name]) for name in TABLES
+            }
             try:
-                agreement.check(some)
+                agreement.check(tables_of_part)
             except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
 
     def check_tables(self) -> None:
-        """Hold each table against the one that the results give, a part after the other.
+        """Check each table against the one that the results give, part by part.
 
         Raises:
-            StoreError: what a table says of a result is not so.
+            StoreError: a table contradicts the results.
         """
         for _ in self.checked_results():
             pass
 
     def checked_results(self) -> Iterator[Result]:
-        """All results, in order, those of a part when its tables are what they give."""
+        """All results, in order; each part's tables are checked before its results."""
         for start, part in self._parts():
             results = [each for _, each in self.details(range(start, start + part.results))]
-            expected = tables.tabled(results, self.manifest.fretc)
+            expected = tables.to_tables(results, self.manifest.fretc)
             for name in TABLES:
-                found = self._table(part, name)
-                for column in found.column_names:
-                    if not found[column].equals(expected[name][column]):
-                        what = f"`{column}` of `{name}` is not what the results give"
+                stored = self._table(part, name)
+                for column in stored.column_names:
+                    if not stored[column].equals(expected[name][column]):
+                        what = f"`{column}` of `{name}` does not match the results"
                         raise self._error(f"cannot be read: {what}")
             yield from results
 
     def register(self) -> list[Entry]:
-        """What each log was, in the order of the runs; empty where it is not known."""
+        """The register entry of each log, in the order of the runs; empty: unknown."""
         file = self.manifest.register
         if not file:
             return []
@@ -241,7 +245,7 @@ class Store(Headed):
             raise self._error(f"cannot be read: {error}") from None
 
     def _parts(self) -> Iterator[tuple[int, Part]]:
-        """Each part with the place of its first result."""
+        """Each part with the index of its first result."""
         parts = self.manifest.parts
         starts = accumulate((part.results for part in parts), initial=0)
         return zip(starts, parts, strict=False)
@@ -250,8 +254,8 @@ class Store(Headed):
         self, part: Part, name: TableName, read: Callable[[pa.Table], list[T]]
     ) -> Iterator[T]:
         try:
-            for some in self._rows(part, name).groups():
-                yield from read(some)
+            for group in self._rows(part, name).groups():
+                yield from read(group)
         except SchemaError as error:
             raise self._error(f"cannot be read: {error}") from None
 
@@ -281,10 +285,10 @@ class Store(Headed):
 
 
 def evidence(store: Store) -> EvidenceFile:
-    """All of a store in memory.
+    """The whole store in memory.
 
     Raises:
-        StoreError: it cannot be read.
+        StoreError: the store cannot be read.
     """
     manifest = store.manifest
     results = tuple(store.checked_results())

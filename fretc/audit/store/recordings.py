@@ -33,13 +33,13 @@ from fretish.diagnostics.source import Source, Span
 
 SCHEMA = "fretc-columns-2"
 SUFFIX = ".columns"
-"""Of the folder that stands beside the evidence."""
+"""The suffix of the folder beside the evidence."""
 _MOST = 2**28
-"""Bytes of a file; larger recordings are read from their logs."""
+"""The most bytes of a file; larger recordings are read from their logs."""
 _CHECK = 32
-"""Bytes of the check, with which a file begins."""
+"""The bytes of the authentication code, with which a file begins."""
 _LENGTH = 8
-"""Bytes that follow it: how long the description is."""
+"""The bytes after it with the length of the description."""
 _CODES = {code.number: code for code in Code}
 Array = NDArray[Any]
 KnownBy = Literal["read", "stamp", "sha256"]
@@ -47,24 +47,24 @@ KnownBy = Literal["read", "stamp", "sha256"]
 
 @dataclass(frozen=True, slots=True)
 class SampleCache:
-    """The folder in which an audit keeps the samples of its logs."""
+    """The cache folder in which an audit keeps the samples of its logs."""
 
     folder: Path
     key: bytes
-    """Of the user."""
+    """The key of the user."""
     rehash: bool = False
-    """Know a log by its SHA-256 alone."""
+    """Identify logs by their SHA-256 alone, not by size and times."""
 
     def recording(
         self, log: str, declarations: Declarations, wanted: Sequence[str], integrity: Integrity
     ) -> tuple[Recording, KnownBy] | None:
-        """What reading the log would give, and how that is known; None where it must be read.
+        """The cached recording, and how the log was identified; None: read the log.
 
         Args:
-            log: its path. It is not opened where its stamp is what it was.
+            log: the path of the log. An unchanged stamp is enough: the log is not opened.
             declarations: clock and signals.
-            wanted: names of declared signals, in the order in which they would be read.
-            integrity: how closely it would be read.
+            wanted: the names of declared signals, in the order in which they would be read.
+            integrity: how thoroughly the log would be checked.
         """
         try:
             content = self._content(self._path(log))
@@ -88,13 +88,13 @@ class SampleCache:
         wanted: Sequence[str],
         integrity: Integrity,
     ) -> None:
-        """Keep what was read of a log, where it can be told again.
+        """Keep the recording of a log, if the log can be identified later.
 
-        That is of MCAP files that stand alone: of others more than their bytes counts.
+        Only MCAP files that stand alone are kept: other logs depend on more than their bytes.
         """
         if before is None or not _stands_alone(log) or recording.samples.keys() != {*wanted}:
             return
-        findings = [_plain(each, declarations) for each in recording.findings]
+        findings = [_plain(finding, declarations) for finding in recording.findings]
         if None in findings:
             return
         about = {
@@ -116,7 +116,7 @@ class SampleCache:
         return self.folder / sha256(f"{name_of(log)}\0{name_of(os.path.realpath(log))}")[:32]
 
     def _content(self, path: Path) -> tuple[dict[str, Any], list[Array]] | None:
-        """What a file holds; None where it is not what this user's fretc wrote there."""
+        """The content of a file; None: this user's fretc did not write it at this path."""
         flags = os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK
         with open(os.open(path, flags), "rb") as stream:
             about = os.fstat(stream.fileno())
@@ -133,7 +133,7 @@ def _checked(path: Path, data: bytes, key: bytes) -> bytes:
 
 
 def _reading(declarations: Declarations, wanted: Sequence[str], integrity: Integrity) -> str:
-    """SHA-256 of all that a recording depends on beside its log, exactly, but for places."""
+    """SHA-256 of all inputs of a recording except its log and positions in the bindings."""
     signals = declarations.signals
     labels = {name: [repr(each) for each in some] for name, some in declarations.labels.items()}
     read = [repr(signals[name]) for name in wanted]
@@ -143,7 +143,7 @@ def _reading(declarations: Declarations, wanted: Sequence[str], integrity: Integ
 
 
 def _unchanged(log: str, about: Mapping[str, Any], *, rehash: bool) -> KnownBy | None:
-    """By what it is known that the log is what it was; None: it is not known."""
+    """How the log was identified as unchanged; None: it was not."""
     before, now = Stamp(*about["stamp"]), stamp(log)
     if now is None or now.size != before.size or os.path.realpath(log) != about["log"]:
         return None
@@ -154,7 +154,7 @@ def _unchanged(log: str, about: Mapping[str, Any], *, rehash: bool) -> KnownBy |
 
 
 def _stands_alone(log: str) -> bool:
-    """Whether nothing beside the file says anything of its run."""
+    """Whether no file beside the log describes its run."""
     return log.endswith(".mcap") and not is_folder(os.path.dirname(log) or ".")
 
 
@@ -162,11 +162,11 @@ def _stands_alone(log: str) -> bool:
 
 
 def _packed(about: Mapping[str, Any], arrays: Sequence[Array]) -> bytes:
-    """The length of a description, the description, and the arrays one behind the other."""
-    kinds = [[each.dtype.str, len(each)] for each in arrays]
+    """The length of a description, the description, and the arrays one after the other."""
+    kinds = [[array.dtype.str, len(array)] for array in arrays]
     head = json.dumps({**about, "arrays": kinds}).encode()
     return b"".join(
-        (len(head).to_bytes(_LENGTH, "little"), head, *(each.tobytes() for each in arrays))
+        (len(head).to_bytes(_LENGTH, "little"), head, *(array.tobytes() for array in arrays))
     )
 
 
@@ -181,20 +181,20 @@ def _unpacked(data: bytes) -> tuple[dict[str, Any], list[Array]]:
 
 
 def _described(recording: Recording) -> tuple[dict[str, Any], list[Array]]:
-    """A recording as plain values and arrays, but for its findings; equal times are kept once."""
+    """A recording without its diagnostics as values and arrays; equal times are kept once."""
     arrays: list[Array] = [recording.ticks]
     places: dict[bytes, int] = {}
 
     def kept(samples: Mapping[str, Samples]) -> dict[str, Any]:
-        found = {}
+        description = {}
         for name, each in samples.items():
             times = each.times.tobytes()
             if times not in places:
                 places[times] = len(arrays)
                 arrays.append(each.times)
-            found[name] = [places[times], len(arrays), str(each.scale), each.words]
+            description[name] = [places[times], len(arrays), str(each.scale), each.words]
             arrays.append(each.values)
-        return found
+        return description
 
     late = {}
     for topic, each in recording.late.items():
@@ -249,13 +249,13 @@ def _recording(
     )
 
 
-# Findings ----------------------------------------------------------------------------------------
+# Diagnostics -------------------------------------------------------------------------------------
 
 
 def _plain(finding: Diagnostic, declarations: Declarations) -> dict[str, Any] | None:
-    """A finding; one at the binding of a signal is wherever that is when it is read again.
+    """A diagnostic as plain values; the place of a signal's binding is looked up when it is read.
 
-    None where it is at another place of the bindings: nothing would say where that is by then.
+    None if the diagnostic is at another place in the bindings, because that place may move.
     """
     span, place = finding.span, None
     if span is not None and span.source == declarations.source:

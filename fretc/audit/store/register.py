@@ -30,32 +30,32 @@ _CODES = {code.number: code for code in Code}
 
 
 class Entry(Record, frozen=True, kw_only=True):
-    """A log of an audit. Without a size it is to be read again."""
+    """The entry of a log. Without a size, the log must be read again."""
 
     run: str
-    log: Annotated[str, about("as the user named it")]
-    place: Annotated[str, about("its path without links")]
+    log: Annotated[str, about("as named on the command line")]
+    place: Annotated[str, about("its path with symbolic links resolved")]
     known_by: Annotated[
         KnownBy,
         about(
-            "`read`: by this audit; its results, or its samples, were taken over as its size and "
-            "times are as they were (`stamp`), or its SHA-256"
+            "`read`: this audit read the log; otherwise earlier results or samples were reused, "
+            "because its size and times (`stamp`) or its SHA-256 are unchanged"
         ),
     ]
-    sha256: Annotated[str, about("empty: it was not read whole, or could not be")]
+    sha256: Annotated[str, about("empty: the log was not read as a whole, or could not be read")]
     size: Whole | None
     mtime_ns: Whole | None
     ctime_ns: Whole | None
     inode: Whole | None
     settled: Annotated[
-        bool | None, about("false: it had just been written, so that times do not tell")
+        bool | None, about("false: the log had just been written, so its times do not identify it")
     ]
-    labels: Annotated[dict[str, str], about("those of the log itself")]
-    diagnostics: Annotated[tuple[str, ...], about("what there was to say of it, as JSON")]
+    labels: Annotated[dict[str, str], about("the labels in the log itself")]
+    diagnostics: Annotated[tuple[str, ...], about("its diagnostics, as JSON")]
 
     @property
     def stamp(self) -> Stamp | None:
-        """None where it is not to be known again."""
+        """The stamp of the log; None: the log must be read again."""
         parts = (self.size, self.mtime_ns, self.ctime_ns, self.inode)
         size, mtime, ctime, inode = (-1 if part is None else part for part in parts)
         if None in parts:
@@ -63,7 +63,7 @@ class Entry(Record, frozen=True, kw_only=True):
         return Stamp(size, mtime, ctime, inode, settled=bool(self.settled))
 
     def known_by_now(self, *, rehash: bool) -> KnownBy | None:
-        """How it can be known that the log is the same; None: it cannot."""
+        """How the log can be identified as unchanged; None: it cannot."""
         before, now = self.stamp, stamp(self.log)
         if before is None or now is None or now.size != before.size:
             return None
@@ -75,7 +75,7 @@ class Entry(Record, frozen=True, kw_only=True):
 
 
 def marks(before: Stamp | None) -> dict[str, Any]:
-    """The fields of an entry that a stamp gives."""
+    """The fields of an entry from a stamp."""
     names = ("size", "mtime_ns", "ctime_ns", "inode", "settled")
     return dict(zip(names, astuple(before) if before else (None,) * 5, strict=True))
 
@@ -83,27 +83,27 @@ def marks(before: Stamp | None) -> dict[str, Any]:
 def table(entries: Sequence[Entry]) -> pa.Table:
     """The entries as a table, in the order of the runs."""
     fields = fields_of(Entry)
-    arrays = [each.array(entries, exact=False) for each in fields]
-    return pa.Table.from_arrays(arrays, names=[each.name for each in fields])
+    arrays = [field.array(entries, exact=False) for field in fields]
+    return pa.Table.from_arrays(arrays, names=[field.name for field in fields])
 
 
 def types() -> pa.Schema:
-    """The types of its columns."""
-    return pa.schema([pa.field(each.name, each.column.type) for each in fields_of(Entry)])
+    """The types of the columns."""
+    return pa.schema([pa.field(field.name, field.column.type) for field in fields_of(Entry)])
 
 
 def entries(found: pa.Table) -> list[Entry]:
-    """The entries again.
+    """The entries of a table.
 
     Raises:
-        SchemaError: they are none.
+        SchemaError: the table has no valid entries.
     """
     fields = fields_of(Entry)
-    arrays = [pa.concat_arrays(found[each.name].chunks) for each in fields] if len(found) else []
+    arrays = [pa.concat_arrays(found[field.name].chunks) for field in fields] if len(found) else []
     return decoded(objects(fields, arrays), list[Entry]) if arrays else []
 
 
-# Who vouches -------------------------------------------------------------------------------------
+# Authentication ----------------------------------------------------------------------------------
 
 
 def vouched(
@@ -114,15 +114,15 @@ def vouched(
     manifest: str,
     key: bytes,
 ) -> str:
-    """The file that vouches for a store.
+    """The text of the file that authenticates a store.
 
     Args:
-        folder: of the store.
-        plan: the key of what its logs were judged by.
-        claims: the key of each claim of it.
-        labels: that all runs were given.
-        manifest: its SHA-256.
-        key: of the user.
+        folder: the folder of the store.
+        plan: the key of the plan of the audit.
+        claims: the key of each audited requirement.
+        labels: the labels that all runs were given.
+        manifest: the SHA-256 of the manifest.
+        key: the key of the user.
     """
     content = {
         "plan": plan,
@@ -134,7 +134,7 @@ def vouched(
 
 
 def vouches(folder: Path, name: str, manifest: str, key: bytes) -> Mapping[str, Any] | None:
-    """What a file says that vouches for a store; None where it does not, in this place."""
+    """The content of a file that authenticates a store; None: it is not valid for this path."""
     source = read_text(str(folder / name))
     if isinstance(source, Diagnostic):
         return None
@@ -156,7 +156,7 @@ def _check(folder: Path, content: Mapping[str, Any], key: bytes) -> str:
 
 
 def diagnostic_text(diagnostic: Diagnostic, bindings: Source) -> str:
-    """A diagnostic as JSON; the text of the bindings is not repeated."""
+    """A diagnostic as JSON, without the text of the bindings."""
     span = diagnostic.span
     return json.dumps(
         {
@@ -177,10 +177,10 @@ def diagnostic_text(diagnostic: Diagnostic, bindings: Source) -> str:
 
 
 def diagnostic(text: str, bindings: Source) -> Diagnostic:
-    """The diagnostic again.
+    """The diagnostic from its JSON.
 
     Raises:
-        SchemaError: it is none.
+        SchemaError: the text is not a diagnostic.
     """
     try:
         plain = json.loads(text)

@@ -1,7 +1,7 @@
-"""Results as tables: a row a result, a row a violation, a row a run; and results of them again.
+"""Results as tables of results, violations and runs, and results from these tables.
 
-What has no column of its own is nested, by the types of evidence. A result that a column cannot
-hold as it is (`fretc.audit.store.columns`) stands in `exact`, too, as JSON.
+Values without a column of their own are nested, by the types of evidence. A result that a column
+cannot hold exactly (`fretc.audit.store.columns`) is also in `exact`, as JSON.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from compiler.files.checked_json import SchemaError
 from compiler.files.checked_json import plain as parsed
 from compiler.files.records import UNSET, decoded, plain, replace
 from compiler.files.templating import to_json
-from fretc.audit.evidence.briefs import Brief, RunFacts, brief, run_facts
 from fretc.audit.evidence.reader import VERDICTS
+from fretc.audit.evidence.result_summaries import ResultSummary, RunFacts, brief, run_facts
 from fretc.audit.evidence.samples import Surroundings
 from fretc.audit.evidence.schema import Hashes, Health, Result, Violation
-from fretc.audit.evidence.writer import unjudged
+from fretc.audit.evidence.writer import unjudged_result
 from fretc.audit.measurements.tallies import Tally
 from fretc.audit.store.columns import (
     Column,
@@ -46,21 +46,21 @@ EXACT = "exact"
 Tables = Mapping[TableName, pa.Table]
 
 
-class Taken(Protocol):
-    """What is read of a table: one of Arrow, or one that stays encoded."""
+class TableRows(Protocol):
+    """The interface of a table that is read: in Arrow's form, or still encoded."""
 
     @property
     def num_rows(self) -> int:
-        """How many."""
+        """The number of rows."""
 
     def __getitem__(self, column: str) -> Any:
         """One column of all rows."""
 
     def take(self, rows: pa.Array) -> pa.Table:
-        """Some rows, which rise."""
+        """Some rows, in rising order."""
 
 
-Source = Mapping[TableName, Taken]
+Source = Mapping[TableName, TableRows]
 
 
 # Rows --------------------------------------------------------------------------------------------
@@ -68,22 +68,22 @@ Source = Mapping[TableName, Taken]
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """A result, at its place."""
+    """A result with its row numbers."""
 
     result: Result
-    brief: Brief
+    brief: ResultSummary
     run_row: int
     fretc: str
     exact: str | None = None
 
     @property
     def gaps(self) -> int:
-        """How many."""
+        """The number of gaps."""
         return len(self.result.health.gaps)
 
     @property
     def findings(self) -> int:
-        """How many."""
+        """The number of diagnostics."""
         return len(self.result.health.findings)
 
 
@@ -92,7 +92,7 @@ class _Part:
     """A violation of a result, or the samples around a violation."""
 
     row: int
-    """Of the result, or of the violation."""
+    """The row of the result, or of the violation."""
     result: Result
     part: Violation | Surroundings
 
@@ -116,24 +116,24 @@ def _of(names: str, column: Column) -> Iterator[Field]:
 
 
 def _below(path: str, fields: Iterable[Field]) -> Iterator[Field]:
-    return (each.below(path) for each in fields)
+    return (field.below(path) for field in fields)
 
 
 _SHARED = ("health", "labels")
-"""What all results of a run share."""
+"""Fields that all results of a run share."""
 _COURSE = "course"
-"""What the first of them has."""
+"""Fields of the first result of a run."""
 _FLAT = "run requirement verdict finite reason clock ticks start_ns end_ns trials".split()
 _ELSEWHERE = ("violations", "hashes", *_SHARED, _COURSE, *_FLAT)
-_MAIN = tuple(each for each in fields_of(Result) if each.name in _FLAT)
-_NESTED = tuple(each for each in fields_of(Result) if each.name not in _ELSEWHERE)
-_OF_RUN = tuple(each for each in fields_of(Result) if each.name in (*_SHARED[1:], _COURSE))
-_COUNTS = tuple(e for e in fields_of(Brief) if e.name not in (*_FLAT, "fingerprints"))
+_MAIN = tuple(field for field in fields_of(Result) if field.name in _FLAT)
+_NESTED = tuple(field for field in fields_of(Result) if field.name not in _ELSEWHERE)
+_OF_RUN = tuple(field for field in fields_of(Result) if field.name in (*_SHARED[1:], _COURSE))
+_COUNTS = tuple(e for e in fields_of(ResultSummary) if e.name not in (*_FLAT, "fingerprints"))
 _FACTS = tuple(e for e in fields_of(RunFacts) if e.name not in _SHARED)
 _HASHES = fields_of(Hashes)
 _HASH = "_sha256"
 _HEALTH = fields_of(Health)
-_VIOLATION = tuple(each for each in fields_of(Violation) if each.name != "window")
+_VIOLATION = tuple(field for field in fields_of(Violation) if field.name != "window")
 _WINDOW = fields_of(Surroundings)
 _NAMES = (*_of("run requirement", Text()),)
 
@@ -176,15 +176,15 @@ def schema(table: TableName) -> pa.Schema:
     return pa.schema([pa.field(each.name, each.column.type) for each in TABLES[table]])
 
 
-# Written -----------------------------------------------------------------------------------------
+# To tables ---------------------------------------------------------------------------------------
 
 
-def tabled(results: Sequence[Result], fretc: str) -> Tables:
-    """The tables of some results, in their order.
+def to_tables(results: Sequence[Result], fretc: str) -> Tables:
+    """The tables of some results, in order.
 
     Args:
-        results: of whole runs.
-        fretc: the version that made them.
+        results: the results of whole runs.
+        fretc: the version of fretc that wrote the results.
     """
     try:
         return _tabled(results, fretc, {})
@@ -194,7 +194,7 @@ def tabled(results: Sequence[Result], fretc: str) -> Tables:
 
 
 def _is_held(result: Result) -> bool:
-    """Whether columns hold the result as it is."""
+    """Whether columns hold the result exactly."""
     try:
         _tabled([result], "", {})
     except InexactError:
@@ -233,14 +233,14 @@ def _run(results: Sequence[Result], *, exact: bool) -> _Run:
 
 
 def _table(fields: Sequence[Field], rows: Sequence[Any], *, exact: bool) -> pa.Table:
-    arrays = [each.array(rows, exact=exact) for each in fields]
-    return pa.Table.from_arrays(arrays, names=[each.name for each in fields])
+    arrays = [field.array(rows, exact=exact) for field in fields]
+    return pa.Table.from_arrays(arrays, names=[field.name for field in fields])
 
 
 def runs_of(results: Iterable[Result]) -> list[list[Result]]:
-    """The results of each run: those that stand together and share what a run has once.
+    """The results of each run: adjoining results that share the facts of a run.
 
-    One with a course is the first of its run.
+    A result with plot data is the first of its run.
     """
     runs: list[list[Result]] = []
     ids: set[str] = set()
@@ -258,18 +258,18 @@ def _shared(result: Result) -> tuple[object, ...]:
     return (result.run, *(getattr(result, name) for name in _SHARED))
 
 
-# Read --------------------------------------------------------------------------------------------
+# From tables -------------------------------------------------------------------------------------
 
 
 def results(tables: Source, rows: Sequence[int] | None = None) -> list[Result]:
     """The results in some rows, or in all.
 
     Args:
-        tables: as `tabled` gives them, or encoded.
-        rows: in rising order.
+        tables: tables from `tabled`, or encoded ones.
+        rows: row numbers in rising order.
 
     Raises:
-        SchemaError: tables do not fit together, or hold what no evidence does.
+        SchemaError: the tables do not fit together, or have invalid values.
     """
     try:
         return _results(tables, rows)
@@ -291,7 +291,7 @@ def _results(tables: Source, rows: Sequence[int] | None) -> list[Result]:
 
 
 def _held(tables: Source, rows: Sequence[int]) -> list[Result]:
-    """The results in some rows that columns hold as they are."""
+    """The results in some rows that columns hold exactly."""
     main, events = (_taken(tables[name], rows) for name in (RESULTS, EVENTS))
     run_rows = main["run_row"].to_pylist()
     firsts = _firsts(tables[RESULTS]["run_row"], rows)
@@ -308,11 +308,11 @@ def _held(tables: Source, rows: Sequence[int]) -> list[Result]:
         {**flat, **nested, "hashes": hashes, "violations": violations, "health": _NO_HEALTH}
         for flat, nested, hashes, violations in parts
     ]
-    found = decoded(records, list[Result])
+    results = decoded(records, list[Result])
     bare = {row: {**of_run, _COURSE: UNSET} for row, of_run in shared.items()}
     return [
         replace(each, **(shared if is_first else bare)[n])
-        for each, n, is_first in zip(found, run_rows, firsts, strict=True)
+        for each, n, is_first in zip(results, run_rows, firsts, strict=True)
     ]
 
 
@@ -321,7 +321,7 @@ def _firsts(runs: pa.ChunkedArray, rows: Sequence[int]) -> list[bool]:
 
     Args:
         runs: the run of each row of the table.
-        rows: some of them.
+        rows: some rows of the table.
     """
     taken = _taken(runs, rows).to_pylist()
     before = _taken(runs, [max(0, row - 1) for row in rows]).to_pylist()
@@ -329,16 +329,16 @@ def _firsts(runs: pa.ChunkedArray, rows: Sequence[int]) -> list[bool]:
 
 
 _NO_HEALTH = plain(Health(False, None, None, (), (), {}))
-"""In place of that of the run, which is made once and not with each result."""
+"""A placeholder for the health of the run, which is built once for all results of a run."""
 _NO_HASHES = dict.fromkeys(("sentence", "bindings", "monitor"), "0" * 64)
-_BLANK = plain(unjudged("", "none", "", _NO_HASHES, decoded(_NO_HEALTH, Health)))
-"""A result of which only what the run has counts."""
+_BLANK = plain(unjudged_result("", "none", "", _NO_HASHES, decoded(_NO_HEALTH, Health)))
+"""A result of which only the facts of the run are used."""
 
 
 def _objects(table: pa.Table, fields: Sequence[Field], suffix: str = "") -> list[Any]:
     if not fields:
         return [{} for _ in range(table.num_rows)]
-    return objects(fields, [_whole(table, f"{each.name}{suffix}") for each in fields])
+    return objects(fields, [_whole(table, f"{field.name}{suffix}") for field in fields])
 
 
 def _taken(table: Any, rows: Sequence[int]) -> Any:
@@ -352,25 +352,27 @@ def _whole(table: pa.Table, name: str) -> pa.Array:
 
 
 def _of_runs(
-    table: Taken, run_rows: Sequence[int], begun: Collection[int]
+    table: TableRows, run_rows: Sequence[int], begun: Collection[int]
 ) -> dict[int, dict[str, Any]]:
-    """Run → what its results share, and the course of those that have begun.
+    """Run → the facts that its results share, and its plot data if its first result is included.
 
-    A course that its column does not hold is in `exact`, with the first result of its run.
+    Plot data that its column cannot hold is in `exact`, with the first result of its run.
     """
-    known = sorted({row for row in run_rows if row is not None and 0 <= row < table.num_rows})
-    if len(known) != len({*run_rows}):
+    known_rows = sorted({row for row in run_rows if row is not None and 0 <= row < table.num_rows})
+    if len(known_rows) != len({*run_rows}):
         raise SchemaError("`results` names a row that `runs` does not have")
-    some = _taken(table, known)
-    parts = [*zip(_objects(some, _HEALTH), _objects(some, _OF_RUN), strict=True)]
-    for row, (_, more) in zip(known, parts, strict=True):
+    run_table = _taken(table, known_rows)
+    parts = [*zip(_objects(run_table, _HEALTH), _objects(run_table, _OF_RUN), strict=True)]
+    for row, (_, more) in zip(known_rows, parts, strict=True):
         if row not in begun:
             more.pop(_COURSE, None)
-    found = decoded([{**_BLANK, "health": health, **more} for health, more in parts], list[Result])
-    names = ("health", *(each.attribute for each in _OF_RUN))
+    results = decoded(
+        [{**_BLANK, "health": health, **more} for health, more in parts], list[Result]
+    )
+    names = ("health", *(field.attribute for field in _OF_RUN))
     return {
         row: {name: getattr(one, name) for name in names}
-        for row, one in zip(known, found, strict=True)
+        for row, one in zip(known_rows, results, strict=True)
     }
 
 
@@ -379,9 +381,9 @@ def _violations(tables: Source, rows: Sequence[int]) -> list[list[Any]]:
     table = tables[VIOLATIONS]
     places = _chosen(table, "result_row", rows, tables[RESULTS].num_rows)
     windows = dict(_windows(tables, places))
-    some = _taken(table, places)
+    chosen = _taken(table, places)
     of_row: dict[int, list[Any]] = {row: [] for row in rows}
-    parts = zip(places, some["result_row"].to_pylist(), _objects(some, _VIOLATION), strict=True)
+    parts = zip(places, chosen["result_row"].to_pylist(), _objects(chosen, _VIOLATION), strict=True)
     for place, row, violation in parts:
         of_row[row].append({**violation, "window": windows.get(place)})
     return [of_row[row] for row in rows]
@@ -391,43 +393,44 @@ def _windows(tables: Source, rows: Sequence[int]) -> Iterator[tuple[int, Any]]:
     """The samples around each of these rows of violations."""
     table = tables[SAMPLES]
     places = _chosen(table, "violation_row", rows, tables[VIOLATIONS].num_rows)
-    some = _taken(table, places)
-    return zip(some["violation_row"].to_pylist(), _objects(some, _WINDOW), strict=True)
+    chosen = _taken(table, places)
+    return zip(chosen["violation_row"].to_pylist(), _objects(chosen, _WINDOW), strict=True)
 
 
-def _chosen(table: Taken, key: str, rows: Sequence[int], count: int) -> list[int]:
-    """The rows that belong to these of another table, which has so many."""
+def _chosen(table: TableRows, key: str, rows: Sequence[int], count: int) -> list[int]:
+    """The rows that belong to the given rows of another table."""
     column = table[key]
     if column.null_count:
         raise SchemaError(f"a `{key}` is missing")
     keys = column.to_numpy()
     if len(keys) and (keys[0] < 0 or keys[-1] >= count or (np.diff(keys) < 0).any()):
-        raise SchemaError(f"`{key}` does not rise within its table")
-    found: list[int] = np.flatnonzero(np.isin(keys, np.asarray(rows, np.int64))).tolist()
-    return found
+        raise SchemaError(f"`{key}` does not increase within its table")
+    matching_rows: list[int] = np.flatnonzero(np.isin(keys, np.asarray(rows, np.int64))).tolist()
+    return matching_rows
 
 
-# Briefs ------------------------------------------------------------------------------------------
+# Summaries ---------------------------------------------------------------------------------------
 
 
-def briefs(table: pa.Table) -> list[Brief]:
-    """The brief of each row of `results`.
+def briefs(table: pa.Table) -> list[ResultSummary]:
+    """The summary of each row of `results`.
 
     Raises:
-        SchemaError: a row is none.
+        SchemaError: a row is invalid.
     """
     texts = table[EXACT].to_pylist()
     held = [n for n, text in enumerate(texts) if text is None]
-    some = table if len(held) == len(texts) else _taken(table, held)
+    readable = table if len(held) == len(texts) else _taken(table, held)
     flat = [each for each in (*_MAIN, *_COUNTS) if each.name != "clock"]
-    prints = _objects(some, _HASHES, _HASH)
-    rows = zip(_objects(some, flat), prints, strict=True)
-    found = decoded(
-        [{**row, "trials": row.get("trials"), "fingerprints": p} for row, p in rows], list[Brief]
+    prints = _objects(readable, _HASHES, _HASH)
+    rows = zip(_objects(readable, flat), prints, strict=True)
+    summaries = decoded(
+        [{**row, "trials": row.get("trials"), "fingerprints": p} for row, p in rows],
+        list[ResultSummary],
     )
-    if not {each.verdict for each in found} <= {*VERDICTS}:
-        raise SchemaError("`results` has a verdict that is none")
-    whole = dict(zip(held, found, strict=True))
+    if not {each.verdict for each in summaries} <= {*VERDICTS}:
+        raise SchemaError("`results` has an unknown verdict")
+    whole = dict(zip(held, summaries, strict=True))
     return [
         whole[n] if text is None else brief(decoded(parsed(text), Result))
         for n, text in enumerate(texts)
@@ -438,16 +441,16 @@ def facts(table: pa.Table) -> list[RunFacts]:
     """The facts of each row of `runs`.
 
     Raises:
-        SchemaError: a row is none.
+        SchemaError: a row is invalid.
     """
     texts = table[EXACT].to_pylist()
     held = [n for n, text in enumerate(texts) if text is None]
-    some = _taken(table, held)
-    labels = tuple(each for each in _OF_RUN if each.name == "labels")
-    rows = zip(*(_objects(some, fields) for fields in (_FACTS, _HEALTH, labels)), strict=True)
+    readable = _taken(table, held)
+    labels = tuple(field for field in _OF_RUN if field.name == "labels")
+    rows = zip(*(_objects(readable, fields) for fields in (_FACTS, _HEALTH, labels)), strict=True)
     records = [{**facts, "health": health, **labels} for facts, health, labels in rows]
-    found = decoded(records, list[RunFacts])
-    whole = dict(zip(held, found, strict=True))
+    facts_of_runs = decoded(records, list[RunFacts])
+    whole = dict(zip(held, facts_of_runs, strict=True))
     return [
         whole[n] if text is None else decoded(parsed(text), RunFacts)
         for n, text in enumerate(texts)
@@ -459,8 +462,8 @@ def nested(tables: Tables, name: str, requirements: Collection[str]) -> list[tup
 
     Args:
         tables: `results` with `requirement` and `exact`, `events` with the column.
-        name: of the column.
-        requirements: whose rows.
+        name: the name of the column.
+        requirements: the requirements whose rows are wanted.
 
     Raises:
         SchemaError: a row cannot be read.
@@ -471,7 +474,7 @@ def nested(tables: Tables, name: str, requirements: Collection[str]) -> list[tup
     wanted = pa.array([*requirements], pa.string())
     is_wanted = pc.is_in(main["requirement"], wanted).to_numpy(zero_copy_only=False)
     rows: list[int] = np.flatnonzero(is_wanted).tolist()
-    (column,) = (each.column for each in _NESTED if each.name == name)
+    (column,) = (field.column for field in _NESTED if field.name == name)
     values = column.values(_whole(_taken(events, rows), name))
     texts = _taken(main[EXACT], rows).to_pylist()
     whole = [
@@ -482,7 +485,7 @@ def nested(tables: Tables, name: str, requirements: Collection[str]) -> list[tup
 
 
 def joined(groups: Sequence[Tables]) -> Tables:
-    """The tables of several groups of runs as those of all of them, in their order."""
+    """The tables of several groups of runs, joined in order."""
     if len(groups) == 1:
         return groups[0]
     return {name: _joined(groups, name) for name in TABLES}
@@ -493,7 +496,7 @@ _KEYS: Mapping[TableName, tuple[str, TableName]] = {
     VIOLATIONS: ("result_row", RESULTS),
     SAMPLES: ("violation_row", VIOLATIONS),
 }
-"""Table → its column with rows of another table."""
+"""Table → its column with row numbers of another table."""
 
 
 def _joined(groups: Sequence[Tables], name: TableName) -> pa.Table:
@@ -516,17 +519,17 @@ def tallies(tables: Tables) -> list[dict[str, Tally]]:
         tables: `results` with `run_row`, `events` with `propositions`, `runs`.
 
     Raises:
-        SchemaError: they cannot be read.
+        SchemaError: the tables cannot be read.
     """
-    (column,) = (each.column for each in _NESTED if each.name == "propositions")
-    found: list[dict[str, Tally]] = [{} for _ in range(len(tables[RUNS]))]
+    (column,) = (field.column for field in _NESTED if field.name == "propositions")
+    tallies_of_runs: list[dict[str, Tally]] = [{} for _ in range(len(tables[RUNS]))]
     rows = tables[RESULTS]["run_row"].to_pylist()
     values = column.values(_whole(tables[EVENTS], "propositions"))
-    known: dict[tuple[int, ...], Tally] = {}
+    tally_of_numbers: dict[tuple[int, ...], Tally] = {}
     for row, propositions in zip(rows, values, strict=True):
         for name, counts in propositions.items():
             numbers = tuple(counts.values())
-            if numbers not in known:
-                known[numbers] = decoded(counts, Tally)
-            found[row][name] = known[numbers]
-    return found
+            if numbers not in tally_of_numbers:
+                tally_of_numbers[numbers] = decoded(counts, Tally)
+            tallies_of_runs[row][name] = tally_of_numbers[numbers]
+    return tallies_of_runs

@@ -1,4 +1,4 @@
-"""A store as it is written: part by part, each file complete or absent, the manifest last."""
+"""The writer of a store: part by part, each file complete or absent, the manifest last."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from fretc.audit.store.manifest import (
 )
 from fretc.audit.store.parts import parts
 from fretc.audit.store.register import Entry
-from fretc.audit.store.tables import RESULTS, RUNS, TABLES, Tables, runs_of, tabled
+from fretc.audit.store.tables import RESULTS, RUNS, TABLES, Tables, runs_of, to_tables
 from fretish.diagnostics.diagnostic import Diagnostic
 
 
@@ -34,24 +34,24 @@ def write_part(folder: Path, tables: Tables) -> Part | Diagnostic:
     """Write the tables of some runs.
 
     Args:
-        folder: of the store.
-        tables: of whole runs.
+        folder: the folder of the store.
+        tables: the tables of whole runs.
 
     Returns:
         What the manifest says of them; or why they cannot be written.
     """
-    made = {name: encoded(table) for name, table in tables.items()}
+    encoded_tables = {name: encoded(table) for name, table in tables.items()}
     wrong = write(
         {
             folder / place(name, file): data
-            for name, (data, file) in made.items()
+            for name, (data, file) in encoded_tables.items()
             if not _is_there(folder / place(name, file), file)
         }
     )
     if wrong is not None:
         return wrong
-    known = {name: file for name, (_, file) in made.items()}
-    return Part(known[RUNS].rows, known[RESULTS].rows, known)
+    files_of_tables = {name: file for name, (_, file) in encoded_tables.items()}
+    return Part(files_of_tables[RUNS].rows, files_of_tables[RESULTS].rows, files_of_tables)
 
 
 def _is_there(path: Path, file: Table) -> bool:
@@ -63,37 +63,37 @@ def _is_there(path: Path, file: Table) -> bool:
 
 
 def write_register(folder: Path, entries: Sequence[Entry]) -> Table | Diagnostic:
-    """Write what each log was."""
+    """Write the register of the logs."""
     data, file = encoded(register.table(entries))
     return write({folder / place(REGISTER, file): data}) or file
 
 
 def write_manifest(folder: Path, manifest: Manifest, name: str = FILE) -> str | Diagnostic:
     """Write a manifest; gives its SHA-256."""
-    made = text(manifest)
-    return write({folder / name: made}) or sha256(made)
+    content = text(manifest)
+    return write({folder / name: content}) or sha256(content)
 
 
 def files(folder: Path) -> set[Path]:
-    """All tables in a folder, also those that no manifest names."""
+    """All table files in a folder, also those that no manifest lists."""
     own = (folder / table for table in (*TABLES, REGISTER) if not (folder / table).is_symlink())
-    found = (path for table in own for path in table.glob("*"))
-    return {path for path in found if _OURS.fullmatch(path.name)}
+    paths = (path for table in own for path in table.glob("*"))
+    return {path for path in paths if _OURS.fullmatch(path.name)}
 
 
 def remove_others(folder: Path, *manifests: Manifest, kept: Collection[Path] = frozenset()) -> None:
-    """Remove the tables that none of the manifests names.
+    """Remove the tables that none of the manifests lists.
 
     Args:
-        folder: of the store.
-        manifests: whose tables stay.
+        folder: the folder of the store.
+        manifests: the manifests whose tables stay.
         kept: other files that stay.
     """
     named = {folder / path for manifest in manifests for path in _files(manifest)}
     for path in files(folder) - named - {*kept}:
         path.unlink(missing_ok=True)
     for table in (*TABLES, REGISTER):
-        with suppress(OSError):  # it is in use, or something else is in it
+        with suppress(OSError):  # the folder is in use, or not empty
             (folder / table).rmdir()
 
 
@@ -109,9 +109,9 @@ def _files(manifest: Manifest) -> Iterator[Path]:
 
 
 def is_store(folder: Path) -> bool:
-    """Whether fretc has written into a folder: nothing else of a user's is ever removed."""
+    """Whether fretc has written into a folder, which is a condition for removing files from it."""
     if any((folder / table).is_symlink() for table in (*TABLES, REGISTER)):
-        return False  # what is there is not in this folder
+        return False  # a link leads out of this folder
     return any(_is_manifest(folder / name) for name in (FILE, UNFINISHED))
 
 
@@ -124,7 +124,7 @@ def _is_manifest(path: Path) -> bool:
 
 
 def remove(folder: Path) -> None:
-    """Remove a store, and its folder where nothing else is in it."""
+    """Remove a store, and its folder if it is empty then."""
     for name in (FILE, UNFINISHED, *REUSE.values()):
         (folder / name).unlink(missing_ok=True)
     remove_others(folder)
@@ -140,7 +140,7 @@ def write_document(
     written: list[Part] = []
     for places in parts([run[0].run for run in runs]):
         results = [result for place in places for result in runs[place]]
-        part = write_part(folder, tabled(results, document.fretc))
+        part = write_part(folder, to_tables(results, document.fretc))
         if isinstance(part, Diagnostic):
             return part
         written.append(part)

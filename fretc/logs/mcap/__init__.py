@@ -1,5 +1,5 @@
 """The MCAP format: records, chunks, index and damage.
 
-Input is the bytes of a file. Output is the messages of the wanted topics, and which parts are
-damaged.
+Input is the bytes of a file. Output is the messages of the wanted topics, and the damaged parts of
+the file.
 """

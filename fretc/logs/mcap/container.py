@@ -1,4 +1,4 @@
-"""An MCAP file as bytes: records in their frames, chunks unpacked within bounds, the summary.
+"""An MCAP file as bytes: records in their frames, chunks unpacked with limits, the summary.
 
 Each byte may be wrong: an inconsistency is a `BrokenError`, and nothing is unpacked or read beyond
 its own frame.
@@ -20,9 +20,9 @@ from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, ChunkIndex, Schema, Statistics
 
-try:  # more than ten times as fast as that of `zlib`
+try:  # more than ten times as fast as `zlib`
     from zlib_ng.zlib_ng import crc32 as crc32
-except ImportError:  # an environment that is older than this dependency
+except ImportError:  # an older environment without this dependency
     from zlib import crc32 as crc32
 
 if TYPE_CHECKING:
@@ -31,15 +31,16 @@ if TYPE_CHECKING:
 INDEX = struct.Struct("<HI")
 """The head of a message index: channel, and the bytes of its entries."""
 ENTRY = np.dtype([("time", "<u8"), ("place", "<u8")])
-"""An entry of a message index: log time, and the byte of the chunk at which the record begins."""
+"""An entry of a message index: log time, and the offset of the record in the chunk."""
 CHUNK = struct.Struct("<QQQII")
-"""The head of a chunk: its times, its size, its CRC, the length of its compression's name."""
+"""The head of a chunk: its times, its size, its CRC, the length of the name of its compression."""
 _CHUNK_INDEX = struct.Struct("<QQQQI")
 """The head of a chunk index: times, place, length, and the bytes of its message indexes."""
 _INDEXES, _SIZES = struct.Struct("<QI"), struct.Struct("<QQ")
-"""In it: bytes of the message indexes, and of the name of the compression; then the sizes."""
+"""In the head of a chunk index: bytes of the message indexes, and of the name of the compression;
+then the sizes."""
 _PLACE = struct.Struct("<HQ")
-"""A channel, and the byte at which its message index begins."""
+"""A channel, and the offset at which its message index begins."""
 MAGIC = b"\x89MCAP0\r\n"
 """The first and the last bytes of a file."""
 HEAD = struct.Struct("<BQ")
@@ -47,25 +48,25 @@ HEAD = struct.Struct("<BQ")
 PADDING = 256
 """Bytes by which a record may exceed its contents."""
 LARGEST = 2**30
-"""Bytes; a larger message or chunk is not read."""
+"""Bytes; a larger message or chunk is refused."""
 BLOCK = 2**20
-"""Bytes of one read where no more are needed."""
+"""Bytes of one read if no more are needed."""
 _SHORT = 2**14
-"""Bytes of a record that is remembered."""
+"""The most bytes of a record that is cached."""
 _FOOTER = struct.Struct("<QQI")
 """Start of the summary, start of its offsets, CRC."""
 _RATIO = 200
-"""Bytes that one packed byte of a chunk may hold, where there are more than `_PLENTY` of them."""
+"""The most unpacked bytes for each packed byte of a chunk larger than `_PLENTY`."""
 _DENSEST = 50_000
-"""No compression packs more bytes into one."""
+"""The most unpacked bytes for each packed byte that any compression reaches."""
 _PLENTY = 2**26
-"""Bytes; a chunk may be so large at any ratio: it may repeat the same numbers."""
+"""Bytes; a chunk of this size may have any ratio: it may repeat the same numbers."""
 
 R = TypeVar("R")
 
 
 class BrokenError(Exception):
-    """A record is broken; the text says how."""
+    """A record is broken; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +84,7 @@ def frames(data: bytes) -> Iterator[tuple[int, int, int]]:
     """`(opcode, start, end)` of each record: its content is `data[start:end]`.
 
     Raises:
-        BrokenError: the last one is longer than the data.
+        BrokenError: the last record is longer than the data.
     """
     at, size = 0, len(data)
     while at < size:
@@ -108,10 +109,10 @@ class _Exact(ReadDataStream):
 
 
 def parse(kind: Callable[[ReadDataStream], R], content: bytes) -> R:
-    """One record, from its own bytes and no others.
+    """One record, parsed from its own bytes only.
 
     Raises:
-        BrokenError: they do not fit together.
+        BrokenError: the bytes do not form such a record.
     """
     try:
         short = len(content) <= _SHORT and kind in (Schema.read, Channel.read)
@@ -125,7 +126,7 @@ def _parse(kind: Callable[[ReadDataStream], R], content: bytes) -> R:
 
 
 _parsed = lru_cache(512)(_parse)
-"""Logs of one robot have the same definitions and the same topics."""
+"""A cache: logs of one robot have the same definitions and the same topics."""
 
 
 # Chunks
@@ -141,27 +142,27 @@ def unpacked(chunk: Chunk) -> bytes:
     """
     size = chunk.uncompressed_size
     if is_absurd(size, len(chunk.data)):
-        raise BrokenError(f"a chunk states the absurd size of {size} bytes")
+        raise BrokenError(f"a chunk states an impossible size of {size} bytes")
     if chunk.compression not in _CODECS:
-        raise BrokenError(f"a chunk is compressed with the unknown `{chunk.compression}`")
+        raise BrokenError(f"a chunk is compressed with the unknown codec `{chunk.compression}`")
     try:
         data = _CODECS[chunk.compression](chunk.data, size + 1)
-    except Exception as error:  # each codec has its own
+    except Exception as error:  # each codec raises its own exceptions
         raise BrokenError("a chunk does not decompress") from error
     if len(data) != size:
-        raise BrokenError("a chunk has another size than it states")
+        raise BrokenError("the size of a chunk differs from the size that it states")
     if chunk.uncompressed_crc and crc32(data) != chunk.uncompressed_crc:
-        raise BrokenError("a chunk has another CRC than it states")
+        raise BrokenError("the CRC of a chunk does not match its data")
     return data
 
 
 def is_absurd(size: int, packed: int) -> bool:
-    """Whether so many bytes exceed the limit of a chunk, or cannot come from so few."""
+    """Whether so many bytes exceed the limit of a chunk, or cannot come from so few packed ones."""
     return size > min(largest(packed), _DENSEST * (packed + 1))
 
 
 def largest(packed: int) -> int:
-    """How many bytes a chunk of so many packed bytes may hold."""
+    """The most bytes that a chunk of so many packed bytes may hold."""
     return min(LARGEST, max(_PLENTY, _RATIO * packed))
 
 
@@ -175,7 +176,7 @@ def _zstd(data: bytes, most: int) -> bytes:
 
 
 def unpacked_lz4(data: bytes | memoryview, most: int) -> bytes:
-    """At most so many unpacked bytes."""
+    """The unpacked bytes, at most so many."""
     import lz4.frame  # type: ignore[import-untyped]
 
     return bytes(lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=most))
@@ -187,20 +188,20 @@ def unpack_into(compression: str, packed: memoryview, target: memoryview, *, who
     Args:
         compression: `lz4` or `zstd`.
         packed: the chunk's data, or its beginning.
-        target: is filled as far as the data goes.
-        whole: whether the data should end where the target does.
+        target: the memory to fill, as far as the data goes.
+        whole: whether the data should end with the target.
 
     Returns:
         How many bytes there are; if `whole`, more than the target has where the data goes on.
 
     Raises:
-        BrokenError: it is no such data.
+        BrokenError: the data is invalid.
     """
     try:
         if compression == "zstd":
             return _zstd_into(packed, target, whole=whole)
         data = unpacked_lz4(packed, len(target) + whole)
-    except Exception as error:  # each codec has its own
+    except Exception as error:  # each codec raises its own exceptions
         raise BrokenError("a chunk does not decompress") from error
     size = min(len(data), len(target))
     target[:size] = data[:size]
@@ -209,7 +210,7 @@ def unpack_into(compression: str, packed: memoryview, target: memoryview, *, who
 
 @cache
 def _decompressor() -> ZstdDecompressor:
-    """One for all chunks: it costs as much as a small chunk."""
+    """One decompressor for all chunks: it costs as much as a small chunk."""
     import zstandard
 
     return zstandard.ZstdDecompressor()
@@ -236,18 +237,18 @@ _CODECS: dict[str, Callable[[bytes, int], bytes]] = {
 
 @dataclass(slots=True)
 class Summary:
-    """The summary at the end of a file; empty where it is damaged."""
+    """The summary at the end of a file; empty if it is damaged."""
 
     end: int
-    """Where the data section ends, if `sound`; it ends earlier if not."""
+    """The offset at which the data section ends, if `sound`; it ends earlier if not."""
     sound: bool
     footer: int
-    """Where the record before the closing magic begins."""
+    """The offset of the record before the closing magic."""
     after: int
-    """Where the closing magic ends; the file should end there too."""
+    """The offset after the closing magic; the file should end there too."""
     statistics: Statistics | None = None
     chunks: dict[int, ChunkIndex] = field(default_factory=dict)
-    """By the byte at which each chunk begins."""
+    """Chunk indexes by the offset of each chunk."""
     schemas: dict[int, Schema] = field(default_factory=dict)
     channels: dict[int, Channel] = field(default_factory=dict)
 
@@ -258,7 +259,7 @@ def no_summary(size: int) -> Summary:
 
 
 def summary(stream: BufferedReader, size: int) -> Summary | None:
-    """The summary of a file of `size` bytes; None where the file has no end."""
+    """The summary of a file of `size` bytes; None: the file has no end."""
     begin = max(0, size - BLOCK)
     stream.seek(begin)
     tail = stream.read()
@@ -309,10 +310,10 @@ def _note(result: Summary, opcode: int, content: bytes) -> None:
 
 
 def _chunk_index(content: bytes) -> ChunkIndex:
-    """There are thousands of them: the parser of the official library takes ten times as long.
+    """A chunk index; the parser of the official library takes ten times as long.
 
     Raises:
-        BrokenError: it is cut off.
+        BrokenError: the record is cut off.
     """
     try:
         start, end, at, length, size = _CHUNK_INDEX.unpack_from(content)

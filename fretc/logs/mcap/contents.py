@@ -1,7 +1,7 @@
 """The messages of one MCAP file: by its index, or record by record.
 
-Where the index explains the whole file, only the wanted parts are read. In any other file each
-record is read: that shows damaged places and their times.
+If the index explains the whole file, only the wanted parts are read. In any other file each record
+is read, which finds damaged parts and their times.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ class Contents:
     """Facts about one file, apart from its messages."""
 
     damages: tuple[tuple[Damage, Gap | None], ...]
-    """Damaged places, with the time that each has cost; None where it cost nothing."""
+    """Damaged parts, each with the time of its lost messages; None: none are lost."""
     span: Gap | None
-    """The earliest and the latest whole message; None where there is none."""
+    """The earliest and the latest whole message; None: there is none."""
     cut: int | None
-    """Up to which byte there are whole records, in a file without an end."""
+    """The offset up to which there are whole records, in a file without an end."""
     checked: Checked
     unprotected: bool = False
-    """Whether messages were read that no CRC covers."""
+    """Whether messages were read without the protection of a CRC."""
     summary_sha256: str = ""
-    """Identifies a log that is not hashed (`_identity`)."""
+    """The identity of a log that is not hashed (`_identity`)."""
     described: Described = field(default_factory=dict)
-    """What its metadata records say, as far as it is asked for."""
+    """The wanted values of its metadata records."""
 
 
 def contents(
@@ -51,15 +51,15 @@ def contents(
     """Read a file.
 
     Args:
-        stream: an MCAP file, which can be sought in.
-        size: its bytes.
-        sink: takes the messages.
+        stream: a seekable MCAP file.
+        size: the size of the file in bytes.
+        sink: receives the messages.
         integrity: whether the index may be trusted.
-        wanted: what is asked for of its metadata records: `build.version`.
+        wanted: the wanted keys of its metadata records: `build.version`.
 
     Raises:
-        BrokenError: the file is not as its index says. The sink has got what it should not have:
-            read again, with another one and `Integrity.FULL`.
+        BrokenError: the file does not match its index. The sink has received wrong messages: read
+            again, with another sink and `Integrity.FULL`.
     """
     if integrity is not Integrity.FULL:
         index = indexed(stream, size, summary(stream, size), wanted)
@@ -85,7 +85,7 @@ def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integ
     projection.run()
     crc = index.data_crc if integrity is Integrity.HASH else 0
     if crc and _crc32(stream, index.data_end) != crc:
-        raise BrokenError("its data has another CRC than it states")
+        raise BrokenError("the CRC of its data section does not match the data")
     unprotected = projection.checked.without_crc > 0 and not crc
     statistics = index.statistics
     span = statistics.message_start_time, statistics.message_end_time
@@ -98,22 +98,22 @@ def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integ
 
 
 def _identity(stream: BufferedReader, index: Index, crcs: Mapping[int, int]) -> str:
-    """SHA-256 of all that follows the data, and of the CRC that each chunk states.
+    """SHA-256 of the summary section, and of the CRC that each chunk states.
 
-    A summary says where messages are, and not what they hold: with values of the same length it is
-    the same for another log. What the CRCs say covers the messages.
+    A summary states the positions of messages, and not their contents: another log whose values
+    have the same lengths has the same summary. The CRCs cover the messages.
 
     Args:
         stream: the file.
         index: its index.
-        crcs: of the chunks that were read, by the byte at which each begins.
+        crcs: the CRCs of the chunks that were read, by the offset of each chunk.
     """
     digest = hashlib.sha256()
     for chunk in index.chunks:
-        known = crcs.get(chunk.chunk_start_offset)
-        if known is None:
+        stated_crc = crcs.get(chunk.chunk_start_offset)
+        if stated_crc is None:
             stream.seek(chunk.chunk_start_offset + HEAD.size + _CHUNK_CRC)
-        digest.update(stream.read(4) if known is None else known.to_bytes(4, "little"))
+        digest.update(stream.read(4) if stated_crc is None else stated_crc.to_bytes(4, "little"))
     stream.seek(index.data_end)  # the CRC of the data, if one is stated, is what follows first
     while block := stream.read(BLOCK):
         digest.update(block)
@@ -121,7 +121,7 @@ def _identity(stream: BufferedReader, index: Index, crcs: Mapping[int, int]) -> 
 
 
 _CHUNK_CRC = 24
-"""Bytes before it in a chunk: two times and a size of eight bytes each."""
+"""Bytes before the CRC in a chunk: two times and a size of eight bytes each."""
 
 
 def _crc32(stream: BufferedReader, size: int) -> int:

@@ -1,4 +1,4 @@
-"""Damaged places of a log, each with the time whose messages it has cost.
+"""Damaged parts of a log, each with the time of its lost messages.
 
 Times are nanoseconds, log times.
 """
@@ -14,33 +14,33 @@ from fretc.logs.signals.samples import Gap
 from fretish.diagnostics.diagnostic import Code
 
 LATEST = 2**62
-"""Nanoseconds, the year 2116; a later time is damage."""
+"""Nanoseconds, in the year 2116; a later time counts as damage."""
 _HOUR = 3600 * 10**9
 
 
 @dataclass(slots=True)
 class Damage:
-    """A place of the file whose messages are, or may be, lost."""
+    """A part of the file whose messages are, or may be, lost."""
 
     at: int
     description: str
     spans: list[Gap] = field(default_factory=list)
-    """The times that the file itself gives for it."""
+    """The times that the file itself states for the part."""
     before: int | None = None
     after: int | None = None
-    """The times of the messages around it."""
+    """The times of the messages before and after the part."""
     also: list[int] = field(default_factory=list)
-    """Further bytes, where no whole message lies between."""
+    """Further offsets, if no whole message lies between."""
     lossless: bool = False
     """Whether no message can be missing."""
     anywhere: bool = False
-    """Whether it may have cost messages of any time."""
+    """Whether messages of any time may be lost."""
     code: Code = Code.DAMAGED_CHUNK
     certain: bool = False
 
 
 class Damages:
-    """The damages from one walk through a log, compared at its end with the summary."""
+    """The damages found in one pass through a log, compared with the summary at its end."""
 
     def __init__(self) -> None:
         self.certain: list[Damage] = []
@@ -49,12 +49,12 @@ class Damages:
         self._last: int | None = None
         self._doubtful: list[Damage] = []
         self._waiting: list[Damage] = []
-        """The damages after which no message has come yet."""
+        """The damages after which no message has been read yet."""
         self._open: Damage | None = None
-        """The one of them that the next damaged place is merged into."""
+        """The damage into which the next damaged part is merged."""
 
     def passed(self, log_time: int) -> None:
-        """A whole message has come."""
+        """Record a whole message."""
         for damage in self._waiting:
             damage.after = log_time
         self._waiting.clear()
@@ -65,7 +65,7 @@ class Damages:
             self.span = min(first, log_time), max(latest, log_time)
 
     def passed_all(self, earliest: int, latest: int, last: int) -> None:
-        """Whole messages have come between these times, the last one at `last`."""
+        """Record whole messages between these times, the last one at `last`."""
         first, end = self.span or (earliest, latest)
         self.span = min(first, earliest), max(end, latest)
         self._last = last
@@ -80,9 +80,9 @@ class Damages:
         anywhere: bool = False,
         code: Code = Code.DAMAGED_CHUNK,
     ) -> None:
-        """Keep a damage; it joins the one before it where no message lies between them.
+        """Add a damage; it is merged with the one before if no message lies between them.
 
-        The break at the end of a log is always one of its own.
+        The truncation at the end of a log is always separate.
         """
         located = not lossless and not anywhere
         if located and self._open is not None and code is not Code.TRUNCATED_LOG:
@@ -99,7 +99,7 @@ class Damages:
         self._keep(damage)
 
     def doubt(self, at: int, description: str) -> None:
-        """Note a damage that counts unless the summary shows that nothing is missing."""
+        """Add a damage that counts unless the summary shows that nothing is missing."""
         self._doubtful.append(self._new(at, description))
 
     def _new(self, at: int, description: str) -> Damage:
@@ -113,18 +113,18 @@ class Damages:
                 damage.certain = True
                 self.certain.append(damage)
 
-    # Their cost
+    # Lost times
 
     def settled(
         self, summary: Summary, complete: Collection[int], counts: Counter[int], size: int
     ) -> list[tuple[Damage, Gap | None]]:
-        """All damages, with the time that each has cost; None where it cost nothing.
+        """All damages, each with the time of its lost messages; None: none are lost.
 
         Args:
-            summary: what the file states about itself.
-            complete: the first bytes of the chunks that were read whole.
-            counts: how many messages were found on each channel.
-            size: bytes of the file.
+            summary: the summary of the file.
+            complete: the offsets of the chunks that were read as a whole.
+            counts: the number of messages of each channel.
+            size: the size of the file in bytes.
         """
         self._compare_chunks(summary, complete)
         self._compare_counts(summary, counts, size)
@@ -132,7 +132,7 @@ class Damages:
         return [(damage, _gap(damage, span)) for damage in self.certain]
 
     def _compare_chunks(self, summary: Summary, complete: Collection[int]) -> None:
-        """Check that each chunk of the index was read whole."""
+        """Check that each chunk of the index was read as a whole."""
         places = {damage.at: damage for damage in self._doubtful}
         places |= {at: damage for damage in self.certain for at in (damage.at, *damage.also)}
         for at, index in summary.chunks.items():
@@ -143,7 +143,7 @@ class Damages:
                 places[at].spans.append(span)
                 self._keep(places[at])
             else:
-                self.add(at, "a chunk that its index names is not there", span)
+                self.add(at, "a chunk that the index lists is missing", span)
 
     def _compare_counts(self, summary: Summary, counts: Counter[int], size: int) -> None:
         """Check that as many messages were read as the statistics state."""
@@ -158,10 +158,10 @@ class Damages:
         self._keep(*self._doubtful)
         if all(damage.lossless for damage in self.certain):
             description = (
-                f"it states {statistics.message_count} messages and holds {counts.total()}"
+                f"it states {statistics.message_count} messages, but holds {counts.total()}"
             )
             if right:
-                description = "its topics hold other numbers of messages than it states"
+                description = "the numbers of messages of its topics differ from the stated numbers"
             self.add(size, description, anywhere=True, code=Code.COUNT_MISMATCH)
 
     def _whole_log(self, summary: Summary) -> Gap:
@@ -173,7 +173,7 @@ class Damages:
             spans.append((statistics.message_start_time, statistics.message_end_time))
         chunks = summary.chunks.values()
         spans += [(chunk.message_start_time, chunk.message_end_time) for chunk in chunks]
-        if len(spans) == 1:  # only the damaged places themselves can tell
+        if len(spans) == 1:  # then only the damaged parts have times
             near = (self.span[0] - _HOUR, self.span[1] + _HOUR)
             gaps = [gap for damage in self.certain for gap in damage.spans]
             spans += [gap for gap in gaps if near[0] <= gap[0] <= gap[1] <= near[1]]
@@ -181,7 +181,7 @@ class Damages:
 
 
 def _gap(damage: Damage, span: Gap) -> Gap | None:
-    """The time that one damage has cost, within the time of the whole log."""
+    """The time of the messages that one damage has lost, within the time of the whole log."""
     if damage.lossless:
         return None
     if damage.anywhere:

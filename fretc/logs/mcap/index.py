@@ -1,8 +1,7 @@
-"""Where the messages of a log are, by its own index, where that explains every byte of the file.
+"""The positions of the messages of a log by its own index, if that explains every byte of the file.
 
-The index is trusted only if the file leaves no doubt: one part behind the other, each of a known
-kind, and as many chunks and messages as stated. In any other log each record must be read
-(`fretc.logs.mcap.walk`).
+The index is used only if the file is consistent: adjoining parts of known kinds, and as many chunks
+and messages as stated. In any other log each record must be read (`fretc.logs.mcap.walk`).
 """
 
 from __future__ import annotations
@@ -31,33 +30,33 @@ _PASSED_BY = frozenset({Opcode.HEADER, Opcode.ATTACHMENT, Opcode.METADATA})
 
 @dataclass(frozen=True, slots=True)
 class Index:
-    """A log whose summary gives the place of everything."""
+    """A log whose summary states the position of everything."""
 
     chunks: tuple[ChunkIndex, ...]
     """In the order of the file."""
     streams: dict[int, Stream]
-    """By the number of the channel."""
+    """Streams by channel number."""
     statistics: Statistics
     data_end: int
-    """The byte up to which the CRC of the data goes."""
+    """The offset up to which the CRC of the data goes."""
     data_crc: int
-    """0: none is stated."""
+    """The stated CRC of the data; 0: none."""
     summary: int
-    """The byte at which the summary begins."""
+    """The offset of the summary."""
     described: Described
-    """What its metadata records say, as far as it is asked for."""
+    """The wanted values of its metadata records."""
 
 
 def indexed(
     stream: BufferedReader, size: int, summary: Summary | None, wanted: Collection[str] = ()
 ) -> Index | None:
-    """The index of a file of `size` bytes; None where anything about it is unusual.
+    """The index of a file of `size` bytes; None: the file is unusual in some way.
 
     Args:
         stream: the file.
-        size: its bytes.
-        summary: that of its end.
-        wanted: what is asked for of its metadata records.
+        size: the size of the file in bytes.
+        summary: the summary of the file.
+        wanted: the wanted keys of its metadata records.
     """
     if summary is None or not summary.sound or summary.after != size or summary.statistics is None:
         return None
@@ -82,18 +81,18 @@ def indexed(
         or statistics.message_end_time != max(chunk.message_end_time for chunk in chunks)
     ):
         return None
-    found: list[Described] = []
+    metadata: list[Described] = []
     try:
-        end = _between(stream, summary, chunks, wanted, found)
+        end = _between(stream, summary, chunks, wanted, metadata)
     except BrokenError:
         return None
     if end is None:
         return None
-    return Index(chunks, streams, statistics, *end, summary.end, together(found))
+    return Index(chunks, streams, statistics, *end, summary.end, together(metadata))
 
 
 def _is_usual(chunk: ChunkIndex) -> bool:
-    """Whether the chunk can be read by its index, which gives the places of its messages."""
+    """Whether the chunk can be read by its index, which states the positions of its messages."""
     first, last = chunk.chunk_start_offset, chunk.chunk_start_offset + chunk.chunk_length
     return (
         bool(chunk.message_index_offsets)
@@ -112,9 +111,9 @@ def _between(
     wanted: Collection[str],
     found: list[Described],
 ) -> tuple[int, int] | None:
-    """Where the data ends, and its CRC; None where something unusual is between the chunks.
+    """The end of the data, and its CRC; None: something unusual is between the chunks.
 
-    What is wanted of metadata records goes into `found`.
+    The wanted values of metadata records are added to `found`.
     """
     at, end = len(MAGIC), None
     for chunk in (*chunks, None):
@@ -140,10 +139,10 @@ def _between(
 def _records(
     stream: BufferedReader, at: int, wall: int, *, metadata: bool
 ) -> Iterator[tuple[int, int, bytes]]:
-    """Place, kind and content of each record; of large ones, and of metadata unless asked, none.
+    """Offset, kind and content of each record; no content of large ones and unwanted metadata.
 
     Raises:
-        BrokenError: the last one goes on beyond the wall.
+        BrokenError: the last record exceeds the given end.
     """
     while at < wall:
         stream.seek(at)
@@ -163,7 +162,7 @@ def is_known(
     """Whether a record declares a topic or its messages in the same way as the summary.
 
     Raises:
-        BrokenError: it cannot be read.
+        BrokenError: the record cannot be read.
     """
     if opcode == Opcode.SCHEMA:
         schema = parse(Schema.read, content)

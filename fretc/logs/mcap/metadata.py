@@ -1,4 +1,4 @@
-"""What the metadata records of a log say, as far as it is asked for: `build.version` → values."""
+"""The wanted values of the metadata records of a log: `build.version` → values."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from mcap.records import Metadata
 from fretc.logs.mcap.container import BrokenError, parse
 
 LARGEST = 2**20
-"""Bytes; a larger record is passed by."""
+"""Bytes; a larger record is skipped."""
 _MOST = 4
-"""Different values of one key that are kept."""
+"""The most different values of one key that are kept."""
 
 Described = Mapping[str, tuple[str, ...]]
-"""Record and key, with a dot between them → its values in the order of the log, each once."""
+"""Record and key, joined by a dot → its values in the order of the log, each once."""
 
 
 def described(content: bytes, wanted: Collection[str]) -> Described:
-    """What is wanted of one record; nothing of a record that cannot be read."""
+    """The wanted values of one record; empty if the record cannot be read."""
     if not wanted or len(content) > LARGEST:
         return {}
     try:
@@ -29,17 +29,17 @@ def described(content: bytes, wanted: Collection[str]) -> Described:
 
 
 def of_record(name: str, values: Mapping[str, str], wanted: Collection[str]) -> Described:
-    """What is wanted of a record."""
-    found = {
+    """The wanted values of a parsed record."""
+    wanted_values = {
         text: values[key]
         for text in wanted
         if text.startswith(f"{name}.") and (key := text[len(name) + 1 :]) in values
     }
-    return {text: (value,) for text, value in found.items()}
+    return {text: (value,) for text, value in wanted_values.items()}
 
 
 def together(parts: Sequence[Described]) -> Described:
-    """Several of them as one."""
+    """The values of several logs or files together."""
     if not any(parts):
         return {}
     keys = dict.fromkeys(key for part in parts for key in part)

@@ -1,4 +1,4 @@
-"""Payloads of many messages in one piece of memory, and the same place of all of them at once."""
+"""Payloads of many messages in one block of memory, with access to one position in all of them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Bytes = NDArray[np.uint8]
 Places = NDArray[np.int64]
 
 SPARE = 8
-"""Bytes that follow the last payload, so that a number at any place lies within the memory."""
+"""Bytes after the last payload, so that a number at any position lies within the memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,13 +20,13 @@ class Payloads:
     """Payload i is `data[starts[i] : starts[i] + sizes[i]]`; both of shape (n,)."""
 
     data: Bytes
-    """With `SPARE` bytes, or more, behind the last payload."""
+    """The memory, with at least `SPARE` bytes after the last payload."""
     starts: Places
     sizes: Places
 
     @classmethod
     def of(cls, payloads: Sequence[bytes | memoryview]) -> Payloads:
-        """The payloads, one behind the other."""
+        """The payloads, one after the other."""
         sizes = np.fromiter(map(len, payloads), np.int64, len(payloads))
         starts = np.cumsum(sizes) - sizes
         return cls(np.frombuffer(b"".join([*payloads, b"\0" * SPARE]), np.uint8), starts, sizes)
@@ -35,12 +35,12 @@ class Payloads:
         return len(self.starts)
 
     def payload(self, i: int) -> memoryview:
-        """One of them."""
+        """One payload."""
         start = int(self.starts[i])
         return self.data[start : start + int(self.sizes[i])].data
 
     def copies(self) -> list[bytes]:
-        """Each of them, also when the memory is used for something else."""
+        """A copy of each payload, which stays valid when the memory is reused."""
         data = self.data.data
         places = zip(self.starts.tolist(), (self.starts + self.sizes).tolist(), strict=True)
         return [bytes(data[start:end]) for start, end in places]
@@ -49,10 +49,10 @@ class Payloads:
         """The numbers `at` bytes from the start of each row.
 
         Args:
-            rows: shape (k,); in each of their payloads the place exists.
+            rows: shape (k,); each of their payloads must reach the position.
             at: bytes from the start of a payload, at any alignment.
-            dtype: NumPy's name of a number.
-            count: of an array; None for a number alone.
+            dtype: the NumPy name of a number type.
+            count: the length of an array; None for a single number.
 
         Returns:
             Shape (k,), or (k, count).

@@ -40,7 +40,7 @@ from fretc.logs.signals.integrity import Checked
 _SLACK = 4096
 """The expected bytes of the last message of a chunk, until a longer message comes."""
 _FEW = 32
-"""Below so many numbers Python compares faster than NumPy."""
+"""The number of comparisons up to which Python is faster than NumPy."""
 _BLOCK = 2**17
 """Bytes that a codec unpacks at once."""
 
@@ -48,13 +48,13 @@ _BLOCK = 2**17
 _HEAD = struct.Struct("<BQQQQII")
 """The record of a chunk up to the name of its compression: `HEAD` and `CHUNK`."""
 _PLACE = struct.Struct("<8xQ")
-"""That of an entry of a message index, behind its time."""
+"""The format of the position in an entry of a message index, after its time."""
 _INDEX_RECORD = struct.Struct("<BQHI")
 """The record of a message index up to its entries: `HEAD` and `INDEX`."""
 
 _NOWHERE: Places = np.zeros(0, np.int64)
 Entries = NDArray[np.uint64]
-"""Of a message index: time, place, time, place, ..."""
+"""The entries of a message index: time, position, time, position, ..."""
 
 
 def _numbers(entries: bytes) -> Entries:
@@ -66,13 +66,13 @@ class _Batch:
     """Messages of one channel in the arena."""
 
     entries: list[bytes] = field(default_factory=list)
-    """Of each chunk, as its message index has them."""
+    """The entries of each chunk, as in its message index."""
     limits: list[tuple[int, int, int, int, int]] = field(default_factory=list)
-    """Of each chunk: how many messages, where it begins and ends, and between which times."""
+    """For each chunk: the number of messages, its begin and end, and its first and last time."""
 
 
 class Projection:
-    """One way through a log; the messages of the wanted topics go to the sink."""
+    """One pass through a log; the messages of the wanted topics go to the sink."""
 
     def __init__(self, stream: BufferedReader, index: Index, sink: Sink) -> None:
         self._stream, self._index, self._sink = stream, index, sink
@@ -85,7 +85,7 @@ class Projection:
         self._counts: Counter[int] = Counter()
         self._crc_checked = self._without_crc = 0
         self.crcs: dict[int, int] = {}
-        """The CRC that each unpacked chunk states, by the byte at which it begins; 0: none."""
+        """The CRC that each unpacked chunk states, by the offset of the chunk; 0: none."""
         some = [each.schema for each in streams.values() if each.schema is not None]
         self._schemas = {schema.id: schema for schema in some}
         self._channels = {id: each.channel for id, each in streams.items()}
@@ -110,7 +110,7 @@ class Projection:
         """Read all messages.
 
         Raises:
-            BrokenError: something in the file is not as its index says.
+            BrokenError: the file does not match its index.
         """
         for stream in self._index.streams.values():
             self._sink.declare(stream)
@@ -125,7 +125,9 @@ class Projection:
             if id not in self._wanted:
                 self._sink.count(stream, counts.get(id, 0))
             elif self._counts[id] != counts.get(id, 0):
-                raise BrokenError("a topic holds another number of messages than is stated")
+                raise BrokenError(
+                    "the number of messages of a topic differs from the stated number"
+                )
 
     # One chunk
 
@@ -153,7 +155,7 @@ class Projection:
             needed = end
         if whole and crc:
             if crc32(self._arena.data.data[base : base + needed]) != crc:
-                raise BrokenError("a chunk has another CRC than it states")
+                raise BrokenError("the CRC of a chunk does not match its data")
             self._crc_checked += 1
         self._without_crc += not crc
         self.crcs[chunk.chunk_start_offset] = crc
@@ -172,9 +174,9 @@ class Projection:
         self._arena.used = base + needed
 
     def _declared(self, base: int, needed: int, until: int) -> None:
-        """Compare declarations of a chunk with the summary: at its beginning, and `until` a place.
+        """Compare declarations of a chunk with the summary: at its beginning, and up to `until`.
 
-        A log that was merged from others may call two topics by the same number.
+        A log that was merged from others may give two topics the same number.
         """
         data, at, end = self._arena.data.data, base, base + needed
         while at + HEAD.size <= end:
@@ -189,50 +191,50 @@ class Projection:
                 self._as_declared(opcode, bytes(data[start:at]))
 
     def _as_declared(self, opcode: int, content: bytes) -> None:
-        """Compare a record that declares something with the summary."""
+        """Compare a declaration with the summary."""
         if (opcode, content) not in self._verified:
             if not is_known(opcode, content, self._schemas, self._channels):
-                raise BrokenError("a chunk declares what its summary does not")
+                raise BrokenError("a chunk declares a topic or type that is not in the summary")
             self._verified.add((opcode, content))
 
     def _places(self, chunk: ChunkIndex) -> Places:
-        """Where the messages of a chunk begin, by its index, in the order of the file."""
+        """The offsets of the messages of a chunk by its index, in the order of the file."""
         entries = self._entries(chunk, chunk.message_index_offsets.keys())
         return np.sort(_numbers(b"".join([some for _, some, _ in entries]))[1::2].astype(np.int64))
 
     def _tiled(self, base: int, needed: int, size: int, places: Places) -> None:
-        """Compare the unpacked records of a chunk that no CRC protects with its index.
+        """Compare the unpacked records of a chunk without a CRC with its index.
 
-        Where one message ends the next one begins, but for definitions between them.
+        Each message begins at the end of the one before, except for definitions between them.
 
         Args:
-            base: where the chunk stands in the arena.
-            needed: how much of it is there.
-            size: its size.
-            places: where its messages begin.
+            base: the offset of the chunk in the arena.
+            needed: the number of its bytes in the arena.
+            size: the size of the chunk.
+            places: the offsets of its messages.
         """
         there = places[places + HEAD.size <= needed]
         data = self._arena.data
         lengths = np.ndarray((len(data) - 8,), "<u8", data.data, 1, (1,))[there + base]
         if (data[there + base] != Opcode.MESSAGE).any() or (lengths > size).any():
-            raise BrokenError("the index of a chunk names what is no message")
+            raise BrokenError("the index of a chunk points to a record that is not a message")
         ends = np.append(0, there + HEAD.size + lengths.astype(np.int64))
         walls = np.append(places, size)[: len(ends)]
         for row in np.flatnonzero((ends != walls) & (walls <= needed)).tolist():
             self._between(base + int(ends[row]), base + int(walls[row]))
 
     def _between(self, at: int, wall: int) -> None:
-        """Check that only definitions stand between two messages in the arena."""
+        """Check that only definitions are between two messages in the arena."""
         data = self._arena.data.data
         while at != wall:
             opcode, length = HEAD.unpack_from(data, at) if at + HEAD.size <= wall else (0, 0)
             start, at = at + HEAD.size, at + HEAD.size + length
             if at > wall:
-                raise BrokenError("the records of a chunk are not where its index says")
+                raise BrokenError("the records of a chunk are not where its index points")
             self._as_declared(opcode, bytes(data[start:at]))
 
     def _entries(self, chunk: ChunkIndex, ids: Container[int]) -> list[tuple[int, bytes, int]]:
-        """Each of the channels in the chunk: its number, its entries, and its last place."""
+        """For each channel in the chunk: its number, its entries, and its last offset."""
         begin = chunk.chunk_start_offset + chunk.chunk_length
         self._stream.seek(begin)
         data = self._stream.read(chunk.message_index_length)
@@ -246,7 +248,7 @@ class Projection:
                 raise BrokenError("a record is cut off")
             opcode, length, channel, size = _INDEX_RECORD.unpack_from(data, at)
             if (opcode, channel, size % ENTRY.itemsize) != (Opcode.MESSAGE_INDEX, id, 0):
-                raise BrokenError("the index of a chunk is not there")
+                raise BrokenError("the index of a chunk is missing")
             if INDEX.size + size > length or start + size > len(data):
                 raise BrokenError("a record is cut off")
             if size:
@@ -254,12 +256,12 @@ class Projection:
                 few = size < _FEW * ENTRY.itemsize
                 last = max(_PLACE.iter_unpack(some))[0] if few else int(_numbers(some)[1::2].max())
                 if last >= chunk.uncompressed_size:
-                    raise BrokenError("the index of a chunk names a place outside of it")
+                    raise BrokenError("the index of a chunk points outside the chunk")
                 entries.append((id, some, last))
         return entries
 
     def _unpack(self, chunk: ChunkIndex, size: int, *, whole: bool) -> tuple[int, int]:
-        """Put the first `size` bytes of a chunk behind those in use.
+        """Unpack the first `size` bytes of a chunk after those in use.
 
         Returns:
             Where in the arena they begin, and the CRC that the chunk states.
@@ -268,10 +270,10 @@ class Projection:
         before = _HEAD.size + len(chunk.compression) + 8
         if not chunk.compression:
             if packed != chunk.uncompressed_size:
-                raise BrokenError("a chunk has another size than it states")
+                raise BrokenError("the size of a chunk differs from the size that it states")
             return used + before, self._fill(chunk, self._arena.target(before + size))
         if is_absurd(chunk.uncompressed_size, packed):
-            raise BrokenError("a chunk states an absurd size")
+            raise BrokenError("a chunk states an impossible size")
         for length in (packed,) if whole else (_share(chunk, size), packed):
             if before + length > len(self._packed):
                 self._packed = bytearray(before + length)
@@ -279,12 +281,12 @@ class Projection:
             crc = self._fill(chunk, some)
             if self._arena.unpack(chunk.compression, some[before:], size, whole=whole):
                 return used, crc
-        raise BrokenError("a chunk has another size than it states")
+        raise BrokenError("the size of a chunk differs from the size that it states")
 
     def _fill(self, chunk: ChunkIndex, target: memoryview) -> int:
-        """Read the beginning of a chunk, with its head, in one step; gives the CRC that it states.
+        """Read the beginning of a chunk, with its head, in one step; return the CRC that it states.
 
-        Its other statements must agree with its index.
+        The other fields of its head must match its index.
         """
         self._stream.seek(chunk.chunk_start_offset)
         if self._stream.readinto(target) != len(target):
@@ -306,11 +308,11 @@ class Projection:
             or target[_HEAD.size : before] != tail
             or chunk.chunk_length < before + chunk.compressed_size
         ):
-            raise BrokenError("a chunk is not what its index says")
+            raise BrokenError("a chunk does not match its index")
         return int(crc)
 
     def _end(self, id: int, base: int, last: int, needed: int) -> int:
-        """Where in its chunk the last message of a channel ends, as far as it is unpacked."""
+        """The end of the last message of a channel in its chunk, as far as it is unpacked."""
         content = last + HEAD.size
         if content > needed:
             return content
@@ -321,7 +323,7 @@ class Projection:
     # Many chunks
 
     def _hand_on(self) -> None:
-        """Give the messages in the arena to the sink, topic by topic."""
+        """Pass the messages in the arena to the sink, topic by topic."""
         topics: defaultdict[str, list[int]] = defaultdict(list)
         for id in self._batches:
             topics[self._index.streams[id].channel.topic].append(id)
@@ -337,10 +339,10 @@ class Projection:
         batch = self._batches[id]
         entries = _numbers(b"".join(batch.entries))
         counts, *of_chunks = np.array(batch.limits, np.uint64).T
-        bases, limits = (np.repeat(some, counts.astype(np.int64)) for some in of_chunks[:2])
+        bases, limits = (np.repeat(of_chunk, counts.astype(np.int64)) for of_chunk in of_chunks[:2])
         times, places = entries[::2], (entries[1::2] + bases).astype(np.int64)
         if not _in_time(times, counts, *of_chunks[2:]):
-            raise BrokenError("the index of a chunk names other messages than are in it")
+            raise BrokenError("the index of a chunk does not match its messages")
         if (places[1:] < places[:-1]).any():  # some writers sort the index by time
             order = np.argsort(places)
             places, times, limits = places[order], times[order], limits[order]
@@ -354,10 +356,10 @@ class Projection:
             or (contents.astype(np.uint64) + lengths > limits).any()
             or lengths.min() < Messages.HEAD
         ):
-            raise BrokenError("the index of a chunk names what is no message")
+            raise BrokenError("the index of a chunk points to a record that is not a message")
         messages = Messages.behind(heads, data, contents, contents + lengths.astype(np.int64))
         if (messages.channels != id).any() or (messages.logs != times).any():
-            raise BrokenError("the index of a chunk names other messages than are in it")
+            raise BrokenError("the index of a chunk does not match its messages")
         self._counts[id] += len(messages)
         return messages
 
@@ -366,10 +368,10 @@ def _in_time(times: FileTimes, counts: Entries, first: Entries, last: Entries) -
     """Whether the messages of each chunk are within the times that it states, and before `LATEST`.
 
     Args:
-        times: of all messages, chunk by chunk.
-        counts: how many are in each chunk: some.
-        first: time that each chunk states.
-        last: another one.
+        times: the times of all messages, chunk by chunk.
+        counts: the number of messages of each chunk, at least 1.
+        first: the first time that each chunk states.
+        last: the last time that each chunk states.
     """
     begins = (np.cumsum(counts) - counts).astype(np.intp)
     latest = np.maximum.reduceat(times, begins)
@@ -381,14 +383,14 @@ def _in_time(times: FileTimes, counts: Entries, first: Entries, last: Entries) -
 
 
 def _share(chunk: ChunkIndex, size: int) -> int:
-    """An estimate: how many packed bytes of a chunk its first `size` bytes need at most."""
+    """An estimate of the packed bytes of a chunk that its first `size` bytes need at most."""
     blocks = -(-size // _BLOCK) * _BLOCK
     likely = int(blocks * chunk.compressed_size / chunk.uncompressed_size * 1.3) + 2**14
     return min(likely, chunk.compressed_size)
 
 
 def _by_turns(parts: list[tuple[Stream, Messages]]) -> list[tuple[Stream, Messages]]:
-    """Messages of several channels of one topic: those in a row together, in the file's order."""
+    """Messages of several channels of one topic: consecutive ones together, in the file's order."""
     owners = np.concatenate([np.full(len(some), i) for i, (_, some) in enumerate(parts)])
     inner = np.concatenate([np.arange(len(some)) for _, some in parts])
     order = np.argsort(np.concatenate([some.starts for _, some in parts]))

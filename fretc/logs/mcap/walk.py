@@ -1,7 +1,7 @@
-"""The way through an MCAP file, record by record: messages to a sink, damaged places kept.
+"""A pass through an MCAP file, record by record: messages go to a sink, damages are collected.
 
-What the summary states (where the chunks are) is used to find the way again after a damaged
-place. Times are nanoseconds, log times.
+The positions of chunks in the summary are used to continue after a damaged part. Times are
+nanoseconds, log times.
 """
 
 from __future__ import annotations
@@ -44,19 +44,19 @@ from fretc.logs.signals.samples import Gap, distinct
 from fretish.diagnostics.diagnostic import Code
 
 _MESSAGE = struct.Struct("<HIQQ")
-"""What each message begins with: channel, sequence, log time, publish time."""
+"""The fields with which each message begins: channel, sequence, log time, publish time."""
 _OPCODES = frozenset(Opcode)
 _PASSED_BY: dict[int, Callable[[ReadDataStream], object]] = {
     Opcode.HEADER: Header.read,
     Opcode.ATTACHMENT: Attachment.read,
     Opcode.METADATA: Metadata.read,
 }
-"""What may stand among the data and says nothing about messages."""
+"""Kinds of records that may be among the data and are irrelevant for messages."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Chunk:
-    """A chunk whose messages were handed on, and whose index may follow."""
+    """A chunk whose messages were passed on, and whose index may follow."""
 
     at: int
     span: Gap
@@ -64,7 +64,7 @@ class _Chunk:
     has_crc: bool
 
     def entries(self, channel: int) -> NDArray[np.void]:
-        """Time and place of each message of a channel."""
+        """Time and offset of each message of a channel."""
         some = self.messages.of_channel(channel)
         entries = np.empty(len(some.starts), ENTRY)
         entries["time"], entries["place"] = some.logs, some.starts - HEAD.size
@@ -72,14 +72,14 @@ class _Chunk:
 
 
 class Walk:
-    """One way through the data section; messages go to the sink, damages stay here."""
+    """One pass through the data section; messages go to the sink, damages are kept here."""
 
     def __init__(
         self, stream: BufferedReader, size: int, sink: Sink, wanted: Collection[str] = ()
     ) -> None:
         self.damages = Damages()
         self.cut: int | None = None
-        """Up to which byte there are whole records, in a file without an end."""
+        """The offset up to which there are whole records, in a file without an end."""
         self._stream, self._size, self._sink = stream, size, sink
         self._wanted = wanted
         self._found: list[Described] = []
@@ -90,17 +90,17 @@ class Walk:
         self._whole: set[int] = set()
         self._with_crc = 0
         self._broken: set[int] = set()
-        """Chunks of which the messages before a broken record were read."""
+        """Chunks whose messages were read up to a broken record."""
         self._before: _Chunk | None = None
         self._unprotected = False
-        """Whether messages were read that no CRC covers but that of the whole data section."""
+        """Whether messages were read that only the CRC of the whole data section covers."""
         self._all_covered = False
-        """Whether the whole data section has the CRC that it states."""
+        """Whether the CRC of the whole data section is correct."""
         self._crc: int | None = 0
-        """The CRC of the data up to here; None after a jump over a part."""
+        """The CRC of the data up to here; None after a part was skipped."""
 
     def run(self) -> None:
-        """Read everything."""
+        """Read the whole file."""
         tail = summary(self._stream, self._size)
         if tail is None:
             self.cut = self._data(truncated=True)
@@ -115,26 +115,26 @@ class Walk:
         if not tail.sound:
             self.damages.add(tail.footer, "its summary is damaged", lossless=True)
         if tail.after != self._size:
-            self.damages.add(tail.after, "it goes on after its end", lossless=True)
+            self.damages.add(tail.after, "it contains data after its end", lossless=True)
 
     def settled(self) -> list[tuple[Damage, Gap | None]]:
-        """All damages, with the time that each has cost; None where it cost nothing."""
+        """All damages, each with the time of its lost messages; None: none are lost."""
         read = self._whole | self._broken
         return self.damages.settled(self._summary, read, self._counts, self._size)
 
     @property
     def described(self) -> Described:
-        """What its metadata records say, as far as it is asked for."""
+        """The wanted values of its metadata records."""
         return together(self._found)
 
     @property
     def unprotected(self) -> bool:
-        """Whether no CRC covers some of the messages: a changed byte in them cannot be seen."""
+        """Whether some messages have no CRC: a changed byte in them is not detected."""
         return self._unprotected and not self._all_covered
 
     @property
     def checked(self) -> Checked:
-        """The checks: every record, and these chunks are whole."""
+        """The checks: every record was read, and the number of intact chunks."""
         chunks = len(self._whole)
         return Checked(
             by_index=False,
@@ -146,7 +146,7 @@ class Walk:
     # Records
 
     def _data(self, truncated: bool) -> int:
-        """Walk through the data section; returns its end."""
+        """Read the data section; return its end."""
         at, end = len(MAGIC), self._summary.end
         walls = self._walls()
         self._stream.seek(0)
@@ -177,7 +177,7 @@ class Walk:
         return at
 
     def _walls(self) -> list[int]:
-        """Where a record must end: where the index says that a chunk begins, and at the end.
+        """The offsets at which a record must end: starts of indexed chunks, and the end of data.
 
         An index entry that points into another chunk does not count.
         """
@@ -209,7 +209,7 @@ class Walk:
         return to
 
     def _fits(self, at: int, wall: int) -> bool:
-        """Whether there seems to be a record at that byte."""
+        """Whether a plausible record begins at that byte."""
         if at == wall:
             return True
         self._stream.seek(at)
@@ -221,10 +221,10 @@ class Walk:
 
     def _record(self, opcode: int, at: int, length: int) -> None:
         if opcode == 0:
-            raise BrokenError("a record has no kind")
+            raise BrokenError("a record has the opcode 0")
         if opcode not in _OPCODES:
             self._skip(length)
-            self.damages.doubt(at, f"a record is of the unknown kind {opcode}")
+            self.damages.doubt(at, f"a record has the unknown opcode {opcode}")
             return
         if length > LARGEST:
             self._skip(length)
@@ -244,10 +244,10 @@ class Walk:
                 self._declare(parse(Channel.read, content), at)
             case _ if opcode in _PASSED_BY:
                 parse(_PASSED_BY[opcode], content)
-                if opcode == Opcode.METADATA and (some := described(content, self._wanted)):
-                    self._found = [together([*self._found, some])]
+                if opcode == Opcode.METADATA and (metadata := described(content, self._wanted)):
+                    self._found = [together([*self._found, metadata])]
             case _:
-                raise BrokenError("a record of the summary stands among the data")
+                raise BrokenError("the data section contains a record of the summary")
 
     def _data_end(self, length: int, stop: int, crc: int | None) -> None:
         if self._summary.sound and stop != self._summary.end:
@@ -255,18 +255,18 @@ class Walk:
         expected = parse(DataEnd.read, self._take(length)).data_section_crc
         self._all_covered = bool(expected) and crc == expected
         if expected and crc is not None and crc != expected and not self.damages.certain:
-            description = "its data has another CRC than it states"
+            description = "the CRC of its data section does not match the data"
             self.damages.add(stop, description, lossless=not self._unprotected, anywhere=True)
 
     def _define(self, schema: Schema, at: int) -> None:
         first = self._schemas.setdefault(schema.id, schema)
         if first != schema:
-            self.damages.add(at, f"it defines `{schema.name}` in two ways", anywhere=True)
+            self.damages.add(at, f"it defines `{schema.name}` twice, differently", anywhere=True)
 
     def _declare(self, channel: Channel, at: int) -> None:
         first = self._streams.get(channel.id)
         if first is not None and first.channel != channel:
-            description = f"it declares the topic `{channel.topic}` in two ways"
+            description = f"it declares the topic `{channel.topic}` twice, differently"
             self.damages.add(at, description, anywhere=True)
             channel = first.channel
         stream = Stream(channel, self._schemas.get(channel.schema_id))
@@ -304,9 +304,9 @@ class Walk:
         self._before = _Chunk(at, span, messages, has_crc)
 
     def _rest(self, at: int, messages: Messages, span: Gap) -> Gap:
-        """The time of what follows the messages of a broken chunk: from the last of them on.
+        """The time of the unread messages of a broken chunk: from its last read message on.
 
-        From its beginning on, where it is not in order of time.
+        It is the whole time of the chunk if its messages are not in order of time.
         """
         start, end = span
         index = self._summary.chunks.get(at)
@@ -322,7 +322,7 @@ class Walk:
         """The messages of a chunk, and the fault of the record after the last of them.
 
         The fault may be the length of the last message, which is then incomplete. The chunk's
-        definitions are noted.
+        definitions are recorded.
         """
         starts: list[int] = []
         ends: list[int] = []
@@ -340,23 +340,23 @@ class Walk:
                 elif opcode == Opcode.CHANNEL:
                     self._declare(parse(Channel.read, data[start:end]), at)
                 elif opcode == 0:
-                    raise BrokenError("a record has no kind")
+                    raise BrokenError("a record has the opcode 0")
                 elif not has_crc:
-                    raise BrokenError("a chunk holds a record that does not belong there")
+                    raise BrokenError("a chunk contains a record that is not allowed in chunks")
         except BrokenError as error:
             fault = str(error)
         return Messages.of(data, starts, ends), fault
 
     def _check(self, messages: Messages, span: Gap) -> None:
-        """Check messages that no CRC protects against the `span` that the chunk states."""
+        """Check messages without a CRC against the `span` that the chunk states."""
         times = messages.logs
         if ((times < span[0]) | (times > span[1])).any():
-            raise BrokenError("a message is of another time than its chunk states")
+            raise BrokenError("the time of a message is outside the range that its chunk states")
         if any(id not in self._streams for id in distinct(messages.channels).tolist()):
-            raise BrokenError("a message is of a topic that is not declared")
+            raise BrokenError("a message belongs to an undeclared topic")
 
     def _at_once(self, messages: Messages) -> bool:
-        """Pass on all messages of a chunk, topic by topic; not where one of them is odd."""
+        """Pass on all messages of a chunk, topic by topic, unless one of them is unusual."""
         ids = distinct(messages.channels).tolist()
         streams = [self._streams[id] for id in ids if id in self._streams]
         topics = {stream.channel.topic for stream in streams}
@@ -373,7 +373,7 @@ class Walk:
         return True
 
     def _index(self, content: bytes) -> None:
-        """Compare the index of a chunk with the messages in it; its CRC shows which is right."""
+        """Compare the index of a chunk with its messages; the chunk's CRC decides."""
         if len(content) < INDEX.size:
             raise BrokenError("a record cannot be read")
         channel, length = INDEX.unpack_from(content)
@@ -385,7 +385,7 @@ class Walk:
             return
         listed = np.frombuffer(content, ENTRY, length // ENTRY.itemsize, INDEX.size)
         if not np.array_equal(np.sort(listed), np.sort(chunk.entries(channel))):
-            description = "the index of a chunk names other messages than are in it"
+            description = "the index of a chunk does not match its messages"
             if chunk.has_crc:
                 self.damages.add(chunk.at, description, lossless=True)
             else:
@@ -398,9 +398,9 @@ class Walk:
         self._counts[channel] += 1
         stream = self._streams.get(channel)
         if stream is None:
-            self.damages.add(at, "a message is of a topic that is not declared")
+            self.damages.add(at, "a message belongs to an undeclared topic")
         elif log_time >= LATEST:
-            self.damages.add(at, "a message is of an absurd time")
+            self.damages.add(at, "a message has an impossible time")
         else:
             self.damages.passed(log_time)
             payload = memoryview(data)[start + _MESSAGE.size : end]

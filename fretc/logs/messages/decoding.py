@@ -1,4 +1,4 @@
-"""Payloads decoded: messages of ROS 2 (cdr with ros2msg or ros2idl), of ROS 1, JSON and Protobuf.
+"""Decoders of payloads: ROS 2 (cdr with ros2msg or ros2idl), ROS 1, JSON and Protobuf.
 
 A message definition may be any text, and a payload any bytes.
 """
@@ -24,12 +24,13 @@ from fretc.logs.signals.signals import Sparse, fields, optional_field
 from fretish.bindings.declarations import short_type
 
 Decode = Callable[[bytes], object]
-"""From a payload to an object with the message's fields; it may raise any exception."""
+"""A payload → an object with the message's fields; it may raise any exception."""
 
 _STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
-"""Names of the fields of a stamp, in ROS 2 and in ROS 1."""
+"""Names of the fields of a stamp in ROS 2 and in ROS 1."""
 _SPARSE_STAMPS = (("seconds", "nanos"), ("sec", "nsec"))
-"""Those of google.protobuf.Timestamp, and of Foxglove's JSON and Gazebo's messages."""
+"""Names of the fields in google.protobuf.Timestamp, and in Foxglove's JSON and Gazebo's
+messages."""
 _LAID_OUT = ("ros1msg", "ros2msg", "ros2idl")
 _EXTRAS = {"protobuf": ("mcap-protobuf-support", "protobuf"), "cdr": ("rosbags", "bags")}
 """The package that decodes an encoding, and the extra that installs it."""
@@ -43,22 +44,22 @@ _SEPARATOR = re.compile(r"={3,}")
 
 
 class MissingExtra(str):
-    """Why nothing decodes the messages of a stream: a part of fretc is not installed."""
+    """The reason why the messages of a stream cannot be decoded: an extra is not installed."""
 
     __slots__ = ("extra",)
 
     def __new__(cls, package: str, extra: str) -> MissingExtra:
-        """`package` is what is missing."""
+        """The reason for a missing `package`."""
         text = super().__new__(cls, f"that needs `{package}`")
         text.extra = extra
         return text
 
     extra: str
-    """By which name pip installs it."""
+    """The name of the extra for pip."""
 
 
 def decoder(stream: Stream) -> Decode | str:
-    """The decoder of the messages of a stream, or why there is none."""
+    """The decoder of the messages of a stream, or the reason why there is none."""
     encoding, schema = stream.channel.message_encoding, stream.schema
     if schema is None and encoding != "json":
         return "its messages have no definition"
@@ -88,7 +89,7 @@ def decoder(stream: Stream) -> Decode | str:
 
 
 def shape(stream: Stream) -> Shape | None:
-    """The shape of the messages of a stream; None where only its decoder knows it."""
+    """The shape of the messages of a stream; None: only its decoder can read them."""
     schema = stream.schema
     if schema is None or schema.encoding not in _LAID_OUT:
         return None
@@ -96,10 +97,10 @@ def shape(stream: Stream) -> Shape | None:
 
 
 def is_single(stream: Stream, where: Sequence[str]) -> bool:
-    """Whether the numbers at that place of each message are 32-bit floats.
+    """Whether the numbers of a field are 32-bit floats.
 
     Args:
-        stream: of messages that can be decoded.
+        stream: a stream whose messages can be decoded.
         where: the names of fields from the message down.
     """
     if stream.channel.message_encoding == "protobuf":
@@ -110,12 +111,12 @@ def is_single(stream: Stream, where: Sequence[str]) -> bool:
 
 
 def constants(stream: Stream, where: Sequence[str]) -> Mapping[str, int] | None:
-    """The names that the definition of messages has for the numbers at that place of each.
+    """The names that the definition of messages has for the numbers of a field.
 
-    Of ROS they are the constants of the type that has the field, of Protobuf those of its enum.
+    In ROS they are the constants of the type that has the field, in Protobuf those of its enum.
 
     Args:
-        stream: of messages that can be decoded.
+        stream: a stream whose messages can be decoded.
         where: the names of fields from the message down.
 
     Returns:
@@ -131,12 +132,12 @@ def constants(stream: Stream, where: Sequence[str]) -> Mapping[str, int] | None:
 
 
 _MOST = 256
-"""Definitions that are kept: all logs of a robot have the same ones."""
+"""The number of cached definitions: all logs of a robot have the same ones."""
 
 
 @lru_cache(_MOST)
 def _constants(encoding: str, name: str, data: bytes) -> Mapping[str, Mapping[str, int]]:
-    """Of each type that a message is made of; its definition has a shape."""
+    """The constants of each type in a message, whose definition has a shape."""
     if encoding == "ros2idl":
         return idl.constants(data.decode())
     return constants_of_ros(name, data.decode())
@@ -151,7 +152,7 @@ def _shape(encoding: str, name: str, data: bytes) -> Shape | None:
             definitions = idl.types(name, definition)
         else:
             definitions = types(name, definition, ros1=ros1)
-    except Exception:  # no UTF-8, nothing that is laid out, or a parser that trusts it
+    except Exception:  # not UTF-8, unsupported, or an error of the parser
         return None
     return Shape(short_type(name), definitions, cdr=not ros1)
 
@@ -160,8 +161,8 @@ def leaves(stream: Stream, payloads: Sequence[bytes] = ()) -> Leaves | None:
     """The numbers, truth values and texts in the messages of a stream.
 
     Args:
-        stream: of messages.
-        payloads: some of them; those in JSON show fields that their schema leaves open.
+        stream: the stream of the messages.
+        payloads: some of the messages; those in JSON show fields that their schema leaves open.
 
     Returns:
         None where its messages cannot be read.
@@ -178,12 +179,12 @@ def leaves(stream: Stream, payloads: Sequence[bytes] = ()) -> Leaves | None:
     layout = shape(stream)
     if layout is None:
         return {}
-    found = dict(_number(stream, layout, where) for where in layout.numbers())
-    return found | {".".join(where): Leaf(Kind.TEXT) for where in layout.texts()}
+    numbers = dict(_number(stream, layout, where) for where in layout.numbers())
+    return numbers | {".".join(where): Leaf(Kind.TEXT) for where in layout.texts()}
 
 
 def _number(stream: Stream, layout: Shape, where: Where) -> tuple[str, Leaf]:
-    """The path of a number of ROS, or of an array of them, and what it is."""
+    """The path of a number, or of an array of numbers, and its kind."""
     field = layout.number(where)
     assert field is not None
     kind = Kind.FLAG if field.type == "bool" else Kind.NUMBER
@@ -192,16 +193,16 @@ def _number(stream: Stream, layout: Shape, where: Where) -> tuple[str, Leaf]:
 
 
 def _named(stream: Stream, layout: Shape, where: Where) -> Mapping[str, int]:
-    """The constants that are most likely meant for a field: ROS does not say.
+    """The constants that are most likely meant for a field, which ROS does not define.
 
-    They begin with its name; or it is the one whole number of its type.
+    Their names begin with the name of the field; or the field is the only whole number of its type.
     """
-    known = constants(stream, where) or {}
+    named_constants = constants(stream, where) or {}
     begins = f"{where[-1].upper()}_"
-    own = {name: number for name, number in known.items() if name.startswith(begins)}
+    own = {name: number for name, number in named_constants.items() if name.startswith(begins)}
     holder = layout.holder(where)
     whole = [field for field in layout.types[holder] if "int" in field.type] if holder else []
-    return own or (known if len(whole) == 1 else {})
+    return own or (named_constants if len(whole) == 1 else {})
 
 
 @lru_cache(_MOST)
@@ -216,7 +217,7 @@ def _ros2(name: str, data: bytes) -> Decode:
 
 
 def _plain(payload: bytes) -> bytes:
-    """The payload, if it is plain CDR: its first two bytes tell the representation."""
+    """The payload, if it is plain CDR, which its first two bytes state."""
     if payload[:2] not in (b"\0\0", b"\0\1"):
         raise ValueError("not plain CDR")
     return payload
@@ -226,11 +227,11 @@ def _plain(payload: bytes) -> bytes:
 def _ros1(name: str, data: bytes) -> Decode:
     """A decoder from the fields alone.
 
-    The library turns the definition into Python code and runs it: constants, comments and names
-    of any other kind would run too.
+    The library turns the definition into Python code and executes it: constants, comments and names
+    of any other kind would be executed too.
 
     Raises:
-        ValueError: something else is in the definition, or it is too large.
+        ValueError: the definition contains something else, or it is too large.
     """
     from mcap_ros1.decoder import DecoderFactory
 
@@ -245,10 +246,10 @@ def _ros1(name: str, data: bytes) -> Decode:
 
 
 def _measured(name: str, definition: str, *, ros1: bool) -> None:
-    """Official decoders write each type out in each type that has it, and each element of an array.
+    """Check the size of the types, because official decoders expand nested types and arrays.
 
     Raises:
-        TooLargeError: that would not end.
+        TooLargeError: the expansion would not end, or be too large.
     """
     try:
         types(name, definition, ros1=ros1)
@@ -259,10 +260,10 @@ def _measured(name: str, definition: str, *, ros1: bool) -> None:
 
 
 def _fields_only(definition: str) -> str:
-    """The definition of a ROS 1 message with nothing in it but types and names of fields.
+    """The definition of a ROS 1 message with only types and names of fields.
 
     Raises:
-        ValueError: something else is in it than those, constants and comments.
+        ValueError: the definition contains something other than fields, constants and comments.
     """
     lines = []
     for line in definition.splitlines():
@@ -272,7 +273,10 @@ def _fields_only(definition: str) -> str:
         elif _FIELD.fullmatch(bare):
             lines.append(bare)
         elif _NEXT_TYPE.fullmatch(bare):
-            lines += [bare, ""]  # without a line after it, the name of an empty type is cut off
+            lines += [
+                bare,
+                "",
+            ]  # the parser cuts off the name of an empty type without a line after it
         elif bare and not _CONSTANT.match(bare):
             raise ValueError(f"`{bare}` is no field")
     return "\n".join(lines)

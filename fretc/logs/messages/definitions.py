@@ -1,4 +1,4 @@
-"""Message definitions of ROS 1 and ROS 2: text → the fields of a payload, in their order.
+"""Message definitions of ROS 1 and ROS 2: from the text to the fields of a payload, in their order.
 
 Sources: ROS 2 interface definitions, https://docs.ros.org/en/humble/Concepts/Basic/About-Interfaces.html;
 ROS 1 messages, https://wiki.ros.org/msg.
@@ -23,7 +23,7 @@ NUMBERS: Mapping[str, str] = {
     "float32": "<f4",
     "float64": "<f8",
 }
-"""NumPy's name of each primitive type."""
+"""The NumPy name of each primitive type."""
 
 _ALIASES = {True: {"byte": "int8", "char": "uint8"}, False: {"byte": "uint8", "char": "int8"}}
 """The meaning of these types in ROS 1 (True) and in the decoder of ROS 2."""
@@ -39,12 +39,12 @@ _ROS2_TIMES = {
     "builtin_interfaces/Time": (("sec", "uint32"), ("nanosec", "uint32")),
     "builtin_interfaces/Duration": (("sec", "uint32"), ("nanosec", "uint32")),
 }
-"""Their fields in the decoder of ROS 2 where the definition leaves them out."""
+"""The fields of time types in the decoder of ROS 2, if the definition leaves them out."""
 
 _DEEPEST = 50
-"""Levels of messages within messages; deeper types may contain themselves."""
+"""The most levels of nested messages; deeper types may contain themselves."""
 _MOST_FIELDS = 10_000
-"""Fields of a message, with those of the messages in it."""
+"""The most fields of a message, with those of nested messages."""
 
 _NAME = re.compile(r"\w+/(?:msg/)?\w+")
 _SEPARATOR = re.compile(r"={3,}\s*")
@@ -61,15 +61,15 @@ _CONSTANT = re.compile(
 """A constant that is a whole number."""
 
 _MOST_ELEMENTS = 2**20
-"""Elements of a message, in all of its arrays of fixed length, nested ones too."""
+"""The most elements of a message, in all of its arrays of fixed length, nested ones too."""
 
 
 class DefinitionError(ValueError):
-    """The definition has something that this module does not know."""
+    """The definition contains something that this module does not support."""
 
 
 class TooLargeError(DefinitionError):
-    """The types are within each other without end, or larger than anyone would define."""
+    """The types contain themselves, or are too large."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ class Field:
     """A key of `NUMBERS`, `string`, or the full name of a type."""
     many: bool
     count: int | None
-    """Of an array with a fixed length; None: its length stands before it."""
+    """The length of an array of fixed length; None: the length precedes its elements."""
 
 
 Types = Mapping[str, tuple[Field, ...]]
@@ -92,13 +92,13 @@ def types(name: str, definition: str, *, ros1: bool) -> Types:
     """All types that a message is made of.
 
     Args:
-        name: of the message; with or without `msg/` in it.
-        definition: its text, with those of the types in it below lines of `=`.
-        ros1: whether it is of ROS 1.
+        name: the name of the message, with or without `msg/`.
+        definition: the text, with the definitions of the types that it uses after lines of `=`.
+        ros1: whether the definition is of ROS 1.
 
     Raises:
-        DefinitionError: a line, or a type, is not known; a type is defined twice; or types are
-            within each other without end.
+        DefinitionError: a line or a type is unknown, a type is defined twice, or types contain
+            themselves.
     """
     all_types: dict[str, tuple[Field, ...]] = {}
     for full, lines in _sections(short(name), definition):
@@ -114,17 +114,17 @@ def constants(name: str, definition: str) -> Mapping[str, Mapping[str, int]]:
     """The constants of each type that are whole numbers, by the type's full name.
 
     Args:
-        name: of the message; with or without `msg/` in it.
-        definition: its text, as `types` reads it.
+        name: the name of the message, with or without `msg/`.
+        definition: the text, as for `types`.
 
     Raises:
-        DefinitionError: it cannot be read.
+        DefinitionError: the definition cannot be read.
     """
-    found: dict[str, dict[str, int]] = {}
+    constants_of_types: dict[str, dict[str, int]] = {}
     for full, lines in _sections(short(name), definition):
         matches = filter(None, map(_CONSTANT.fullmatch, lines))
-        found[full] = {match["name"]: _whole(match["value"]) for match in matches}
-    return found
+        constants_of_types[full] = {match["name"]: _whole(match["value"]) for match in matches}
+    return constants_of_types
 
 
 def _whole(text: str) -> int:
@@ -135,11 +135,10 @@ def _whole(text: str) -> int:
 
 
 def measured(all_types: Types) -> Types:
-    """The types.
+    """The types, after a check of their size.
 
     Raises:
-        DefinitionError: they are made of something that is not defined, hold themselves, or hold
-            more than anyone would define.
+        DefinitionError: a type is not defined, contains itself, or is too large.
     """
     for fields in all_types.values():
         for field in fields:
@@ -150,17 +149,17 @@ def measured(all_types: Types) -> Types:
             ):
                 raise DefinitionError(f"the type `{field.type}` is not defined")
     if _largest(all_types, elements=False) > _MOST_FIELDS:
-        raise TooLargeError("the types are too deep")
+        raise TooLargeError("the types are nested too deeply")
     if _largest(all_types, elements=True) > _MOST_ELEMENTS:
         raise TooLargeError("the arrays of fixed length are too long")
     return all_types
 
 
 def _largest(all_types: Types, *, elements: bool) -> int:
-    """How many fields the largest type has, or how many elements, with all that is in it.
+    """The number of fields of the largest type, or of its elements, with nested ones.
 
     Raises:
-        TooLargeError: types are within each other without end.
+        TooLargeError: the types contain themselves.
     """
     sizes: dict[str, int] = {}
     rest = dict(all_types)
@@ -177,7 +176,7 @@ def _largest(all_types: Types, *, elements: bool) -> int:
         rest = {name: fields for name, fields in rest.items() if name not in ready}
         if not rest:
             return max(sizes.values())
-    raise TooLargeError("the types are too deep")
+    raise TooLargeError("the types are nested too deeply")
 
 
 def _builtin(*, ros1: bool) -> dict[str, tuple[Field, ...]]:
@@ -192,7 +191,7 @@ def short(name: str) -> str:
     """`sensor_msgs/LaserScan`, with or without `msg/` in it.
 
     Raises:
-        DefinitionError: it is no name of a type.
+        DefinitionError: the text is not the name of a type.
     """
     if not _NAME.fullmatch(name):
         raise DefinitionError(f"`{name}` is no type")
@@ -200,7 +199,7 @@ def short(name: str) -> str:
 
 
 def _sections(name: str, definition: str) -> list[tuple[str, list[str]]]:
-    """Each type with its lines; those without anything in them are left out."""
+    """Each type with its lines; empty lines are left out."""
     sections: list[tuple[str, list[str]]] = [(name, [])]
     has_name = True
     for line in definition.splitlines():
@@ -245,6 +244,6 @@ def _resolved(name: str, package: str, *, many: bool, ros1: bool) -> str:
         return name
     if ros1 and name in _TIMES:
         return name
-    if ros1 and name == "Header" and not many:  # an array is of the package's own
+    if ros1 and name == "Header" and not many:  # an array has the type of the package
         return "std_msgs/Header"
     return f"{package}/{name}"

@@ -25,7 +25,7 @@ from fretc.logs.messages.definitions import (
 
 _SEPARATOR = re.compile(r"^={3,}[ \t]*\r?\n(?:IDL:[^\n]*\n)?", re.MULTILINE)
 _INCLUDE = re.compile(r"^[ \t]*#.*$", re.MULTILINE)
-"""A line for a preprocessor; what it names is in the same text."""
+"""A line for a preprocessor; the file that it includes is part of the same text."""
 _NAME = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)
 _TEXT = r'"(?:\\.|[^"\\])*"'
 _UNUSED = re.compile(
@@ -33,23 +33,23 @@ _UNUSED = re.compile(
     rf"|@\s*[\w:]+(?:\s*\((?:{_TEXT}|[^()\"])*\))?|(?P<open>(?:\"|/\*).*)",
     re.DOTALL,
 )
-"""Comments and annotations; texts are matched too, for what looks like one may stand in them, and
-what has no end, for it would be looked for from each quote anew."""
+"""Comments and annotations. Texts are matched too, because they may contain what looks like one; so
+are unclosed ones, which would otherwise be searched from each quote again."""
 _COMPUTED = re.compile(r"[(+*/%&|^~]|<<|-\s*-")
-"""What bounds that are computed have in them; no message of ROS has any."""
+"""The operators of computed bounds; no message of ROS has any."""
 _NESTED = re.compile(r"\bsequence\s*<(\s*sequence\b|[^;]*\[)")
-"""Arrays of arrays, of which the parser keeps one."""
+"""Arrays of arrays, which the parser reads as single arrays."""
 _LONGEST = 2**20
-"""Characters; no definition is longer."""
+"""The most characters of a definition."""
 
 _MOST = 4096
-"""Elements of an array with a fixed length that are no numbers: the decoder writes each out."""
+"""The most elements of an array of fixed length that are not numbers: the decoder expands each."""
 _KINDS = {"byte": "uint8", "char": "uint8"}
-"""What these are; the decoder takes an octet for a number with a sign."""
+"""The kind of these types; the decoder treats an octet as a signed number."""
 
 
 def decoder(stream: Stream) -> Callable[[bytes], object]:
-    """What decodes the messages of a stream.
+    """The decoder of the messages of a stream.
 
     Raises:
         ModuleNotFoundError: the extra `bags` is not installed.
@@ -68,10 +68,10 @@ def decoder(stream: Stream) -> Callable[[bytes], object]:
 
 
 def types(name: str, definition: str) -> Types:
-    """All types that a message is made of, by their short names.
+    """All types in a message, by their short names.
 
     Raises:
-        DefinitionError: one of them is of a kind that is not laid out here.
+        DefinitionError: a type is of an unsupported kind.
         Exception: of many kinds; the definition cannot be read.
     """
     all_types = {
@@ -96,10 +96,12 @@ def constants(definition: str) -> Mapping[str, Mapping[str, int]]:
 
 
 def _parsed(definition: str) -> Mapping[str, Any]:
-    """The fields of each type, as rosbags has them.
+    """The fields of each type, in the form of rosbags.
 
     Raises:
-        DefinitionError: a name is none, a type is defined in two ways, or the definition could
+        DefinitionError: a name is invalid, a type is defined in two ways, or the definition could
+            cost too much.
+        could
             cost more than it is worth.
     """
     all_types: dict[str, Any] = {}
@@ -114,7 +116,7 @@ def _parsed(definition: str) -> Mapping[str, Any]:
 
 
 def _sections(definition: str) -> Iterator[tuple[str, Any, Any]]:
-    """Each type with its constants and its fields, as rosbags has them."""
+    """Each type with its constants and its fields, in the form of rosbags."""
     from rosbags.typesys import get_types_from_idl
 
     if len(definition) > _LONGEST:
@@ -126,10 +128,10 @@ def _sections(definition: str) -> Iterator[tuple[str, Any, Any]]:
 
 
 def _bare(section: str) -> str:
-    """A definition without comments and annotations.
+    """The definition without comments and annotations.
 
     Raises:
-        DefinitionError: the parser would take very long for it, or take it for something else.
+        DefinitionError: the parser would take very long, or misread the definition.
     """
     bare = _UNUSED.sub(_kept, section).strip()
     outside = re.sub(_TEXT, "", bare)
@@ -142,7 +144,7 @@ def _bare(section: str) -> str:
 
 def _kept(match: re.Match[str]) -> str:
     if match["open"]:
-        raise DefinitionError("a text or a comment has no end")
+        raise DefinitionError("a text or a comment is not closed")
     return match["text"] or " "
 
 

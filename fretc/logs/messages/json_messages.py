@@ -1,8 +1,8 @@
-"""Messages in JSON, and what a JSON schema says of the fields in them.
+"""Messages in JSON, and the fields in a JSON schema.
 
-Each message stands for itself: a schema is no promise, and nothing is checked against it. A field
-that a message leaves out or states as `null` is unknown in that message: `null` is what several
-writers make of NaN and of both infinities, so it can never stand for one of them.
+Each message is read on its own: nothing is checked against a schema. A field that a message leaves
+out or states as `null` is unknown in that message: several writers write NaN and both infinities as
+`null`, so `null` is never one of them.
 
 Sources: RFC 8259; NaN and Infinity as Python and JavaScript's JSON5 write them, and as texts as
 ProtoJSON writes them, https://protobuf.dev/programming-guides/json/.
@@ -20,13 +20,13 @@ from fretc.logs.messages.leaves import Kind, Leaf
 from fretc.logs.signals.signals import Sparse, UnstatedError
 
 _WORDS = {"NaN": float("nan"), "Infinity": float("inf"), "-Infinity": float("-inf")}
-"""Texts that stand where a number should."""
+"""Texts that stand for numbers."""
 _LARGEST = int(1.7976931348623157e308)
 _DEEPEST = 20
 _MOST = 2000
-"""Fields of one topic that are listed."""
+"""The most fields of one topic that are listed."""
 _MOST_STEPS = 20_000
-"""Parts of a schema that are looked at: those that refer to each other have no end."""
+"""The most parts of a schema that are visited: those that refer to each other have no end."""
 
 
 class Object(Sparse):
@@ -39,7 +39,7 @@ class Object(Sparse):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the fields that it states."""
+        """The names of its fields."""
         return tuple(self._values)
 
     def field(self, name: str) -> object:
@@ -58,8 +58,8 @@ def decode(payload: bytes) -> Object:
     """A message.
 
     Raises:
-        ValueError: it is no JSON, no object, names a field twice, or holds a number that is
-            beyond 64-bit floats: 1e400 is no measurement, and no infinity either.
+        ValueError: the payload is not a JSON object, names a field twice, or holds a number beyond
+            64-bit floats: 1e400 is neither a measurement nor infinity.
         RecursionError: it is nested too deep.
     """
     message = json.loads(
@@ -95,10 +95,10 @@ def _int(text: str) -> int:
 
 
 def schema_leaves(schema: bytes) -> dict[str, Leaf]:
-    """The numbers, truth values and texts that a JSON schema names.
+    """The numbers, truth values and texts in a JSON schema.
 
     Raises:
-        ValueError: it is no JSON, or no schema.
+        ValueError: the text is not JSON, or not a schema.
         RecursionError: it is nested too deep.
     """
     root = json.loads(schema.decode() or "{}")
@@ -108,7 +108,7 @@ def schema_leaves(schema: bytes) -> dict[str, Leaf]:
 
 
 def message_leaves(payloads: Iterable[bytes]) -> dict[str, Leaf]:
-    """Those that some messages hold; payloads that are no messages do not count."""
+    """The numbers, truth values and texts in some messages; invalid payloads are skipped."""
     leaves: dict[str, Leaf] = {}
     for payload in payloads:
         try:
@@ -131,8 +131,8 @@ def _some(leaves: Iterator[tuple[str, Kind]]) -> dict[str, Leaf]:
 
 def _of_schema(
     root: Any,
-) -> Iterator[tuple[str, Kind]]:  # a schema is whatever its writer made of it
-    """The nearest ones first."""
+) -> Iterator[tuple[str, Kind]]:  # a schema may be any JSON value
+    """The fields in a schema, the nearest ones first."""
     queue: list[tuple[Any, str, tuple[int, ...]]] = [(root, "", ())]
     for schema, path, within in queue:
         schema = _resolved(root, schema)
@@ -158,7 +158,7 @@ _KINDS = {
 
 
 def _own(root: Any, schema: dict[Any, Any], path: str) -> Iterator[tuple[str, Kind]]:
-    """The path, as far as it is itself a field that can be read."""
+    """The path, if it is itself a field that can be read."""
     kinds = schema.get("type")
     kinds = kinds if isinstance(kinds, list) else [kinds]
     own = [_KINDS[kind] for kind in kinds if isinstance(kind, str) and kind in _KINDS]
@@ -172,7 +172,7 @@ def _own(root: Any, schema: dict[Any, Any], path: str) -> Iterator[tuple[str, Ki
 
 
 def _resolved(root: Any, schema: Any) -> Any:
-    """The schema itself, or the one of the same text that it refers to."""
+    """The schema, or the one in the same text to which it refers."""
     for _ in range(_DEEPEST):
         reference = schema.get("$ref") if isinstance(schema, dict) else None
         if not isinstance(reference, str) or not reference.startswith("#"):
@@ -205,5 +205,5 @@ def _of_value(value: object, path: str, depth: int) -> Iterator[tuple[str, Kind]
 
 
 def _is_name(name: object) -> bool:
-    """Whether the path of a signal can name it."""
+    """Whether a path can contain the name."""
     return isinstance(name, str) and name.isidentifier() and name.isascii()

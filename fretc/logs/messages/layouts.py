@@ -1,4 +1,4 @@
-"""The places of wanted fields in payloads: one walk, then a check of many messages at once.
+"""The positions of wanted fields in payloads: one pass, then a check of many messages at once.
 
 Fields stand one after the other, and strings and arrays have their lengths before them. Messages
 of one topic mostly have the same lengths, and so the same layout: a walk through the first of them
@@ -28,37 +28,37 @@ _LENGTH = struct.Struct("<I")
 _PADDING = 7
 """Bytes that may follow the last field of CDR."""
 _MOST_CHECKS = 64
-"""A message with more lengths shares its layout with no other."""
+"""The most lengths in a layout: a message with more shares its layout with no other."""
 _MOST_LAYOUTS = 64
-"""The most layouts kept of a stream: each message is compared with all of them."""
+"""The most layouts of a stream: each message is compared with all of them."""
 
 
 class LayoutError(ValueError):
-    """The payload does not fit its definition, or a field is not there."""
+    """The payload does not fit its definition, or a field is missing."""
 
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """The place of a wanted field within a payload."""
+    """The position of a wanted field within a payload."""
 
     at: int
-    """Its first byte."""
+    """The offset of its first byte."""
     dtype: str
     count: int | None
-    """How many numbers an array holds; None for a number alone."""
+    """The number of elements of an array; None for a single number."""
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """The places that many messages share."""
+    """Positions that many messages share."""
 
     size: int
     """Bytes of the payload."""
     marks: tuple[tuple[int, str, int], ...]
-    """Places, types and values of all lengths, and of the mark of plain CDR."""
+    """Positions, types and values of all lengths, and of the mark of plain CDR."""
     locations: Mapping[Where, Location]
     texts: tuple[tuple[int, int], ...] = ()
-    """Places and lengths of texts; the decoder refuses those that are not UTF-8."""
+    """Positions and lengths of texts; the decoder refuses texts that are not UTF-8."""
 
 
 class Shape:
@@ -69,10 +69,10 @@ class Shape:
         self._fields: dict[Where, Field | None] = {}
 
     def number(self, where: Where) -> Field | None:
-        """The number, or the array of numbers, at that place of each message.
+        """The number, or the array of numbers, at a path.
 
-        None also for a time of ROS 1 that stands in the message itself: its decoder carries
-        nanoseconds over into seconds.
+        None also for a time of ROS 1 in the message itself: its decoder carries nanoseconds over
+        into seconds.
         """
         if where not in self._fields:
             self._fields[where] = self._number(where)
@@ -94,7 +94,7 @@ class Shape:
         return None
 
     def holder(self, where: Where) -> str | None:
-        """The type that has the number, or the numbers, at that place; None: there is none."""
+        """The type that directly contains the number at a path; None: there is none."""
         if self.number(where) is None:
             return None
         name = self.name
@@ -103,22 +103,22 @@ class Shape:
         return name
 
     def has(self, where: Where) -> bool:
-        """Whether there is a number at that place of each message."""
+        """Whether there is a number at a path."""
         field = self.number(where)
         return field is not None and not field.many
 
     def numbers(self) -> tuple[Where, ...]:
-        """All places at which `number` finds a field."""
+        """The paths of all numbers."""
         return tuple(where for where, _ in self._fields_below() if self.number(where) is not None)
 
     def texts(self) -> tuple[Where, ...]:
-        """The places of all texts, but for those in arrays."""
+        """The paths of all texts, except those in arrays."""
         return tuple(
             where for where, field in self._fields_below() if field.type in TEXTS and not field.many
         )
 
     def _fields_below(self) -> Iterator[tuple[Where, Field]]:
-        """Each field that has a place of its own; the nearest ones first."""
+        """Each field with a fixed path; the nearest ones first."""
         below: list[tuple[Where, str]] = [((), self.name)]
         for where, name in below:
             for field in self.types[name]:
@@ -129,15 +129,15 @@ class Shape:
                     yield at, field
 
     def layout(self, payload: memoryview, wanted: Sequence[Where]) -> Layout:
-        """Where the wanted fields of one payload are.
+        """The positions of the wanted fields in one payload.
 
         Args:
-            payload: a whole message; of CDR with the four bytes before it.
+            payload: a whole message; with the first four bytes of CDR.
             wanted: numbers, or arrays of numbers.
 
         Raises:
-            LayoutError: the payload has another length than its fields, or is not plain
-                little-endian CDR; or a wanted field is not there, or holds no numbers.
+            LayoutError: the length of the payload differs from that of its fields, or is not plain
+                little-endian CDR; or a wanted field is missing, or not a number.
         """
         walk = _Walk(payload, self.types, frozenset(wanted), cdr=self.cdr)
         try:
@@ -145,15 +145,15 @@ class Shape:
         except struct.error:
             raise LayoutError("the payload is cut off") from None
         if not 0 <= len(payload) - walk.at <= (_PADDING if self.cdr else 0):
-            raise LayoutError("the payload has another length than its fields")
+            raise LayoutError("the length of the payload differs from that of its fields")
         absent = [where for where in wanted if where not in walk.locations]
         if absent:
-            raise LayoutError(f"there are no numbers in `{'.'.join(absent[0])}`")
+            raise LayoutError(f"no numbers are in `{'.'.join(absent[0])}`")
         return Layout(len(payload), tuple(walk.marks), walk.locations, tuple(walk.texts))
 
 
 class _Walk:
-    """One way through a payload."""
+    """One pass through a payload."""
 
     def __init__(
         self, payload: memoryview, types: Types, wanted: frozenset[Where], *, cdr: bool
@@ -175,7 +175,7 @@ class _Walk:
             self.at += 1
         for field in self._types[name]:
             self._field(field, (*where, field.name))
-        if self.at > len(self._payload):  # raised here, or an array of them would go on
+        if self.at > len(self._payload):  # raised here, to end arrays of empty elements
             raise LayoutError("the payload is cut off")
 
     def _field(self, field: Field, where: Where) -> None:
@@ -189,18 +189,18 @@ class _Walk:
             self.message(field.type, where)
         elif self._cdr or self._types[field.type]:  # ROS 1 writes nothing for an empty type
             for _ in range(self._bounded(count)):
-                self.message(field.type, ("[]",))  # no wanted field is below
+                self.message(field.type, ("[]",))  # it contains no wanted field
 
     def _numbers(self, dtype: str, count: int | None, where: Where) -> None:
         size = np.dtype(dtype).itemsize
-        if self._cdr and count != 0:  # what is not there needs no alignment
+        if self._cdr and count != 0:  # empty arrays are not aligned
             self.at += -(self.at - 4) % size
         if where in self._wanted:
             self.locations[where] = Location(self.at, dtype, count)
         self.at += size if count is None else size * count
 
     def _text(self, length: int) -> None:
-        if self._cdr and length > 1:  # the last byte ends it
+        if self._cdr and length > 1:  # the last byte is a terminator
             self.texts.append((self.at, length - 1))
         self.at += length
 
@@ -224,25 +224,25 @@ class _Walk:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Messages of one layout; None where they fit no layout."""
+    """Messages of one layout; None: they fit no layout."""
 
     rows: Places
     layout: Layout | None
     new: bool = False
-    """Whether no message before them had this layout."""
+    """Whether this is the first message with the layout."""
 
 
 class Layouts:
-    """The layouts of the messages of one stream, collected on the way."""
+    """The layouts of the messages of one stream, collected as they come."""
 
     def __init__(self, shape: Shape, wanted: Sequence[Where]) -> None:
         self._shape, self._wanted = shape, wanted
         self._layouts: dict[int, list[Layout]] = {}
-        """By size; not more than `_MOST_LAYOUTS` of all sizes."""
+        """Layouts by size; at most `_MOST_LAYOUTS` in all."""
         self._count = 0
 
     def groups(self, payloads: Payloads) -> Iterator[Group]:
-        """All messages, those of one layout together."""
+        """All messages, grouped by layout."""
         rest = np.arange(len(payloads))
         if self._count:
             for size in distinct(payloads.sizes).tolist():
@@ -270,7 +270,7 @@ class Layouts:
 
 
 def _split(payloads: Payloads, rows: Places, layout: Layout, *, new: bool) -> Iterator[Group]:
-    """Messages with texts beyond ASCII go to the decoder, which checks them."""
+    """Separate messages with texts beyond ASCII, which the decoder checks."""
     plain = _plain(payloads, rows, layout)
     if plain.any():
         yield Group(rows[plain], layout, new)
@@ -279,20 +279,20 @@ def _split(payloads: Payloads, rows: Places, layout: Layout, *, new: bool) -> It
 
 
 def _same(payloads: Payloads, rows: Places, layout: Layout) -> NDArray[np.bool_]:
-    """Which of the rows have the layout, as far as its marks can tell."""
+    """The rows that have the layout, as far as its marks show."""
     same: NDArray[np.bool_] = payloads.sizes[rows] == layout.size
     if len(layout.marks) > _MOST_CHECKS:
         return np.zeros(len(rows), bool)
-    some = rows[same]
-    agree = np.ones(len(some), bool)
+    matching = rows[same]
+    agree = np.ones(len(matching), bool)
     for at, dtype, value in layout.marks:
-        agree &= payloads.gathered(some, at, dtype, None) == value
+        agree &= payloads.gathered(matching, at, dtype, None) == value
     same[same] = agree
     return same
 
 
 def _plain(payloads: Payloads, rows: Places, layout: Layout) -> NDArray[np.bool_]:
-    """In which of the rows all texts are ASCII; only the decoder knows whether others are texts."""
+    """The rows in which all texts are ASCII; only the decoder can check others."""
     plain = np.ones(len(rows), bool)
     for at, length in layout.texts:
         plain &= (payloads.gathered(rows, at, "u1", length).view(np.int8) >= 0).all(axis=1)

@@ -8,7 +8,7 @@ from enum import StrEnum
 
 
 class Kind(StrEnum):
-    """What a field holds."""
+    """The kind of a field."""
 
     NUMBER = "number"
     FLAG = "flag"
@@ -22,11 +22,11 @@ class Leaf:
 
     kind: Kind
     names: Mapping[str, int] = field(default_factory=dict)
-    """What the definition of the messages calls its numbers."""
+    """The names of its numbers in the definition of the messages."""
 
 
 Leaves = Mapping[str, Leaf]
-"""By their paths: `a.b`, and `a.c[:]` for an array of numbers."""
+"""Fields by their paths: `a.b`, and `a.c[:]` for an array of numbers."""
 
 
 def numbers(leaves: Leaves) -> tuple[str, ...]:

@@ -1,7 +1,7 @@
-"""Made-up messages of a definition: they compare layouts with the official decoder.
+"""Generated messages of a definition, for comparison of layouts with the official decoder.
 
-Messages of a log may hide an error: where all bytes are zero, a wrong place reads the same. Made-up
-messages have different bytes everywhere, and lengths that move the following fields.
+Messages of a log may hide an error: if all bytes are zero, a wrong position reads the same.
+Generated messages have different bytes everywhere, and lengths that move the following fields.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from fretc.logs.messages.layouts import Location, Shape
 from fretc.logs.signals.samples import Numbers
 
 _PROBES = 8
-"""Enough for each length to take each place between two numbers of 8 bytes."""
+"""Enough for each length to have each value between two numbers of 8 bytes."""
 _LARGEST = 2**18
-"""Bytes of a made-up message; one that would be longer is not made."""
+"""The most bytes of a generated message."""
 
 
 @lru_cache(256)
 def trusted(shape: Shape, decode: Decode) -> bool:
-    """Whether the decoder reads each number of some made-up messages as the layout does."""
+    """Whether the decoder reads each number of some generated messages like the layout."""
     payloads = [probe(shape, seed) for seed in range(_PROBES)]
     return all(payload is not None and _same(shape, decode, payload) for payload in payloads)
 
 
 def probe(shape: Shape, seed: int) -> bytes | None:
-    """A payload with random contents; None where it would be too long."""
+    """A payload with random contents; None: it would be too long."""
     probe = _Probe(shape.types, seed, cdr=shape.cdr)
     try:
         probe.message(shape.name)
@@ -45,7 +45,7 @@ def _same(shape: Shape, decode: Decode, payload: bytes) -> bool:
         layout = shape.layout(memoryview(payload), wanted)
         message = decode(payload)
         official = [_numbers(reduce(getattr, where, message)) for where in wanted]
-    except Exception:  # whatever the decoder raises: it cannot read the message
+    except Exception:  # any exception: the decoder cannot read the message
         return False
     ours = [_at(payload, layout.locations[where]) for where in wanted]
     return all(
@@ -70,7 +70,7 @@ class _TooLongError(Exception):
 
 
 class _Probe:
-    """A payload that grows."""
+    """A payload under construction."""
 
     def __init__(self, types: Types, seed: int, *, cdr: bool) -> None:
         self.payload = bytearray(b"\0\1\0\0" if cdr else b"")

@@ -1,8 +1,8 @@
-"""Messages in Protobuf, by the definition that the log carries: a FileDescriptorSet.
+"""Messages in Protobuf, by the definition in the log: a FileDescriptorSet.
 
 A field whose presence is known (a submessage, a member of a `oneof`, an `optional`, every single
-field of proto2) is unknown where it is left out, and never its default. For a plain field of
-proto3 nobody can know: 0 and "left out" are the same bytes, and both are 0.
+field of proto2) is unknown if it is left out, and never its default. The presence of a plain field
+of proto3 is not known: 0 and "left out" are the same bytes, and both are 0.
 
 Source: https://protobuf.dev/programming-guides/field_presence/.
 """
@@ -18,9 +18,9 @@ from fretc.logs.messages.leaves import Kind, Leaf
 from fretc.logs.signals.signals import Sparse, UnstatedError
 
 _MOST = 2000
-"""Fields of one topic that are listed."""
+"""The most fields of one topic that are listed."""
 _MOST_STEPS = 20_000
-"""The most messages within messages to visit."""
+"""The most nested messages to visit."""
 
 
 class Message(Sparse):
@@ -33,11 +33,11 @@ class Message(Sparse):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the fields that its type has."""
+        """The names of the fields of its type."""
         return tuple(field.name for field in self._message.DESCRIPTOR.fields)
 
     def field(self, name: str) -> object:
-        """The value of a field; numbers of an enum, bytes, texts and messages as they are."""
+        """The value of a field; numbers of an enum, bytes, texts and messages are unchanged."""
         descriptor = self._message.DESCRIPTOR.fields_by_name[name]
         if descriptor.has_presence and not self._message.HasField(name):
             raise UnstatedError
@@ -65,7 +65,7 @@ def leaves(stream: Stream) -> dict[str, Leaf]:
 
 
 def is_single(stream: Stream, where: Sequence[str]) -> bool:
-    """Whether there are 32-bit floats at that place of each message."""
+    """Whether the numbers of a field are 32-bit floats."""
     descriptor, field = _official(stream)(b"").DESCRIPTOR, None
     for name in where:
         field = descriptor.fields_by_name.get(name) if descriptor is not None else None
@@ -74,7 +74,7 @@ def is_single(stream: Stream, where: Sequence[str]) -> bool:
 
 
 def constants(stream: Stream, where: Sequence[str]) -> Mapping[str, int] | None:
-    """The names of the numbers at that place of each message; None where there are no numbers."""
+    """The names of the numbers of a field; None: it has no numbers."""
     descriptor, field = _official(stream)(b"").DESCRIPTOR, None
     for name in where:
         field = descriptor.fields_by_name.get(name) if descriptor is not None else None
@@ -93,7 +93,7 @@ def _official(stream: Stream) -> Callable[[bytes], Any]:
 
 
 def _leaves(descriptor: Any) -> Iterator[tuple[str, Leaf]]:
-    """The nearest ones first."""
+    """The fields, the nearest ones first."""
     queue: list[tuple[Any, str, tuple[str, ...]]] = [(descriptor, "", ())]
     for message, path, within in queue:
         if message.full_name in within or len(queue) > _MOST_STEPS:
@@ -124,7 +124,7 @@ def _names(field: Any) -> Mapping[str, int]:
 
 
 def _is_repeated(field: Any) -> bool:
-    """Older releases of the library know only the label."""
+    """Whether a field is repeated; older releases of the library have only the label."""
     many = getattr(field, "is_repeated", None)
     return bool(field.label == field.LABEL_REPEATED if many is None else many)
 

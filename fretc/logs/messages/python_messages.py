@@ -1,4 +1,4 @@
-"""Messages as Python has them, mappings or objects → samples of signals."""
+"""Samples of signals from messages in Python: mappings or objects."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from fretc.logs.signals.enum_values import UNKNOWN, enum_index
 from fretc.logs.signals.samples import EXACT
 from fretc.logs.signals.signals import (
     Sparse,
@@ -19,18 +20,17 @@ from fretc.logs.signals.signals import (
     optional_field,
     sample,
 )
-from fretc.logs.signals.words import UNKNOWN, word
 from fretish.bindings.declarations import Signal
 
 Value = tuple[float, np.dtype[Any] | None, str]
-"""A sample, and of which kind of number it is; None: it is unknown. Last, what it is where that is
-none of the values of its signal; else nothing."""
+"""The sample, its number type (None: it is unknown), and its text if it is not among the values of
+its signal (else empty)."""
 
 
 class Message(Sparse):
-    """A message as Python has it: a mapping, or an object with attributes.
+    """A message in Python: a mapping, or an object with attributes.
 
-    What is None is unknown; what is not there is a mistake.
+    None is unknown; a missing field is an error.
     """
 
     def __init__(self, message: object) -> None:
@@ -38,19 +38,19 @@ class Message(Sparse):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of its fields; those of a message of rclpy are not its slots."""
+        """The names of its fields; in a message of rclpy they differ from its slots."""
         if isinstance(self._message, Mapping):
             return tuple(map(str, self._message))
         declared = getattr(self._message, "get_fields_and_field_types", None)
         return tuple(declared()) if callable(declared) else fields(self._message)
 
     def constant(self, name: str) -> int | None:
-        """A whole constant of the message's type, as those of ROS have them."""
-        found = getattr(type(self._message), name, None)
-        return found if isinstance(found, int) else None
+        """A whole constant of the message's type, as in ROS."""
+        value = getattr(type(self._message), name, None)
+        return value if isinstance(value, int) else None
 
     def field(self, name: str) -> object:
-        """The value of a field; arrays of Python's `array` are those of NumPy."""
+        """The value of a field; an `array.array` becomes an array of NumPy."""
         if name not in self.names:
             raise KeyError(name)
         mapping = isinstance(self._message, Mapping)
@@ -67,11 +67,11 @@ def sampled(signal: Signal, message: Message) -> Value:
     """The sample of a message.
 
     Raises:
-        FieldError: it has no such field.
+        FieldError: the message has no such field.
     """
     single = _is_single(signal, message)
     signal = _named(signal, message)
-    value = word(signal, message) if signal.values else sample(signal, message, single=single)
+    value = enum_index(signal, message) if signal.values else sample(signal, message, single=single)
     if isinstance(value, str):
         return UNKNOWN, None, value
     if isinstance(value, int):
@@ -82,7 +82,7 @@ def sampled(signal: Signal, message: Message) -> Value:
 
 
 def _named(signal: Signal, message: Message) -> Signal:
-    """The signal with the numbers of its words, where the field's message has such constants."""
+    """The signal with the numbers of its values, if the field's message has such constants."""
     if not signal.values or signal.numbers:
         return signal
     holder: object = message
@@ -93,13 +93,13 @@ def _named(signal: Signal, message: Message) -> Signal:
     ):
         return signal
     numbers = tuple(
-        number for each in signal.values if (number := holder.constant(each)) is not None
+        number for value in signal.values if (number := holder.constant(value)) is not None
     )
     return replace(signal, numbers=numbers) if len(set(numbers)) == len(signal.values) else signal
 
 
 def _is_single(signal: Signal, message: Message) -> bool:
-    """Whether its field holds 32-bit floats."""
+    """Whether the field of the signal holds 32-bit floats."""
     value: object = message
     for name in signal.path.fields:
         value = optional_field(value, name)

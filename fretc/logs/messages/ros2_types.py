@@ -1,4 +1,4 @@
-"""The definitions of ROS 2's own types, as its releases have them."""
+"""The definitions of the standard ROS 2 types in its releases."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def definitions(name: str) -> Mapping[str, str]:
-    """Each definition that a type of ROS 2's own has in one of its releases, the oldest first.
+    """Each definition that a standard ROS 2 type has in one of its releases, the oldest first.
 
     Args:
         name: `sensor_msgs/msg/LaserScan`.
@@ -22,25 +22,25 @@ def definitions(name: str) -> Mapping[str, str]:
         ModuleNotFoundError: rosbags is not installed.
     """
     stores = [store for store in _stores() if name in store.fielddefs]
-    found = {store.hash_rihs01(name): store for store in stores}
+    store_of_hash = {store.hash_rihs01(name): store for store in stores}
     return {
         digest: str(store.generate_msgdef(name, ros_version=2)[0])
-        for digest, store in found.items()
+        for digest, store in store_of_hash.items()
     }
 
 
 def standard(name: str) -> str | None:
-    """The definition of a type of ROS 2's own, if it is the same in all its releases.
+    """The definition of a standard ROS 2 type, if it is equal in all releases.
 
     Raises:
         ModuleNotFoundError: rosbags is not installed.
     """
-    found = definitions(name)
-    return next(iter(found.values())) if len(found) == 1 else None
+    texts = definitions(name)
+    return next(iter(texts.values())) if len(texts) == 1 else None
 
 
 def latest() -> Any:
-    """The types of the latest release as a `rosbags` typestore: it makes messages, and their CDR.
+    """The types of the latest release as a typestore of rosbags, which can encode messages.
 
     Raises:
         ModuleNotFoundError: rosbags is not installed.

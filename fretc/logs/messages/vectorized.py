@@ -1,4 +1,4 @@
-"""Signals of many messages at once; equal to `fretc.logs.signals.signals.sample` of each.
+"""Signals of many messages at once, equal to `fretc.logs.signals.signals.sample` of each.
 
 Numbers are in the unit of the field, clearances in metres; NaN is unknown.
 """
@@ -28,7 +28,7 @@ Singles = NDArray[np.float32]
 
 @cache_by_identity
 def siblings(signal: Signal) -> tuple[str, ...]:
-    """Further fields that the signal needs beside its own."""
+    """Further fields that the signal needs in addition to its own."""
     names = {name.id for name in e.names(signal.valid)} - {"x"} if signal.valid else set()
     if signal.reduce is Reduce.OUTLINE:
         names |= {"angle_min", "angle_increment"}
@@ -39,8 +39,8 @@ def samples(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers
     """The signal's value in each message.
 
     Args:
-        signal: what to read, and how.
-        values: shape (messages, elements), as they were recorded; one element for a number.
+        signal: the field to read, and the reduction.
+        values: shape (messages, elements), as recorded; one element for a number.
         sibling_values: each of `siblings`, shape (messages,).
 
     Returns:
@@ -52,14 +52,14 @@ def samples(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers
     if not values.shape[1]:
         return np.full(len(values), np.nan)
     result = np.empty(len(values), EXACT if values.dtype == EXACT else np.float64)
-    with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
+    with np.errstate(all="ignore"):  # too large numbers become infinite, and a NaN may signal
         if signal.reduce is None and signal.valid is None and np.isfinite(values).all():
             return values[:, 0]
         plain = _plain(signal, values, sibling_values, result)
         if not plain.all():
             rows = ~plain
-            some = {name: numbers[rows] for name, numbers in sibling_values.items()}
-            result[rows] = _samples(signal, values[rows], some)
+            siblings_of_rows = {name: numbers[rows] for name, numbers in sibling_values.items()}
+            result[rows] = _samples(signal, values[rows], siblings_of_rows)
     return result
 
 
@@ -68,9 +68,9 @@ def _plain(
 ) -> Truths:
     """Fill in the messages whose least or greatest measurement is easy to find.
 
-    These are most: one of their elements makes them unknown, or they have a measurement and
-    nothing that takes precedence over it. Dropped elements never do, nor does far over the least,
-    or near over the greatest.
+    These are most messages: one element makes them unknown, or they have a measurement and no
+    element takes precedence over it. Dropped elements never do, nor does far over the least, or
+    near over the greatest.
     """
     if signal.reduce not in (Reduce.MIN, Reduce.MAX):
         return np.zeros(len(values), bool)
@@ -94,15 +94,15 @@ def _ends(reduce: Reduce, values: Values, limits: _Limits) -> tuple[Values, Trut
     least, band = reduce is Reduce.MIN, limits.band()
     if band is not None and values.dtype == np.float32:
         return _ends_within(band, values.view(np.uint32), least=least)
-    # Where the least of all numbers is a measurement, no other element has to be looked at.
+    # If the least of all numbers is a measurement, the other elements do not matter.
     ends = (np.fmin if least else np.fmax).reduce(values, axis=1)
     measured = limits.hold(ends[:, None])[:, 0]
     rows = np.flatnonzero(~measured)
     if len(rows):
-        some = values[rows]
-        accepted = limits.hold(some, rows)
-        np.copyto(some, np.inf if least else -np.inf, where=~accepted)
-        ends[rows] = some.min(axis=1) if least else some.max(axis=1)
+        values_of_rows = values[rows]
+        accepted = limits.hold(values_of_rows, rows)
+        np.copyto(values_of_rows, np.inf if least else -np.inf, where=~accepted)
+        ends[rows] = values_of_rows.min(axis=1) if least else values_of_rows.max(axis=1)
         measured[rows] = accepted.any(axis=1)
     return ends, measured
 
@@ -123,13 +123,13 @@ def _ends_within(
 
 
 _WEAKER = {Reduce.MIN: Reading.FAR, Reduce.MAX: Reading.NEAR}
-"""The reading that counts only where nothing was measured."""
+"""The reading that counts only if nothing was measured."""
 
 
 def _classes(
     invalid: InvalidReadings, values: Values, valid: Callable[[], Truths]
 ) -> Iterator[tuple[Reading, Callable[[], Truths]]]:
-    """Each kind of element that is no measurement: its meaning, and its elements."""
+    """Each kind of element that is not a measurement: its meaning, and its elements."""
     yield invalid.nan, lambda: np.isnan(values)
     yield invalid.positive_infinity, lambda: np.isposinf(values)
     yield invalid.negative_infinity, lambda: np.isneginf(values)
@@ -144,7 +144,7 @@ class _Limits:
     """Operators and bounds: shape (messages, 1), or (1, 1) for all messages."""
 
     def hold(self, values: Values, rows: slice | NDArray[np.intp] = slice(None)) -> Truths:
-        """Which elements are measurements, of all messages or of some."""
+        """The elements that are measurements, of all messages or of some."""
         accepted: Truths = np.isfinite(values)
         for op, bound in self.compared:
             accepted &= COMPARE[op](values, bound if len(bound) == 1 else bound[rows])
@@ -170,7 +170,7 @@ _GREATEST = np.finfo(np.float32).max
 
 
 def _limits(signal: Signal, sibling_values: Mapping[str, Numbers], count: int) -> _Limits | None:
-    """The test for measurements; None where comparisons with 32-bit floats are not enough."""
+    """The test for measurements; None: comparisons with 32-bit floats are not enough."""
     bounds = [] if signal.valid is None else _bounds(signal.valid)
     if bounds is None:
         return None
@@ -189,9 +189,9 @@ def _limits(signal: Signal, sibling_values: Mapping[str, Numbers], count: int) -
 
 @cache_by_identity
 def _bounds(valid: e.Expression) -> list[tuple[str, e.Expression]] | None:
-    """`x >= range_min and x <= range_max`: the operators and what `x` is compared with.
+    """The operators and bounds of `x >= range_min and x <= range_max`.
 
-    None where it is no such conjunction.
+    None: the expression is not such a conjunction.
     """
     match valid:
         case e.And(args):
@@ -222,13 +222,13 @@ def _samples(signal: Signal, values: Values, sibling_values: Mapping[str, Number
 
 
 def nearest(signal: Signal, range_min: Numbers) -> float | None:
-    """The least distance that the sensor can report, of `range_min` in each message."""
+    """The least distance that the sensor can report, from `range_min` in each message."""
     finite = range_min[np.isfinite(range_min)]
     return scaled(float(finite.min()), signal.unit.factor) if len(finite) else None
 
 
 def _valid(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers]) -> Truths:
-    """Which elements are measurements."""
+    """The elements that are measurements."""
     finite = np.isfinite(values)
     if signal.valid is None:
         return finite
@@ -241,13 +241,13 @@ def _valid(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers]
 
 
 def _spread(numbers: Numbers, width: int) -> Numbers:
-    """One number for each element; one alone where all messages state the same."""
+    """One number for each element; a single one if all messages state the same."""
     same = len(numbers) > 0 and bool((numbers == numbers[0]).all())
     return numbers[:1] if same else np.repeat(numbers, width)
 
 
 def _readings(signal: Signal, values: Values, valid: Truths) -> tuple[Values, Truths]:
-    """The elements with infinities for far and near; and which messages are unknown."""
+    """The elements with infinities for far and near, and the unknown messages."""
     invalid = signal.invalid
     readings, unknown = values.copy(), np.zeros(len(values), bool)
     for reading, chosen in _classes(invalid, values, lambda: valid):
@@ -290,7 +290,7 @@ def _mean(readings: Values) -> float:
 _SLACK = 1e-6
 """Metres by which rounding could make a distance too small, many times over."""
 _TOO_FAR = 1e9
-"""Metres; with farther ends of beams numbers may become too large on the way."""
+"""Metres; farther ends of beams could give too large numbers in between."""
 
 
 def _clearances(signal: Signal, readings: Numbers, starts: Numbers, increments: Numbers) -> Numbers:
@@ -314,7 +314,7 @@ def _clearances(signal: Signal, readings: Numbers, starts: Numbers, increments: 
 
 
 def _usual(signal: Signal, readings: Numbers, starts: Numbers, increments: Numbers) -> Truths:
-    """Which messages measure something, nothing beyond measure, and nothing too near to measure."""
+    """The messages with a measurement, and without readings that are too large or too near."""
     last = starts + increments * readings.shape[1]
     most = np.where(np.isfinite(readings), np.abs(readings), -1.0).max(axis=1)
     sound: Truths = np.isfinite(starts) & np.isfinite(increments) & np.isfinite(last)

@@ -1,4 +1,4 @@
-"""How much of a log is looked at, and what was looked at in the end."""
+"""How thoroughly a log is checked, and the checks that were made."""
 
 from __future__ import annotations
 
@@ -7,34 +7,34 @@ from enum import StrEnum
 
 
 class Integrity(StrEnum):
-    """What is done beyond reading the messages that the bindings name."""
+    """The checks beyond reading the bound messages."""
 
     INDEX = "index"
-    """Nothing: the log is known by the SHA-256 of its summary."""
+    """No further check: the log is identified by the SHA-256 of its summary."""
     HASH = "hash"
-    """All bytes are hashed."""
+    """The SHA-256 of all bytes is computed."""
     FULL = "full"
-    """All bytes are hashed, and every record, CRC and count is checked."""
+    """The SHA-256 of all bytes is computed, and every record, CRC and count is checked."""
 
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """The parts of a log that were read and checked."""
+    """The checked parts of a log."""
 
     by_index: bool
-    """Whether only the messages in question were read; else every record was."""
+    """Whether only the bound messages were read; otherwise every record was."""
     hashed: bool = True
-    """Whether the SHA-256 is that of the whole log, and not that of its summary."""
+    """Whether the SHA-256 is that of the whole log, not of its summary."""
     chunks: int = 0
     crc_checked: int = 0
-    """Chunks that have the CRC that they state."""
+    """Chunks whose stated CRC matches."""
     without_crc: int = 0
-    """Of the chunks that were unpacked, those that state no CRC."""
+    """Unpacked chunks that state no CRC."""
     skipped: int = 0
-    """Chunks without a message in question: they were not unpacked."""
+    """Chunks without a bound message, which were not unpacked."""
 
     def __add__(self, other: Checked) -> Checked:
-        """Of two files of one log."""
+        """The sum over two files of one log."""
         return Checked(
             self.by_index or other.by_index,
             self.hashed and other.hashed,
@@ -51,4 +51,4 @@ class Checked:
 
 
 EVERYTHING = Checked(by_index=False)
-"""Every record was read; there was no chunk."""
+"""Every record was read, and there was no chunk."""

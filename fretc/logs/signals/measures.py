@@ -1,7 +1,8 @@
-"""Numbers of expressions: constants as exact fractions, samples as they were recorded.
+"""Numbers of expressions: constants as exact fractions, samples as recorded.
 
-A constant is a fraction until it meets samples; there it becomes the nearest number of their unit
-and of their kind. So `x < 35 cm` and `x < 0.35 m` are the same of every sample, whatever its unit.
+A constant is a fraction until it is combined with samples; there it becomes the nearest number of
+their unit and number type. So `x < 35 cm` and `x < 0.35 m` are equal for every sample, whatever its
+unit.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ COMPARE: dict[str, Callable[..., NDArray[np.bool_]]] = {
 
 
 class ExpressionError(ValueError):
-    """The expression cannot be evaluated; the text says why."""
+    """The expression cannot be evaluated; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +67,7 @@ class Measure:
 
     @property
     def base(self) -> Numbers:
-        """In base units, as 64-bit floats."""
+        """The values in base units, as 64-bit floats."""
         return scaled(self.values.astype(np.float64), self.scale)
 
     @property
@@ -76,7 +77,7 @@ class Measure:
 
 
 Term = Measure | Fraction
-"""Measured, or constant."""
+"""A measured number or a constant."""
 _UNKNOWN = Measure(np.array([np.nan]))
 
 
@@ -132,11 +133,11 @@ def _measure(value: Term) -> Measure:
 
 
 def together(left: Term, right: Term, op: str = "") -> tuple[Values, Values, Fraction]:
-    """Both sides in one unit, and the scale of it: that of the samples, if they have the same one.
+    """Both sides in one unit, with its scale: that of the samples, if they have the same one.
 
-    A constant becomes the nearest number of the kind of the other side: of 32-bit floats, of
-    64-bit floats, or, where it is compared and whole numbers are beyond these, a whole number for
-    which `op` says the same.
+    A constant becomes the nearest number of the type of the other side: of 32-bit floats, of 64-bit
+    floats, or, if whole numbers beyond these are compared, a whole number for which `op` has the
+    same result.
     """
     if isinstance(left, Fraction):
         if isinstance(right, Fraction):
@@ -150,7 +151,7 @@ def together(left: Term, right: Term, op: str = "") -> tuple[Values, Values, Fra
 
 
 def compared(op: str, left: Term, right: Term) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Whether it is so at each point, and where that is unknown; shape (length,) or (1,)."""
+    """The truth of a comparison at each point, and where it is unknown; shape (length,) or (1,)."""
     if isinstance(left, Fraction) and isinstance(right, Fraction):
         signs = np.array([(left > right) - (left < right)])
         return COMPARE[op](signs, 0), np.zeros(1, bool)
@@ -161,13 +162,14 @@ def compared(op: str, left: Term, right: Term) -> tuple[NDArray[np.bool_], NDArr
 # Constants
 
 _HALVES = WHOLE // 2
-"""From here on every 64-bit float is a whole number; below its double also the reverse."""
+"""From here on every 64-bit float is a whole number; below its double every whole number is a
+float."""
 _BEYOND = 2**64
 """From here on nothing was recorded as a whole number."""
 
 
 def _substitute(constant: Fraction, measure: Measure, op: str) -> Values:
-    """The value to compare in `measure op constant`, in the kind of the measure."""
+    """The value to compare in `measure op constant`, in the number type of the measure."""
     return _in_unit(constant, measure.scale, measure.values.dtype, op)
 
 
@@ -178,13 +180,13 @@ def _in_unit(constant: Fraction, scale: Fraction, kind: np.dtype[Any], op: str) 
     if not op or not is_between or kind == np.float32:
         return _nearest(exact, kind)
     if exact.denominator != 1 and op in ("=", "!="):
-        return np.nextafter(np.zeros(1, EXACT), 1)  # nothing that is recorded is equal to it
+        return np.nextafter(np.zeros(1, EXACT), 1)  # no recorded number is equal to it
     return np.array([ceil(exact) if op in ("<", ">=") else floor(exact)], EXACT)
 
 
 @lru_cache(1024)
 def _nearest(exact: Fraction, kind: np.dtype[Any]) -> Values:
-    """The number of a kind that is nearest to a fraction; infinite where that is too large."""
+    """The number of a type that is nearest to a fraction; infinite if the fraction is too large."""
     try:
         double = float(exact)
     except OverflowError:
@@ -194,7 +196,7 @@ def _nearest(exact: Fraction, kind: np.dtype[Any]) -> Values:
     if kind != np.float32 or not isfinite(narrow):
         return np.array([double], kind if kind == EXACT else np.float64)
     around = (narrow, *(np.nextafter(narrow, np.float32(end)) for end in (-np.inf, np.inf)))
-    finite = [each for each in around if isfinite(each)]
+    finite = [number for number in around if isfinite(number)]
     return np.array([min(finite, key=lambda each: abs(Fraction(float(each)) - exact))], np.float32)
 
 
@@ -202,10 +204,10 @@ def _nearest(exact: Fraction, kind: np.dtype[Any]) -> Values:
 
 
 def _before(initial: e.Expression, arg: e.Expression, scope: Scope) -> Measure:
-    """What `arg` was one tick before; at the first tick, what `initial` is.
+    """The value of `arg` one tick before; at the first tick, the value of `initial`.
 
-    It is a measured number: a constant is the nearest 64-bit float of the other one's unit. Both
-    are in one unit: that of the signals where they share it, else the base unit.
+    It is a measured number: a constant is the nearest 64-bit float in the unit of the other side.
+    Both are in one unit: that of the signals if they share it, else the base unit.
     """
     at = scope if scope.earlier is None else scope.earlier
     chosen, other = term(initial, at), term(arg, at)
@@ -220,7 +222,7 @@ def _before(initial: e.Expression, arg: e.Expression, scope: Scope) -> Measure:
 
 
 def _measured(exact: Fraction) -> Values:
-    """A constant as if it had been recorded."""
+    """A constant as a measured number."""
     if exact.denominator == 1 and abs(exact) >= WHOLE:
         return np.array([exact.numerator], EXACT)
     return _nearest(exact, np.dtype(np.float64))
@@ -261,7 +263,7 @@ def _double(value: Term) -> Term:
 
 
 def _without_exact(value: Term) -> Term:
-    """The term in 64-bit floats: the least of whole numbers and a constant need not be whole."""
+    """The term in 64-bit floats: the minimum of whole numbers and a constant need not be whole."""
     exact = isinstance(value, Measure) and value.values.dtype == EXACT
     return _double(value) if exact else value
 

@@ -1,4 +1,4 @@
-"""The robot's outline: how far points of the plane are from it.
+"""The robot's outline: distances of points in the plane.
 
 Lengths are metres, in the robot's frame. The outline is a simple polygon, convex or not, its
 corners in either direction; the last corner is joined to the first.
@@ -15,11 +15,11 @@ from fretc.logs.signals.samples import Numbers
 
 Corners = Sequence[tuple[float, float]]
 _DIRECTIONS = 3600
-"""How finely the circle is looked at: a tenth of a degree."""
+"""The number of directions of the circle: tenths of a degree."""
 
 
 def distances(points: Numbers, outline: Corners) -> Numbers:
-    """From each point to the outline; 0 inside of it and on it.
+    """The distance of each point to the outline; 0 inside of it and on it.
 
     Args:
         points: shape (n, 2).
@@ -34,7 +34,7 @@ def distances(points: Numbers, outline: Corners) -> Numbers:
 
 
 def places(ranges: Numbers, angles: Numbers, sensor: tuple[float, float, float]) -> Numbers:
-    """Polar readings of a sensor as points of the robot's frame, shape (n, 2).
+    """Polar readings of a sensor as points in the robot's frame, shape (n, 2).
 
     Args:
         ranges: shape (n,), metres from the sensor.
@@ -48,15 +48,14 @@ def places(ranges: Numbers, angles: Numbers, sensor: tuple[float, float, float])
 def blind_share(
     bound: float, nearest: float, outline: Corners, sensor: tuple[float, float, float]
 ) -> float:
-    """In how much of the circle nothing nearer to the outline than `bound` can be measured.
+    """The share of the circle in which nothing nearer to the outline than `bound` can be measured.
 
-    A direction from the sensor is blind when each of its points at `nearest` or farther is
-    `bound` or more away from the outline. A direction in which the sensor looks through a
-    part of the outline is not.
+    A direction from the sensor is blind if each of its points at `nearest` or farther is `bound` or
+    more away from the outline. A direction through a part of the outline is not blind.
 
     Args:
         bound: metres from the outline.
-        nearest: metres from the sensor; what is nearer it does not report.
+        nearest: the least distance in metres that the sensor reports.
         outline: three corners or more.
         sensor: its x, y in metres and yaw in radians.
 
@@ -104,7 +103,7 @@ def _inside(points: Numbers, starts: Numbers, ends: Numbers) -> NDArray[np.bool_
 
 
 def _to_rays(points: Numbers, origins: Numbers, rays: Numbers) -> Numbers:
-    """From each point to each half-line, shape (rays, points); rays have length 1."""
+    """The distance of each point to each half-line, shape (rays, points); rays have length 1."""
     offset = points[None, :, :] - origins[:, None, :]
     part = np.maximum((offset * rays[:, None, :]).sum(axis=2), 0.0)
     return _lengths(offset - part[:, :, None] * rays[:, None, :])

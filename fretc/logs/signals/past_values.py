@@ -1,6 +1,6 @@
-"""Propositions that look back by ticks, `pre(0 m/s, speed)`: they have a truth at ticks only.
+"""Propositions that look back by ticks, `pre(0 m/s, speed)`: they have a truth value only at ticks.
 
-What is looked back at is what was in force at the tick before, not the sample before. Times are
+The value one tick before is the one in force at that tick, not the sample before. Times are
 nanoseconds.
 """
 
@@ -27,27 +27,27 @@ from fretish.bindings.declarations import Declarations, Proposition
 from fretish.bindings.expressions import ticks_back
 
 Places = NDArray[np.intp]
-"""Which event is in force at each point; -1: none has come yet."""
+"""The index of the event in force at each point; -1: there is none yet."""
 
 
 @dataclass(frozen=True, slots=True)
 class PastValues:
-    """A proposition that looks back, with all that it reads of a recording."""
+    """A proposition that looks back, with the samples that it reads."""
 
     proposition: Proposition
     back: int
-    """Ticks: what the truth at a tick depends on, beside the tick itself."""
+    """The number of earlier ticks on which the truth value at a tick depends."""
     times: Times
-    """Of the events: at any other time the same is in force as at the event before."""
+    """The times of the events; between two events, the values of the first one are in force."""
     _events: Scope
-    """What is in force from each event on; the last place is for -1, and all unknown."""
+    """The values in force from each event on; the last index is for -1, with all values unknown."""
 
     def states(self, places: Sequence[Places]) -> States:
-        """The truth at some ticks that have equally many ticks before them, as far as it counts.
+        """The truth values at some ticks that have equally many relevant ticks before them.
 
         Args:
-            places: for each of the ticks what is in force at it, then at the tick before, and so
-                on: `back + 1` of them, or fewer, and the last is then the first tick of all.
+            places: for each of the ticks the event in force at it, then at the tick before, and so
+                on: `back + 1` of them; or fewer, if the last one is the first tick of all.
         """
         scope: Scope | None = None
         for at in reversed(places):
@@ -61,7 +61,7 @@ class PastValues:
         return known.astype(np.int8)
 
     def at(self, places: Places) -> States:
-        """The truth at the ticks of a log, the first one first."""
+        """The truth values at the ticks of a log, the first one first."""
         count = len(places)
         single = [
             self.states([places[k - j : k - j + 1] for j in range(k + 1)])
@@ -85,7 +85,7 @@ class PastValues:
 def past_values(
     proposition: Proposition, declarations: Declarations, recording: Recording
 ) -> PastValues | None:
-    """The proposition over a recording; None where it does not look back by ticks."""
+    """The proposition over a recording; None: it does not look back by ticks."""
     back = ticks_back(proposition.expression)
     if not back:
         return None

@@ -1,7 +1,7 @@
 """Propositions over samples: three-valued step functions of time.
 
-Kleene's logic: a proposition is true, false or unknown, and what is unknown stays unknown until
-the rest decides. Times are nanoseconds.
+Kleene's logic: a proposition is true, false or unknown, and unknown operands stay unknown until the
+others decide. Times are nanoseconds.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from fretish.bindings.expressions import ticks_back
 from fretish.reading.caching import cache_by_identity
 
 States = NDArray[np.int8]
-"""One of `FALSE`, `UNKNOWN`, `TRUE` each: `and` is the least of them, `or` the greatest."""
+"""Shape (n,), of `FALSE`, `UNKNOWN` and `TRUE`: `and` is their minimum, `or` their maximum."""
 
 FALSE, UNKNOWN, TRUE = 0, 1, 2
 _VALUES: tuple[bool | None, ...] = (False, None, True)
@@ -72,15 +72,15 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     assert not ticks_back(proposition.expression), "it has a truth at ticks only"
     signals = {name: declarations.signals[name] for name in proposition.signals}
     key = (id(proposition), *_read(signals))
-    known: tuple[Proposition, Steps] | None = recording.derived.get(key)
-    if known is not None:
-        return known[1]
+    cached: tuple[Proposition, Steps] | None = recording.derived.get(key)
+    if cached is not None:
+        return cached[1]
     steps = _steps(proposition.expression, history_of(signals, recording))
     last = max(recording.end_ns, recording.start_ns)
     count = int(np.searchsorted(steps.times, last, "right"))
     steps = Steps(steps.times[:count], steps.states[:count])
     if len(steps.times) <= _KEPT:
-        recording.derived[key] = proposition, steps  # what is kept keeps its identity
+        recording.derived[key] = proposition, steps  # the reference keeps the id of the key valid
     return steps
 
 
@@ -126,7 +126,7 @@ def truth(expression: e.Expression, scope: Scope) -> States:
 
 
 def _flag(id: str, scope: Scope) -> States:
-    """A plain number as a truth value: 1 is true, 0 is false, any other is unknown."""
+    """A plain number as a truth value: 1 is true, 0 is false, any other number is unknown."""
     if id not in scope.numbers:
         raise ExpressionError(f"there is no `{id}`")
     numbers = scope.numbers[id]
@@ -139,7 +139,7 @@ def _flag(id: str, scope: Scope) -> States:
 def _compared(op: str, left: Term, right: Term, length: int) -> States:
     true, unknown = compared(op, left, right)
     states = true.astype(np.int8)
-    states *= TRUE  # and what is not true is FALSE, which is 0
+    states *= TRUE  # all others become FALSE, which is 0
     if unknown.any():
         states[unknown] = UNKNOWN
     return states if len(states) == length else np.repeat(states, length)
@@ -159,7 +159,7 @@ def _same(left: States, right: States) -> States:
 
 @dataclass(frozen=True, slots=True)
 class History:
-    """The signals of a proposition at all its events, as `Samples` has them; shape (n,)."""
+    """The signals of a proposition at all its events, with values as in `Samples`; shape (n,)."""
 
     times: Times
     numbers: Mapping[str, Values]
@@ -167,7 +167,7 @@ class History:
     words: Mapping[str, tuple[str, ...]]
 
     def with_times(self, times: Sequence[Times]) -> History:
-        """The same with further events at these times."""
+        """The history with further events at these times."""
         if not any(map(len, times)):
             return self
         extra = distinct(np.concatenate(times))
@@ -183,7 +183,7 @@ class History:
         return replace(self, times=every[order], numbers=numbers)
 
     def scope(self, persistences: Mapping[e.Persistence, States] = MappingProxyType({})) -> Scope:
-        """What the names stand for at the events."""
+        """The values of the names at the events."""
         return Scope(
             len(self.times),
             self.numbers,
@@ -205,11 +205,11 @@ def history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
 
 
 _KEPT = 2**17
-"""Events: what would take more memory than this is computed again."""
+"""The most events of a history in the cache; larger histories are computed again."""
 
 
 def _read(signals: Mapping[str, Signal]) -> tuple[object, ...]:
-    """All that a history depends on, beside the recording."""
+    """All inputs of a history other than the recording."""
     return tuple((name, signal.max_age, signal.values) for name, signal in signals.items())
 
 
@@ -238,7 +238,7 @@ _NONE = Samples(np.zeros(0, np.int64), np.zeros(0))
 
 
 def _merged(gaps: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
-    """The same time as gaps that do not touch, in order."""
+    """The same gaps, merged where they touch or overlap, in order."""
     merged: list[tuple[int, int]] = []
     for start, end in sorted(gaps):
         if merged and start <= merged[-1][1]:
@@ -249,7 +249,7 @@ def _merged(gaps: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
 
 
 def _expiries(times: Times, max_age: int | None) -> Times:
-    """Where a sample has grown too old and no newer one has come."""
+    """The times at which a sample is too old and no newer one has come."""
     if max_age is None or not len(times):
         return np.zeros(0, np.int64)
     following = np.append(times[1:], _FOREVER)
@@ -258,9 +258,9 @@ def _expiries(times: Times, max_age: int | None) -> Times:
 
 
 def _events(sources: Sequence[Times]) -> tuple[Times, list[NDArray[np.intp]]]:
-    """All times, in order, and for each source the places of its own.
+    """All times, in order, and for each source the indices of its own times.
 
-    The n-th of equal times of one source stands together with the n-th of the others.
+    The n-th of equal times of one source is merged with the n-th of the others.
     """
     times = np.concatenate(sources)
     ranks = np.concatenate([_ranks(source) for source in sources])
@@ -275,7 +275,7 @@ def _events(sources: Sequence[Times]) -> tuple[Times, list[NDArray[np.intp]]]:
 
 
 def _ranks(times: Times) -> NDArray[np.intp]:
-    """How many equal times stand before each one; the times are in order."""
+    """The number of equal times before each one; the times are in order."""
     places = np.arange(len(times))
     new = times[1:] != times[:-1]
     if new.all():
@@ -290,7 +290,7 @@ def _values_at(
     max_age: int | None,
     gaps: Sequence[tuple[int, int]],
 ) -> Values:
-    """The value of one signal at each event; NaN where it is unknown."""
+    """The value of one signal at each event; NaN: unknown."""
     sample_times, values = samples.times, samples.values
     if not len(sample_times):
         return np.full(len(times), np.nan)
@@ -333,7 +333,7 @@ def with_persistences(
 
 @cache_by_identity
 def _durations(expression: e.Expression) -> tuple[e.Persistence, ...]:
-    """The outermost `... for 200 ms` in it."""
+    """The outermost `... for 200 ms` in the expression."""
     if isinstance(expression, e.Persistence):
         return (expression,)
     return tuple(found for part in e.children(expression) for found in _durations(part))
@@ -345,13 +345,13 @@ def _at(steps: Steps, times: Times) -> States:
 
 
 def _persistence(arg: Steps, duration: int) -> Steps:
-    """`arg` throughout `[t - duration, t]`.
+    """The truth of `arg` throughout `[t - duration, t]`.
 
-    False where it was false within it, else unknown where it was unknown within it (and before
-    the log it was), else true. Only changes are steps.
+    False if it was false within the interval, else unknown if it was unknown within it (as it is
+    before the log), else true. Only changes are steps.
     """
     ends = np.append(arg.times[1:], _FOREVER)
-    begins = np.append(arg.times[:1], ends[:-1])  # where it can begin to be true
+    begins = np.append(arg.times[:1], ends[:-1])  # the earliest times at which it can become true
     times = distinct(np.concatenate([arg.times, begins + duration]))
     states = np.full(len(times), TRUE, np.int8)
     states[times < arg.times[0] + duration] = UNKNOWN

@@ -1,4 +1,4 @@
-"""Topics that come too seldom, or too late, for the clock, or for the age of their samples."""
+"""Warnings about topics whose messages are too rare or too late for the clock or for `max_age`."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Span
 
 _JITTER = 1.1
-"""A topic of 10 Hz also has steps a little above 100 ms."""
+"""The tolerance of a period: a topic of 10 Hz also has periods a little above 100 ms."""
 _FEW = 10
-"""Fewer messages have no rate."""
+"""A topic with fewer messages has no rate."""
 _MOST_LATENESS = 2 * 10**9
-"""Nanoseconds: what is later is not late, but by another clock."""
+"""Nanoseconds; a larger lateness is a difference of clocks."""
 _EVENTS = 3
-"""Where one step is so many times the middle one, messages come when something happens."""
+"""A topic with a period of so many times the median one sends on events, not at a rate."""
 
 
 def slow_topics(
     declarations: Declarations, recording: Recording, signals: Sequence[str]
 ) -> Iterator[Diagnostic]:
-    """F318 for each signal that grows too old between messages, F315 for topics slower than ticks.
+    """F318 for each signal that is too old between messages, F315 for topics slower than ticks.
 
-    Half of the steps between its messages are longer than `max_age`, or (by a tenth) than a tick.
-    Where `max_age` is stated, that ticks see earlier samples is meant. A topic that comes only
-    when something happens gets no warning.
+    Half of the periods between its messages are longer than `max_age`, or (by a tenth) than a tick.
+    If `max_age` is stated, the use of earlier samples is intended. A topic that sends on events
+    gets no warning.
 
     Args:
         declarations: clock and signals.
@@ -79,16 +79,16 @@ def late_topics(
 def late_messages(
     topic: str, place: Span | None, count: int, of: int, over: int, clock: Clock
 ) -> Diagnostic:
-    """F429; `over` is by how much the latest one missed its tick, beside the lateness."""
+    """F429; `over` is the largest delay beyond the declared lateness."""
     lateness = clock.effective_lateness or 0
     needed = -(-(lateness + over) // 10**7) * 10**7
     return Diagnostic(
         Code.LATE_MESSAGES,
-        f"{count} of {of} messages of `{topic}` came more than {in_words(lateness)} after a tick "
-        f"that should have seen them, at most {in_words(lateness + over)}: what reads them is "
-        "unknown there",
+        f"{count} of {of} messages of `{topic}` came more than {in_words(lateness)} after the "
+        f"tick that they belong to, at most {in_words(lateness + over)}: propositions that read "
+        "them are unknown there",
         place,
-        f'`lateness = "{in_words(needed)}"` under `[clock]` would have waited for them'
+        f'write `lateness = "{in_words(needed)}"` under `[clock]` to wait for them'
         if needed <= _MOST_LATENESS
         else "the clocks of publisher and recorder differ: set them, or use "
         '`time = "log_time"` under `[clock]`',
@@ -97,15 +97,15 @@ def late_messages(
 
 
 def _is_regular(topic: Topic) -> bool:
-    """Whether the topic comes at a rate, and not when something happens."""
+    """Whether the topic sends at a rate, not on events."""
     period, longest = topic.median_period_ns or 0, topic.longest_gap_ns or 0
     return topic.count >= _FEW and longest <= _EVENTS * period
 
 
 def _tick(clock: Clock, recording: Recording) -> int | None:
-    """Nanoseconds of a tick; where the clock ticks by message, from one to the next, in the middle.
+    """Nanoseconds of a tick; if the clock ticks by message, the median period.
 
-    None where that is not known.
+    None: it is unknown.
     """
     if clock.period is not None:
         return clock.period
@@ -129,9 +129,9 @@ def _slow(signal: Signal, period: int, clock: Clock, tick: int) -> Diagnostic:
     return Diagnostic(
         Code.SLOW_TOPIC,
         f"`{signal.path.topic}` comes every {_long(period, tick)}, and the clock ticks every "
-        f"{exact_duration(tick / 1e9)}{by}: most ticks see a sample of an earlier one",
+        f"{exact_duration(tick / 1e9)}{by}: most ticks use the sample of an earlier tick",
         signal.span,
-        help="state `max_age` if that is meant, use a longer `tick`, or publish more often",
+        help="state `max_age` if this is intended, use a longer `tick`, or publish more often",
         severity=Severity.WARNING,
         subject=signal.path.topic,
     )

@@ -1,4 +1,4 @@
-"""The samples of the declared signals in a log: the values between reading and audit."""
+"""The samples of the declared signals in a log: the interface between reader and audit."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ Times = NDArray[np.int64]
 """Nanoseconds."""
 
 Numbers = NDArray[np.float64]
-"""NaN is unknown."""
+"""Numbers; NaN is unknown."""
 
 Values = NDArray[np.floating[Any]]
-"""As they were recorded, NaN is unknown: 32-bit floats, 64-bit floats, or `EXACT` numbers."""
+"""Numbers as recorded, NaN is unknown: 32-bit floats, 64-bit floats, or `EXACT` numbers."""
 
 EXACT = np.dtype(np.longdouble)
-"""80-bit floats: they hold each whole number of 64 bits and each float. Used where whole numbers
-of 2^53 and more were recorded."""
+"""80-bit floats: they hold each whole number of 64 bits and each float. They are used if whole
+numbers of 2^53 and more were recorded."""
 
 WHOLE = 2**53
-"""From here on 64-bit floats do not hold every whole number."""
+"""The number from which on 64-bit floats do not hold every whole number."""
 
 Gap = tuple[int, int]
-"""First and last nanosecond of a time with lost messages."""
+"""First and last nanosecond of an interval with lost messages."""
 
 
 _Number = TypeVar("_Number", float, Numbers)
@@ -47,15 +47,15 @@ def distinct(values: NDArray[_Whole]) -> NDArray[_Whole]:
 
 
 def scaled(value: _Number, scale: Fraction) -> _Number:
-    """`value * scale`, rounded once where a division or a multiplication alone does it."""
-    with np.errstate(over="ignore", invalid="ignore"):  # what is too large is infinite
+    """`value * scale`, rounded once if a division or a multiplication alone does it."""
+    with np.errstate(over="ignore", invalid="ignore"):  # too large numbers become infinite
         if scale.numerator == 1:
             return value / _float(scale.denominator)
         return value * _float(scale.numerator) / _float(scale.denominator)
 
 
 def _float(number: int) -> float:
-    """The nearest float of a number above 0; infinite where that is too large."""
+    """The nearest float of a number above 0; infinite if the number is too large."""
     try:
         return float(number)
     except OverflowError:
@@ -63,7 +63,7 @@ def _float(number: int) -> float:
 
 
 def widest(values: NDArray[Any]) -> Values:
-    """Numbers of any kind as floats that hold them; 32-bit floats stay what they are."""
+    """Numbers of any type as floats that hold them; 32-bit floats are unchanged."""
     if values.dtype == np.float32:
         return values.astype(np.float32, copy=False)
     integers = values.dtype.kind in "iu" and values.dtype.itemsize == 8 and values.size > 0
@@ -74,14 +74,14 @@ def widest(values: NDArray[Any]) -> Values:
 
 
 class Series:
-    """A growing list of numbers, in the narrowest kind that holds all of them."""
+    """A growing list of numbers, in the narrowest type that holds all of them."""
 
     def __init__(self) -> None:
         self._kind = np.dtype(np.float32)
         self._data = bytearray()
 
     def add(self, values: Values) -> None:
-        """Some more."""
+        """Append numbers."""
         kind = np.promote_types(self._kind, values.dtype)
         if kind != self._kind:
             self._data = bytearray(self.values().astype(kind).tobytes())
@@ -89,7 +89,7 @@ class Series:
         self._data += values.astype(kind, copy=False).tobytes()
 
     def values(self) -> Values:
-        """All of them."""
+        """All numbers."""
         return np.frombuffer(bytes(self._data), self._kind)
 
 
@@ -119,8 +119,8 @@ class Topic:
     """Statistics of one topic by the declared time (`log_time` where no signal reads it).
 
     `first_ns` and `last_ns` are None for a topic without messages, `median_period_ns` for one
-    with less than two. `out_of_order` counts the messages that are earlier than one before them,
-    `equal_stamps` those with the time of another, `unstamped` those without a stamp where the
+    with less than two. `out_of_order` counts the messages out of order,
+    `equal_stamps` those with the same time as another, `unstamped` those without a stamp where the
     clock goes by stamps, `zero_stamps` those with a stamp that was never set, and `clock_jumps`
     those before which the clock jumped against the log times. All but the count are None where
     the messages were only counted.
@@ -196,15 +196,15 @@ class Recording:
     intact: bool
     checked: Checked = EVERYTHING
     beside: Mapping[str, Samples] = field(default_factory=dict)
-    """Signals that were read for pictures; no verdict and no finding depends on them."""
+    """Signals that were read for plots; no verdict and no diagnostic depends on them."""
     described: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """What the metadata of the log says, as far as labels ask for it: `build.version` → values."""
+    """The values in the metadata of the log that labels use: `build.version` → values."""
     origin: int | None = None
     """Where the grid of ticks begins, as the watch that recorded the log says; None: none says it.
     """
     late: Mapping[str, Late] = field(default_factory=dict)
-    """Of each topic the messages that were late, where the clock declares a lateness."""
+    """For each topic, its late messages, if the clock declares a lateness."""
     derived: dict[tuple[object, ...], Any] = field(
         default_factory=dict, init=False, compare=False, repr=False
     )
-    """What several readers compute of it, so that each of it is computed once."""
+    """A cache of values derived from this recording, shared by several readers."""

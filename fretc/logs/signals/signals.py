@@ -1,8 +1,8 @@
-"""Signals: from a decoded message to one number.
+"""The number of a signal in a decoded message.
 
-Numbers are in the unit of the field, clearances in metres; NaN is unknown. What no measurement is
-(NaN, an infinity, a number outside of `valid`) never passes for a number: `Invalid` says what it
-means.
+Numbers are in the unit of the field, clearances in metres; NaN is unknown. An element that is not a
+measurement (NaN, an infinity, a number outside of `valid`) never counts as a number: `Invalid`
+states its meaning.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ from fretish.bindings.declarations import (
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 
 RANGE_MIN = "range_min"
-"""The field of a range sensor's messages that says what is too near for it."""
+"""The field of a range sensor's messages with the least distance that it can measure."""
 
 
 class FieldError(ValueError):
-    """The message does not hold the number that the signal asks for.
+    """The message does not hold the number that the signal reads.
 
-    The text names what is missing; `fix` says what is there instead.
+    The text names the missing field; `fix` describes the existing ones.
     """
 
     def __init__(self, message: str, fix: str | None = None) -> None:
@@ -50,22 +50,22 @@ class FieldError(ValueError):
 
 
 class UnstatedError(Exception):
-    """The message could hold the number that the signal asks for, and leaves it out."""
+    """The message type has the number that the signal reads, but the message leaves it out."""
 
 
 class Sparse:
-    """A decoded message that may leave out its fields: of JSON, or of Protobuf."""
+    """A decoded message that may leave out its fields: in JSON, or in Protobuf."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the fields that it has, or may have."""
+        """The names of the fields that it has, or may have."""
         raise NotImplementedError
 
     def field(self, name: str) -> object:
         """The value of a field.
 
         Raises:
-            UnstatedError: it is left out, or stated to be nothing.
+            UnstatedError: the field is left out, or stated as null.
             KeyError: there is no such field.
         """
         raise NotImplementedError
@@ -101,9 +101,9 @@ def sample(signal: Signal, message: object, *, single: bool = False) -> float:
     try:
         value = _field(signal, message)
         if isinstance(value, float | int) and signal.valid is None and isfinite(value):
-            return value  # most signals are so, and most of the time is spent on them
+            return value  # a fast path for most signals
         values = np.array([value], _kind(value)) if isinstance(value, float | int) else value
-        with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
+        with np.errstate(all="ignore"):  # too large numbers become infinite, and a NaN may signal
             return _sample(signal, message, values.astype(np.float32) if single else values)
     except UnstatedError:
         return float("nan")
@@ -151,7 +151,7 @@ def _field(signal: Signal, message: object) -> float | Values:
     if not path.each and path.index is None:
         return _number(value, name)
     if path.index is not None and isinstance(value, list):
-        value = value[path.index : path.index + 1]  # whatever else is in it
+        value = value[path.index : path.index + 1]  # its other elements may be of any kind
         return _array(value, name)
     values = _array(value, name)
     if path.index is None:
@@ -160,7 +160,7 @@ def _field(signal: Signal, message: object) -> float | Values:
 
 
 def field_of(path: Path, message: object) -> object:
-    """What the field of a message holds; of an array all of it.
+    """The value of a field of a message; for an array all of it.
 
     Raises:
         UnstatedError: the message leaves it out.
@@ -188,7 +188,7 @@ def _attribute(value: object, name: str, parent: str) -> object:
 
 
 def fields(message: object) -> tuple[str, ...]:
-    """The names of a decoded message's fields, in their order; none where it is no message."""
+    """The names of a decoded message's fields, in their order; empty: it is not a message."""
     if isinstance(message, Sparse):
         return message.names
     slots = getattr(type(message), "__slots__", None)
@@ -198,7 +198,7 @@ def fields(message: object) -> tuple[str, ...]:
 
 
 def optional_field(message: object, name: str) -> object | None:
-    """A field of a decoded message; None where it has none of that name, or leaves it out."""
+    """A field of a decoded message; None: it is unknown or left out."""
     if not isinstance(message, Sparse):
         return getattr(message, name, None)
     try:
@@ -221,7 +221,7 @@ def _number(value: object, name: str) -> float:
 
 
 def _exact(value: float | Real | np.bool_) -> float:
-    """As a float; a whole number of 64 bits beyond 64-bit floats stays an integer."""
+    """The number as a float; a whole number of 64 bits beyond 64-bit floats stays an integer."""
     if isinstance(value, int | np.integer):
         integer = int(value)
         if WHOLE <= integer < 2**64 or -(2**63) <= integer <= -WHOLE:
@@ -248,7 +248,7 @@ def _array(value: object, name: str) -> Values:
 
 
 def _element(value: object, name: str) -> float:
-    """One of an array whose elements are not all numbers of one kind."""
+    """One element of an array whose elements are not all numbers of one type."""
     if value is None:
         raise UnstatedError
     if not isinstance(value, Real | np.bool_):
@@ -260,7 +260,7 @@ def _element(value: object, name: str) -> float:
 
 
 def _valid(signal: Signal, message: object, values: Values) -> NDArray[np.bool_]:
-    """Which elements are measurements."""
+    """The elements that are measurements."""
     finite = np.isfinite(values)
     if signal.valid is None:
         return finite
@@ -279,13 +279,13 @@ def _sibling(message: object, name: str) -> float:
 
 
 def unrounded(signal: Signal, values: Values) -> Values:
-    """The elements as 64-bit floats; as they are where those would not do, and one is chosen."""
+    """The elements as 64-bit floats; unchanged if these are inexact and one element is chosen."""
     keeps = is_chosen(signal) and values.dtype == EXACT
     return values if keeps else values.astype(np.float64)
 
 
 def is_chosen(signal: Signal) -> bool:
-    """Whether its samples are numbers of the log, and not computed of them."""
+    """Whether the samples of the signal are numbers of the log, not computed ones."""
     return not signal.values and signal.reduce not in (Reduce.MEAN, Reduce.OUTLINE)
 
 
@@ -333,10 +333,10 @@ def _reduced(reduce: Reduce | None, readings: Values) -> float:
 
 
 def mean(readings: Values) -> float:
-    """Of at least one number; that of finite ones is finite, also where their sum is not."""
+    """The mean of at least one number; finite for finite numbers, even if their sum is not."""
     with np.errstate(over="ignore", invalid="ignore"):
-        found = float(readings.mean())
-        return found if isfinite(found) else float((readings / len(readings)).sum())
+        average = float(readings.mean())
+        return average if isfinite(average) else float((readings / len(readings)).sum())
 
 
 def _python(value: np.floating[Any]) -> float:
@@ -348,8 +348,8 @@ def clearance(signal: Signal, readings: Values, start: float, step: float) -> fl
     """Metres from the footprint to the nearest end of a beam; inf where all are far.
 
     Args:
-        signal: with `outline`.
-        readings: of each beam in turn; NaN where one is dropped.
+        signal: a signal with `outline`.
+        readings: the reading of each beam in turn; NaN: it is dropped.
         start: radians, the angle of the first beam.
         step: radians from a beam to the next.
     """
@@ -396,14 +396,14 @@ def blind_zones(
 
 
 def _blind(signal: Signal, bound: float, limit: float, op: str) -> float:
-    """In how much of the circle the bound cannot be reached; for `min` it is all or nothing."""
+    """The share of the circle in which the bound cannot be reached; for `min` 0 or 1."""
     if signal.reduce is Reduce.OUTLINE:
         return _blind_share(bound, limit, signal.footprint, signal.sensor)
     return float(bound <= limit if op in ("<", ">=") else bound < limit)
 
 
 _blind_share = lru_cache(256)(blind_share)
-"""Of a robot and a sensor it is the same in every log."""
+"""A cache: for a robot and a sensor it is equal in every log."""
 
 
 def _blind_zone(
@@ -416,10 +416,10 @@ def _blind_zone(
         Code.BLIND_ZONE,
         f"`{proposition.name}` compares `{signal.name}` with "
         f"{amounts.exact(shown_bound, unit)}, and `{signal.path.topic}` reports nothing nearer "
-        f"than {amounts.value(shown_limit, unit, [shown_bound])}: what is "
-        f"nearer than the bound cannot be seen{where}",
+        f"than {amounts.value(shown_limit, unit, [shown_bound])}: an obstacle nearer than the "
+        f"bound is not detected{where}",
         proposition.span,
         help="raise the bound above what the sensor can measure, or use a sensor that measures "
-        "nearer; only a reading of -inf could tell that something is too near",
+        "nearer; only a reading of -inf would report an obstacle that is too near",
         severity=Severity.WARNING,
     )

@@ -23,21 +23,21 @@ from fretish.units import base_name
 
 @dataclass(frozen=True, slots=True)
 class Threshold:
-    """`term operator bound`, as if the number that is measured stood on the left."""
+    """A comparison in the form `term operator bound`, with the measured number on the left."""
 
     proposition: str
     term: e.Expression
-    """A signal, or what is computed of some: `abs(vx)`."""
+    """A signal, or an expression of signals: `abs(vx)`."""
     operator: Order
     bound: float
     unit: str
     """The base unit of both sides; empty for a plain number."""
     limit: e.Expression
-    """The bound as it is written."""
+    """The bound as written."""
 
     @property
     def comparison(self) -> e.Comparison:
-        """The whole, with the term on the left."""
+        """The whole comparison, with the term on the left."""
         return e.Comparison(self.operator, self.term, self.limit)
 
     @property
@@ -50,12 +50,12 @@ class Threshold:
 def thresholds(proposition: Proposition, signals: Mapping[str, Signal]) -> tuple[Threshold, ...]:
     """The thresholds of a proposition, in the order of its expression.
 
-    Equalities are none: nothing is near to them. Nor are comparisons of two signals, those with
-    what was at the tick before, nor those with a bound that is no number (`1 / 0`).
+    Excluded are equalities, to which no value is near, comparisons of two signals, comparisons with
+    the tick before, and those with an undefined bound (`1 / 0`).
 
     Args:
         proposition: with an expression over the signals.
-        signals: what is declared.
+        signals: the declared signals.
     """
     return tuple(
         threshold

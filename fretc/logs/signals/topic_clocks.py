@@ -1,4 +1,4 @@
-"""The clock of one topic of a log: where it was never set, stands still, jumps, or is late.
+"""The clock of one topic of a log: times that were never set, stand still, jump, or are late.
 
 A message has a log time, at which it was recorded, and a declared time, by the clock that the
 bindings declare. All times are nanoseconds and stand in the order of the file.
@@ -23,14 +23,14 @@ STILL_RUN = 10
 
 
 def unset(log_times: Times, times: Times, *, from_zero: bool) -> NDArray[np.bool_]:
-    """Which messages have a zero for a declared time because nobody set it.
+    """The messages with a declared time of zero that was never set.
 
-    On a clock that begins at zero, as those of simulations do, a zero can be a true time. It is
-    where it comes before every other time, was recorded within the first `JUMP`, and fewer than
-    `STILL_RUN` messages have one.
+    On a clock that begins at zero, as in simulations, a zero can be a true time: if it comes before
+    every other time, was recorded within the first `JUMP`, and fewer than `STILL_RUN` messages have
+    one.
 
     Args:
-        log_times: of the messages.
+        log_times: the log times of the messages.
         times: the declared times of the same messages.
         from_zero: whether the clock of the log begins at zero.
     """
@@ -42,22 +42,22 @@ def unset(log_times: Times, times: Times, *, from_zero: bool) -> NDArray[np.bool
 
 
 def forward_fill(times: Times, missing: NDArray[np.bool_]) -> Times:
-    """The times, each missing one replaced by the last one before it that is not missing.
+    """The times, with each missing one replaced by the last one before it.
 
-    Those before the first known time get that one. Unchanged where all are missing.
+    Missing times before the first known time get that one. If all are missing, they are unchanged.
     """
-    known = np.flatnonzero(~missing)
-    if not len(known):
+    known_rows = np.flatnonzero(~missing)
+    if not len(known_rows):
         return times
-    last_known = np.searchsorted(known, np.arange(len(times)), "right") - 1
-    result: Times = times[known[last_known.clip(0)]]
+    last_known = np.searchsorted(known_rows, np.arange(len(times)), "right") - 1
+    result: Times = times[known_rows[last_known.clip(0)]]
     return result
 
 
 def count_still(times: Times) -> int:
-    """The number of messages during which the clock stands still: those of all long runs.
+    """The number of messages during which the clock stands still: the sum of all long runs.
 
-    A run is of messages with equal times, one after the other; it is long from `STILL_RUN` on.
+    A run consists of consecutive messages with equal times; it is long from `STILL_RUN` on.
     """
     starts = np.flatnonzero(np.append(True, times[1:] != times[:-1]))
     lengths = np.diff(np.append(starts, len(times)))
@@ -65,7 +65,7 @@ def count_still(times: Times) -> int:
 
 
 def late(log_times: Times, times: Times, lateness: int) -> Late | None:
-    """The messages of a topic that are late for any time; None: none is."""
+    """The messages of a topic that are late for any tick; None: there are none."""
     lasts = log_times - lateness - 1
     chosen = lasts >= times
     return Late(times[chosen], lasts[chosen]) if chosen.any() else None
@@ -73,12 +73,12 @@ def late(log_times: Times, times: Times, lateness: int) -> Late | None:
 
 @dataclass(frozen=True, slots=True)
 class ClockOffset:
-    """How far the declared times of a topic's messages are ahead of their log times."""
+    """The difference of the declared times of a topic's messages and their log times."""
 
     jumps: int
-    """How often the offset changes by more than `JUMP` from a message to the next."""
+    """How often the offset changes by more than `JUMP` between two messages."""
     largest_jump: int
-    """The largest such change, whichever its direction; 0 where there is none."""
+    """The largest such change in either direction; 0: there is none."""
     median: int
     """The median of the offsets; negative: the declared times are behind."""
 
@@ -87,7 +87,7 @@ def clock_offset(log_times: Times, times: Times) -> ClockOffset | None:
     """The offset of the declared times of a topic's messages, and its jumps.
 
     Args:
-        log_times: of the messages.
+        log_times: the log times of the messages.
         times: the declared times of the same messages.
 
     Returns:

@@ -1,4 +1,4 @@
-"""Truth columns on the declared clock: what each tick of a recording sees.
+"""Truth columns on the declared clock: the values of propositions at each tick of a recording.
 
 Times are nanoseconds. None is unknown: neither true nor false.
 """
@@ -31,8 +31,8 @@ from monitors.kernel import Column
 class Timeline:
     """The whole ticks of one recording.
 
-    `times` has shape (n,), when each tick is, in nanoseconds; it does not decrease. `period` is
-    None where the clock ticks by message.
+    `times` has shape (n,), the time of each tick in nanoseconds; it does not decrease. `period` is
+    None if the clock ticks by message.
     """
 
     times: Times
@@ -43,8 +43,8 @@ class Timeline:
 class Trace:
     """One column for each proposition: bit i is its truth at tick i.
 
-    `cut` is what a tick would see that was cut short by the end of the log: what came after the
-    last whole tick. No duration counts it. None where nothing came after that.
+    `cut` has the values at a tick that the end of the log cuts short: after the last whole tick. No
+    duration counts it. None: the log ends with a whole tick.
     """
 
     timeline: Timeline
@@ -83,7 +83,7 @@ def trace(declarations: Declarations, recording: Recording, names: Collection[st
 
 
 def packed(states: States) -> Column:
-    """The states, shape (ticks,), as one bit a tick."""
+    """The states, shape (ticks,), as one bit for each tick."""
     return Column(bits(states == TRUE), bits(states == UNKNOWN))
 
 
@@ -110,7 +110,7 @@ def timeline(declarations: Declarations, recording: Recording) -> Timeline:
 
 
 def origin(declarations: Declarations, recording: Recording, period: int) -> int:
-    """Where the grid of ticks begins at phase 0."""
+    """The start of the tick grid at phase 0."""
     if recording.origin is not None:
         return recording.origin
     topics = {signal.path.topic for signal in declarations.signals.values()}
@@ -122,10 +122,10 @@ def origin(declarations: Declarations, recording: Recording, period: int) -> int
 def proposition_states(
     name: str, declarations: Declarations, recording: Recording, ticks: Times, first: int | None
 ) -> States:
-    """What each tick sees of a proposition, shape (ticks,).
+    """The state of a proposition at each tick, shape (ticks,).
 
-    `first` is when the log began, from where on the first tick sees; None: it sees what happened at
-    its own time.
+    `first` is the begin of the log, from which on the first tick covers the steps; None: it covers
+    only the steps at its own time.
     """
     proposition = declarations.propositions[name]
     states = _timely_states(proposition, declarations, recording, ticks, first)
@@ -137,7 +137,7 @@ def proposition_states(
 def late_messages(
     proposition: Proposition, declarations: Declarations, recording: Recording
 ) -> list[Late]:
-    """Of each topic on which its truth at a tick depends; all depends on the clock's topic."""
+    """The late messages of the proposition's topics, always with the clock's topic."""
     topics = {declarations.signals[name].path.topic for name in proposition.signals}
     topics |= {declarations.clock.topic} if declarations.clock.topic else set()
     return [late for topic, late in recording.late.items() if topic in topics]
@@ -150,7 +150,7 @@ def _timely_states(
     ticks: Times,
     first: int | None,
 ) -> States:
-    """What each tick would see had no message been late."""
+    """The state at each tick if no message had been late."""
     past = past_values(proposition, declarations, recording)
     if past is not None:
         _, upto = _windows(past.times, ticks)
@@ -161,7 +161,7 @@ def _timely_states(
 
 
 def complete_from(proposition: Proposition, recording: Recording) -> int:
-    """From when on all its signals have begun, or messages are lost: unknowns count from there."""
+    """The time from which on unknown values count: all signals have begun, or messages are lost."""
     samples = [recording.samples.get(name) for name in proposition.signals]
     begins = [
         int(signal.times[0]) if signal is not None and len(signal.times) else recording.end_ns
@@ -176,8 +176,9 @@ def states_at(
 ) -> States:
     """The state of each tick, shape (ticks,).
 
-    `begun` has the begin of the log, from where on the first tick sees, and `complete_from`: an
-    unknown before the begin of a topic does not make the first tick unknown.
+    `begun` has the begin of the log, from which on the first tick covers the steps, and
+    `complete_from`: an unknown value before the begin of a topic does not make the first tick
+    unknown.
     """
     before, upto = _windows(steps.times, ticks)
     if begun is not None and len(ticks):
@@ -186,7 +187,7 @@ def states_at(
 
 
 def first_before(steps: Steps, begun: tuple[int, int], upto: NDArray[np.intp]) -> NDArray[np.intp]:
-    """The first step that the first tick sees, of those below `upto`; `begun` as above.
+    """The first step that the first tick covers, of those below `upto`; `begun` as in `states_at`.
 
     It is the first step that is known or counts as unknown; if there is none, the last one.
     """
@@ -199,7 +200,7 @@ def first_before(steps: Steps, begun: tuple[int, int], upto: NDArray[np.intp]) -
 def combined(
     steps: Steps, before: NDArray[np.intp], upto: NDArray[np.intp], proposition: Proposition
 ) -> States:
-    """The states of ticks that see the steps `before <= i < upto`, each of shape (ticks,)."""
+    """The states of ticks with the steps `before <= i < upto`, each of shape (ticks,)."""
     states = steps.states
     result = np.where(before > 0, states[before - 1], UNKNOWN).astype(np.int8)
     filled = upto > before
@@ -222,7 +223,7 @@ def combined(
 def _some(
     chosen: NDArray[np.bool_], before: NDArray[np.intp], upto: NDArray[np.intp]
 ) -> NDArray[np.bool_]:
-    """Whether any of the steps `before <= i < upto` is chosen."""
+    """Whether any of the steps `before <= i < upto` is selected."""
     if not chosen.any():
         return np.zeros(len(upto), bool)
     counts = np.concatenate([[0], np.cumsum(chosen)])
@@ -230,10 +231,10 @@ def _some(
 
 
 def _windows(times: Times, ticks: Times) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """For each tick the steps `before <= i < upto` that it sees.
+    """For each tick the steps `before <= i < upto` that it covers.
 
-    Ticks with the same time share the steps of that time: the first tick has the first of them,
-    the last tick has all that are left.
+    Ticks with the same time share the steps of that time: the first tick has the first of them, the
+    last tick has all that are left.
     """
     upto = times.searchsorted(ticks, "right")
     same = ticks[1:] == ticks[:-1]

@@ -1,6 +1,6 @@
 """Bags: ROS 1's `.bag` and rosbag2's `.db3`, read with rosbags; their messages go to a sink.
 
-Neither format has check sums: a changed byte within a message cannot be seen, and a note says so.
+Neither format has check sums: a changed byte within a message is not detected, and a note says so.
 Reading ends where the reader ends; the number and the times of its messages are compared with
 those that the bag states. Times are nanoseconds, log times.
 """
@@ -31,32 +31,32 @@ from fretish.diagnostics.source import Span
 BAG, DB3 = b"#ROSBAG V", b"SQLite format 3\0"
 """The first bytes of the files."""
 _LEAST = 2**20
-"""Bytes that a value of any database may have, even of a small one."""
+"""The least limit in bytes of a database value, even in a small database."""
 _STEPS = 20_000
-"""Steps of SQLite's machine between two checks of the time: tenths of a millisecond."""
+"""Steps of SQLite's virtual machine between two checks of the time: tenths of a millisecond."""
 NOWHERE = -1
-"""The place of a damage without a byte."""
+"""The offset of a damage that has none."""
 
 
 @dataclass(frozen=True, slots=True)
 class BagContents:
-    """The contents of a bag, apart from its messages."""
+    """The contents of a bag, without its messages."""
 
     span: Gap | None
-    """The first and the last of its whole messages."""
+    """The first and the last whole message."""
     damages: tuple[tuple[Damage, Gap | None], ...]
     notes: tuple[Diagnostic, ...]
 
 
 def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagContents | Diagnostic:
-    """All messages of a bag, in order of time.
+    """Pass all messages of a bag to a sink, in order of time.
 
     Args:
-        file: its path.
-        same: another path of the same open file, which no other file can take over.
-        start: its first bytes, `BAG` or `DB3`.
+        file: the path of the bag.
+        same: another path of the same open file, which no other file can replace.
+        start: the first bytes of the bag, `BAG` or `DB3`.
         sink: receives the messages.
-        place: the bag, as the user named it.
+        place: the bag, as named on the command line.
 
     Returns:
         Its contents; or why the bag cannot be read.
@@ -92,7 +92,7 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagCont
 
 
 def ends(file: str) -> Gap | None:
-    """The first and the last message of a ROS 1 bag, by its index; None where that cannot be."""
+    """The first and the last message of a ROS 1 bag, by its index; None: it is unreadable."""
     try:
         reader = _bag(file)
         reader.open()
@@ -108,7 +108,7 @@ def _bag(file: str) -> Any:
     from rosbags.rosbag1 import Reader
 
     class Bounded(Reader):
-        """Its chunks have the same limit as the chunks of MCAP."""
+        """A ROS 1 bag whose chunks have the same limits as those of MCAP."""
 
         def read_chunk(self) -> Any:
             chunk = super().read_chunk()
@@ -121,8 +121,8 @@ def _unpacked(official: Callable[[bytes], bytes], packed: bytes) -> bytes:
     """The contents of a chunk of a ROS 1 bag.
 
     Raises:
-        BrokenError: it is more than such a chunk can hold.
-        Exception: each codec has its own; it is no such data.
+        BrokenError: the chunk is larger than it can be.
+        Exception: of each codec; the data is invalid.
     """
     from rosbags.rosbag1.reader import decompressors
 
@@ -140,7 +140,7 @@ def _unpacked(official: Callable[[bytes], bytes], packed: bytes) -> bytes:
 
 @contextmanager
 def _limited(size: int) -> Iterator[None]:
-    """A context in which databases make no value larger than their file.
+    """A context in which databases give no value larger than their file.
 
     Between the steps of a query Python checks whether too much time has passed.
     """
@@ -160,7 +160,7 @@ def _limited(size: int) -> Iterator[None]:
 def _db3(file: str) -> Any:
     from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader
 
-    return Sqlite3Reader(Path(quote(file)))  # it puts the path into a URI as it is
+    return Sqlite3Reader(Path(quote(file)))  # the reader puts the path into a URI without quoting
 
 
 def _reason(error: Exception) -> str:
@@ -169,15 +169,16 @@ def _reason(error: Exception) -> str:
 
 
 class _Way:
-    """One way through a bag."""
+    """One pass through a bag."""
 
     def __init__(self, reader: Any, sink: Sink, *, bag: bool) -> None:
         self.span: Gap | None = None
         self.assumed: list[str] = []
-        """Types whose definition the bag does not carry."""
+        """Types whose definition is not in the bag."""
         self._reader, self._sink, self._bag = reader, sink, bag
         self._damages: list[tuple[Damage, bool]] = []
-        """Each with True if it has cost everything after it; False: it may have cost anything."""
+        """Each damage, with True if all later messages are lost; False: messages of any time may be
+        lost."""
         self._streams: dict[int, Stream] = {}
         self._stated = self._ends()
         self._counts: dict[int, int] = {}
@@ -191,7 +192,7 @@ class _Way:
         return (start, end) if 0 <= start <= end < LATEST else None
 
     def run(self) -> None:
-        """Read everything."""
+        """Read the whole bag."""
         connections = list(self._reader.connections)
         counts = self._stated_counts(connections)
         try:
@@ -209,9 +210,9 @@ class _Way:
             return
         if counts != self._counts:
             expected, received = sum(counts.values()), sum(self._counts.values())
-            description = f"it states {expected} messages and holds {received}"
+            description = f"it states {expected} messages, but holds {received}"
             if expected == received:
-                description = "its topics hold other numbers of messages than it states"
+                description = "the numbers of messages of its topics differ from the stated numbers"
             self._damage(description, code=Code.COUNT_MISMATCH)
 
     def _stated_counts(self, connections: list[Any]) -> dict[int, int]:
@@ -226,14 +227,14 @@ class _Way:
     def _message(self, id: int, time: int, payload: bytes) -> None:
         self._counts[id] = self._counts.get(id, 0) + 1
         if not (isinstance(payload, bytes) and isinstance(time, int) and 0 <= time < LATEST):
-            self._damage("a message is of an absurd time, or has no contents")
+            self._damage("a message has an impossible time, or has no contents")
             return
         first, _ = self.span or (time, time)
         self.span = first, time
         self._sink.add(self._streams[id], time, time, memoryview(payload))
 
     def check(self, file: str) -> None:
-        """Checks that only a database allows."""
+        """The checks that only a database allows."""
         for ending in ("-wal", "-journal"):
             companion = Path(file + ending)
             if companion.exists() and companion.stat().st_size:
@@ -256,7 +257,7 @@ class _Way:
             self._damages.append((Damage(NOWHERE, description, code=code), follows))
 
     def settled(self) -> Iterator[tuple[Damage, Gap | None]]:
-        """All damages, with the time that each has cost."""
+        """All damages, each with the time of its lost messages."""
         if self.span is None:
             yield from ((damage, None) for damage, _ in self._damages)
             return

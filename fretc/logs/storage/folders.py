@@ -24,26 +24,26 @@ from fretish.reading.yaml_text import loaded
 
 METADATA = "metadata.yaml"
 _LARGEST = 2**24
-"""Bytes; no description of a run is longer."""
+"""The most bytes of a `metadata.yaml`."""
 _LATEST = 2**62
 
 
 @dataclass(frozen=True, slots=True)
 class Folder:
-    """One run, as its description states it."""
+    """One run, as its `metadata.yaml` describes it."""
 
     path: str
     files: tuple[str, ...]
-    """Their names within the folder, in order of time."""
+    """The names of its files within the folder, in order of time."""
     messages: int | None
     span: Gap | None
     """The first and the last message of the run."""
     spans: Mapping[str, Gap]
-    """The spans of single files, where it states them."""
+    """The spans of single files, if they are stated."""
     compressed: str
-    """`file` or `message`: how its files are packed; nothing where they are not."""
+    """`file` or `message`: the unit of compression; empty: not compressed."""
     custom: Mapping[str, str] = field(default_factory=dict)
-    """`custom_data`: what the recorder says of the run."""
+    """The `custom_data` of the recorder."""
 
     def lost(self, i: int, before: int | None, after: int | None) -> Gap | None:
         """The time that file `i` has covered, as far as it is known.
@@ -62,21 +62,21 @@ class Folder:
 
 
 def is_folder(path: str) -> bool:
-    """Whether the path is a folder that rosbag2 has described."""
+    """Whether the path is a folder with a `metadata.yaml` of rosbag2."""
     return os.path.isdir(path) and (Path(path) / METADATA).is_file()
 
 
 def of_all(hashes: Mapping[str, str]) -> str:
-    """One SHA-256 of several files: that of the lines that `sha256sum` prints for them."""
+    """One SHA-256 of several files: that of the output of `sha256sum`."""
     lines = "".join(f"{sha256}  {name}\n" for name, sha256 in hashes.items())
     return hashlib.sha256(lines.encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def folder(path: str) -> Folder | Diagnostic:
-    """What the description in a folder lists.
+    """The run that the `metadata.yaml` of a folder describes.
 
     Raises:
-        OSError: it cannot be read.
+        OSError: the file cannot be read.
     """
     file = Path(path) / METADATA
     place = Source(name_of(str(file)), "").span()
@@ -88,7 +88,7 @@ def folder(path: str) -> Folder | Diagnostic:
 
 
 def _described(path: str, data: bytes) -> Folder | None:
-    """None where it is not as rosbag2 writes it."""
+    """The run; None: the file is not as rosbag2 writes it."""
     try:
         about = loaded(data.decode())["rosbag2_bagfile_information"]
         files = tuple(_name(name) for name in about["relative_file_paths"])
@@ -108,7 +108,7 @@ def _described(path: str, data: bytes) -> Folder | None:
 
 
 def _name(listed: Any) -> str:
-    """The name of a listed file; it is in the folder, whatever path is stated."""
+    """The name of a listed file, without the stated folder."""
     name = PurePosixPath(listed).name
     if not name or name == ".." or b"\0" in os.fsencode(name):
         raise ValueError("a file has no name")
@@ -118,12 +118,12 @@ def _name(listed: Any) -> str:
 def _compressed(about: Mapping[str, Any]) -> str:
     mode = about.get("compression_mode") or ""
     if not isinstance(mode, str):  # never as a text: that of a list of aliases has no end
-        raise ValueError("the mode of compression is no text")
+        raise ValueError("the compression mode is not a text")
     return "" if mode.lower() == "none" else mode.lower()
 
 
 def _custom(data: Any) -> dict[str, str]:
-    """Texts alone count, and never a text made of a list: of aliases it has no end."""
+    """The texts in `custom_data`; texts made of lists are skipped, because aliases have no end."""
     items = data.items() if isinstance(data, dict) else ()
     return {k: v for k, v in items if isinstance(k, str) and isinstance(v, str)}
 
@@ -139,7 +139,7 @@ def _spans(listed: Any) -> dict[str, Gap]:
 
 
 def _span(about: Mapping[str, Any]) -> Gap | None:
-    """The first and the last message; None where there is none, or no sense."""
+    """The first and the last message; None: there is none, or the times are invalid."""
     start = _natural(_inner(about.get("starting_time"), "nanoseconds_since_epoch"))
     length = _natural(_inner(about.get("duration"), "nanoseconds"))
     if start is None or length is None or not about.get("message_count"):

@@ -1,9 +1,9 @@
-"""Where the bytes of a log come from: a file, standard input, or a URL.
+"""The bytes of a log from a file, standard input, or a URL.
 
-Standard input is copied to a temporary file without a name, which vanishes with the process in any
-case. So is a log at a URL: a server could send other bytes for a second request, and the audited
-bytes must be the hashed ones. Only a log that is read by its index, and not hashed, is read from
-the server in blocks.
+Standard input is copied to a temporary file without a name, which is deleted with the process in
+any case. So is a log at a URL: a server could send other bytes for a second request, and the
+audited bytes must be the hashed ones. Only a log that is read by its index, and not hashed, is read
+from the server in blocks.
 """
 
 from __future__ import annotations
@@ -34,37 +34,39 @@ from fretish.reading.limits import extend_budget
 _MOST = 2**36
 """The most bytes of a log whose length the server does not state."""
 _SMALL_BLOCK = 2**14
-"""Bytes of one request where most of the file is skipped."""
-_SLOW = "the server sends next to nothing"
+"""Bytes of one request if most of the file is skipped."""
+_SLOW = "the server sends hardly any data"
 _HASHED = 2**18
 """Bytes of one step of hashing."""
 _SMALL = 2**20
-"""Bytes of a file that is read at once, and hashed by no thread of its own."""
+"""Bytes up to which a file is read at once, and hashed without a thread."""
 
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """A log that can be read."""
+    """A log that is open for reading."""
 
     stream: io.BufferedReader
     size: int
     sha256: Callable[[], str]
-    """The SHA-256 of all its bytes; to be called after reading."""
+    """Compute the SHA-256 of all bytes; to be called after reading."""
     begin: Callable[[], None]
-    """Begin to hash in parallel with reading, where that is possible."""
+    """Start to hash in parallel with reading, if possible."""
     file: str | None
-    """Its path, where it has one."""
+    """The path; None: the input is not a file."""
     same: str | None
     """Another path of the open file itself, even if its name now belongs to another file."""
     changed: Callable[[], bool] = lambda: False
-    """Whether it was written to since it was opened, or its name now belongs to another file."""
+    """Whether the file was written to since it was opened, or its name now belongs to another
+    file."""
     beginning: Callable[[], Input | None] = lambda: None
-    """A copy of the bytes that were there when it was opened; None where it has not just grown."""
+    """A copy of the bytes that were there when the file was opened; None: it has changed otherwise
+    than by growing."""
 
 
 @contextmanager
 def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
-    """The log at a path, open within the context; or why there is none.
+    """The log at a path, open within the context; or why it cannot be opened.
 
     Args:
         path: a file, a URL, or `-`.
@@ -132,7 +134,7 @@ def _nothing() -> None:
 
 
 def _mark(status: os.stat_result) -> tuple[int, ...]:
-    """The attributes that a write changes, or another file of that name.
+    """The attributes that change with a write, or with another file of the same name.
 
     Anyone who may write to a file can set `st_mtime` back, but `st_ctime` only by the machine's
     clock.
@@ -154,7 +156,7 @@ class _Digest:
 
     def begin(self) -> None:
         if self._thread is None:
-            own = os.dup(self._descriptor)  # the reader may be gone before this is done
+            own = os.dup(self._descriptor)  # the reader may be closed before the hash is complete
             self._thread = threading.Thread(target=self._run, args=(own,), daemon=True)
             self._thread.start()
 
@@ -183,7 +185,7 @@ class _Digest:
 
 
 def _copy(stream: io.BufferedReader) -> Input:
-    """A file that has no path."""
+    """A copy of a file without a path."""
     digest = hashlib.file_digest(stream, "sha256").hexdigest()
     size = stream.tell()
     stream.seek(0)
@@ -224,11 +226,11 @@ def _reader(descriptor: int) -> io.BufferedReader:
 # URLs
 
 
-class _Hashed(io.RawIOBase):
-    """A file at a URL. Bytes that are read in order are hashed on the way, so they come once."""
+class _HashingFile(io.RawIOBase):
+    """A file at a URL. Bytes that are read in order are hashed at the same time."""
 
     def __init__(self, file: Any, size: int) -> None:
-        self._file, self._size = _Paced(file, _SMALL_BLOCK), size
+        self._file, self._size = _PacedStream(file, _SMALL_BLOCK), size
         self._at = self._hashed = 0
         self._digest = hashlib.sha256()
 
@@ -255,7 +257,7 @@ class _Hashed(io.RawIOBase):
         length = max(0, min(length, self._size - self._at))
         data = self._file.read(length, self._at)
         if length and not data:
-            raise OSError(None, f"nothing came from byte {self._at} on")
+            raise OSError(None, f"the server sent nothing from byte {self._at} on")
         if self._at <= self._hashed < self._at + len(data):
             self._digest.update(data[self._hashed - self._at :])
             self._hashed = self._at + len(data)
@@ -281,30 +283,30 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         size = about.get("size")
         if size is None or about.get("partial") is False:
             file = stack.enter_context(closing(_stream(system, path)))
-            return _copy(_copied(_Limited(file, size), stack))
+            return _copy(_copied(_LimitedStream(file, size), stack))
         if whole:
             file = stack.enter_context(system.open(path, "rb", block_size=web.BLOCK))
-            return _copy(_copied(_Limited(file, size), stack))
+            return _copy(_copied(_LimitedStream(file, size), stack))
         file = stack.enter_context(system.open(path, "rb", block_size=_SMALL_BLOCK))
     except ImportError as error:
         return storage_diagnostics.no_package(url, error, place)
-    except Exception as error:  # each protocol has its own
+    except Exception as error:  # each protocol raises its own exceptions
         raise as_os_error(error) from error
-    hashed = _Hashed(file, size)
+    hashed = _HashingFile(file, size)
     stream = stack.enter_context(io.BufferedReader(hashed, _SMALL_BLOCK))
     return Input(cast("io.BufferedReader", stream), size, hashed.sha256, lambda: None, None, None)
 
 
 def _stream(system: Any, path: str) -> Any:
-    """All bytes from the beginning on, where the server sends no parts."""
+    """All bytes from the beginning on, if the server does not support ranges."""
     return web.Stream(system, path) if web.is_web(path) else system.open(path, "rb", block_size=0)
 
 
-class _Paced:
-    """The bytes from a server; its errors become OSError, and slowness is one."""
+class _PacedStream:
+    """The bytes from a server; its errors become OSError, and slowness is an error."""
 
     def __init__(self, file: Any, least: int = 0) -> None:
-        """`least`: bytes that each request counts for, at least."""
+        """`least`: the least number of bytes that each request counts for."""
         self._file, self._least = file, least
         self._due, self._spent = 0, 0.0
 
@@ -314,7 +316,7 @@ class _Paced:
             if start is not None:
                 self._file.seek(start)
             data = bytes(self._file.read(length))
-        except Exception as error:  # each protocol has its own
+        except Exception as error:  # each protocol raises its own exceptions
             raise as_os_error(error) from error
         self._spent += time.monotonic() - since
         self._due += max(self._least, len(data))
@@ -323,18 +325,18 @@ class _Paced:
         return data
 
 
-class _Limited(io.BytesIO):
+class _LimitedStream(io.BytesIO):
     """The bytes from a server, up to a limit and to the free space.
 
-    With a known size all of them come, or an error.
+    If the size is known, all of them come, or an error.
     """
 
     def __init__(self, file: Any, size: int | None) -> None:
         super().__init__()
-        self._file, self._size, self._got = _Paced(file), size, 0
+        self._file, self._size, self._got = _PacedStream(file), size, 0
         room = shutil.disk_usage(tempfile.gettempdir()).free
         if size is not None and size > room:
-            raise OSError(None, f"it has {size} bytes, and there is room for {room} of a copy")
+            raise OSError(None, f"it has {size} bytes, but there is only room for {room} of a copy")
         self._most = min(_MOST, room) if size is None else size
 
     def read(self, length: int | None = -1) -> bytes:
@@ -343,12 +345,12 @@ class _Limited(io.BytesIO):
         if self._got > self._most:
             raise OSError(None, "the server sends more than a log has, or than there is room for")
         if not data and self._size not in (None, self._got):
-            raise OSError(None, f"nothing came from byte {self._got} on")
+            raise OSError(None, f"the server sent nothing from byte {self._got} on")
         return data
 
 
 def as_os_error(error: Exception) -> OSError:
-    """An error of a protocol, each of which has its own, as one of the system."""
+    """An error of a protocol as an OSError; each protocol has errors of its own."""
     if isinstance(error, FileNotFoundError) and isinstance(error.__cause__, Exception):
         error = error.__cause__  # fsspec hides the real error behind "no such file"
     if isinstance(error, TimeoutError):
@@ -359,4 +361,4 @@ def as_os_error(error: Exception) -> OSError:
     if status == 404:
         return FileNotFoundError(errno.ENOENT, "not found")
     text = str(error).strip().partition("\n")[0] or type(error).__name__
-    return OSError(None, f"the server says {status}" if status else text[:200])
+    return OSError(None, f"the server answered {status}" if status else text[:200])

@@ -1,8 +1,8 @@
-"""What lies below a place in a store: the addresses of its files, and when they changed.
+"""The files below an address in an object store, and the times of their last changes.
 
-Only a store that the command line names is listed: no file names one. Web servers are not: a page
-with links is no list of files. Credentials are found by the package of the protocol, where it looks
-for them by itself.
+Only a store that the command line names is listed, never one that a file names. Web servers are not
+listed: a page with links is not a list of files. Credentials are found by the package of the
+protocol, if it supports that.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from fretish.diagnostics.source import Source
 from fretish.reading.limits import with_budget
 
 _PATTERN = re.compile(r"[*\[]|\?(?!\w+=)")
-"""What is no part of a name; `?versionId=...` is none of a pattern either."""
+"""Characters that are not part of a name; `?versionId=...` is not part of a pattern either."""
 _BYTES = 10_000_000
-"""A list may cost as much as reading so many bytes: some hundred thousands of names."""
+"""The most bytes that a list may cost: some hundred thousands of names."""
 
 
 def is_store(path: str) -> bool:
-    """Whether it is an address in a store, which has folders and patterns."""
+    """Whether the address is in an object store, which has folders and patterns."""
     return is_url(path) and not web.is_web(path) and "::" not in path
 
 
@@ -34,8 +34,8 @@ def below(url: str, is_log: Callable[[str], bool]) -> Sequence[str] | Diagnostic
     """The addresses of the logs below a folder, or of the files that a pattern matches, in order.
 
     Args:
-        url: in a store; a folder ends with `/`.
-        is_log: whether a file below a folder is one, by its name.
+        url: an address in a store; a folder ends with `/`.
+        is_log: whether a file below a folder is a log, by its name.
 
     Returns:
         None where it is the address of a file; or why nothing can be listed.
@@ -52,11 +52,11 @@ def below(url: str, is_log: Callable[[str], bool]) -> Sequence[str] | Diagnostic
 
 
 def changed(url: str) -> int | None:
-    """When a file in a store changed last, in nanoseconds since 1970; None where it is not told."""
+    """The time of the last change of a file, in nanoseconds since 1970; None: it is unknown."""
     try:
         system, path = _opened(url)
         moment = system.modified(path)
-    except Exception:  # each protocol has its own; the reader of the file reports it
+    except Exception:  # each protocol raises its own; the reader of the file reports the error
         return None
     if not isinstance(moment, datetime):
         return None
@@ -65,7 +65,7 @@ def changed(url: str) -> int | None:
 
 
 def _opened(url: str) -> tuple[Any, str]:
-    """The store, and the path of the address in it."""
+    """The store, and the path in it."""
     import fsspec
 
     system, path = fsspec.core.url_to_fs(url, **web.options(url))
@@ -73,11 +73,11 @@ def _opened(url: str) -> tuple[Any, str]:
 
 
 def _listed(url: str, is_log: Callable[[str], bool]) -> Sequence[str] | None:
-    """The addresses; None where a file has this very name.
+    """The addresses; None: a file has exactly this name.
 
     Raises:
         ImportError: the package of the protocol is not installed.
-        OSError: the store does not answer, or its names are none of addresses.
+        OSError: the store does not answer, or its names cannot be turned into addresses.
     """
     try:
         system, path = _opened(url)
@@ -90,16 +90,16 @@ def _listed(url: str, is_log: Callable[[str], bool]) -> Sequence[str] | None:
             names = list(_matched(system, path, is_log))
     except ImportError:
         raise
-    except Exception as error:  # each protocol has its own
+    except Exception as error:  # each protocol raises its own exceptions
         raise as_os_error(error) from error
     return [f"{start}{name}" for name in sorted({*names})]
 
 
 def _start(url: str, path: str) -> str:
-    """What stands before the names of a store in its addresses."""
+    """The part of addresses before the names of a store."""
     bare, path = url.rstrip("/"), path.rstrip("/")
     if not path or not bare.endswith(path):
-        raise OSError(None, "its names are no addresses: name each log")
+        raise OSError(None, "its file names cannot be turned into addresses: name each log")
     return bare[: len(bare) - len(path)]
 
 

@@ -1,8 +1,8 @@
-"""The name of a log, for every output, and the log of a name: one form, and back.
+"""The printable name of a log for every output, and the path for a name.
 
-A file may be called anything but `/` and NUL: no text at all, or one that moves the cursor. Its
-name has an escape for each such byte, so that it is one line of printable text, no two paths have
-the same, and the path can be had again.
+The name of a file may contain any byte except `/` and NUL, also bytes that are not text or that
+move the cursor. Its printable name has an escape for each such byte, so that it is one line of
+text, is unique, and can be converted back to the path.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ def name_of(path: str) -> str:
 
 
 def path_of(name: str) -> str:
-    """The path or URL of a log that is called so.
+    """The path or URL for the printable name of a log.
 
-    A name that `name_of` does not give, as of evidence from elsewhere, is taken for a path.
+    A name that `name_of` cannot give, as in evidence from elsewhere, is taken for a path.
     """
     if "\\" not in name:
         return name
@@ -58,9 +58,9 @@ def path_of(name: str) -> str:
 
 
 def shell_word(path: str) -> str:
-    """A path for a command to paste: quoted, and printable whatever its name is; never an option.
+    """A path as a word of a shell command: quoted, printable, and never an option.
 
-    Between `$'` and `'` shells read the escapes of a name as they are read here.
+    Between `$'` and `'` shells interpret the escapes of a name in the same way.
     """
     name = f"./{path}" if path.startswith("-") and path != STDIN else path
     if name.isprintable():

@@ -19,33 +19,33 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """The contents of one file, apart from its messages."""
+    """The contents of one file, without its messages."""
 
     sha256: str
-    """The SHA-256 of its bytes; of its summary, where it was read by its index alone."""
+    """The SHA-256 of its bytes, or of its summary if it was read by its index alone."""
     size: int
     span: Gap | None
-    """The first and the last of its whole messages; None of a file without any."""
+    """The first and the last whole message; None: there is none."""
     damages: tuple[tuple[Damage, Gap | None], ...]
     notes: tuple[Diagnostic, ...] = ()
     """Further diagnostics."""
     checked: Checked = EVERYTHING
     described: Described = field(default_factory=dict)
-    """What its metadata says, as far as it is asked for."""
+    """The wanted values of its metadata."""
 
 
-class Numbered:
-    """A sink that passes messages on, and numbers the streams of several files as one log."""
+class RenumberingSink:
+    """A sink that passes messages on, and renumbers the streams of several files as one log."""
 
     def __init__(self, sink: Sink) -> None:
         self.counted = 0
-        """Messages so far."""
+        """The number of messages so far."""
         self._sink = sink
         self._streams: dict[Hashable, Stream] = {}
         self._of_file: dict[int, tuple[Stream, Stream]] = {}
 
     def next_file(self) -> None:
-        """From here on the numbers are those of another file."""
+        """Begin with another file."""
         self._of_file.clear()
 
     def declare(self, stream: Stream) -> None:
@@ -67,12 +67,12 @@ class Numbered:
         return self._sink.wants(topic)
 
     def count(self, stream: Stream, count: int) -> None:
-        """So many messages of a stream that is not wanted."""
+        """Count messages of a stream that is not wanted."""
         self.counted += count
         self._sink.count(self._renumbered(stream), count)
 
     def _renumbered(self, stream: Stream) -> Stream:
-        """The same stream under a number of the whole run."""
+        """The stream with its number in the whole run."""
         of_file = self._of_file.get(stream.channel.id)
         if of_file is not None and of_file[0] is stream:
             return of_file[1]
@@ -91,7 +91,7 @@ class Numbered:
 
 
 def around(parts: Sequence[Part | None], i: int) -> tuple[int | None, int | None]:
-    """The last message before file `i`, and the first one after it; None where there is none."""
+    """The last message before file `i`, and the first one after it; None: there is none."""
     before = [part.span[1] for part in parts[:i] if part is not None and part.span is not None]
     after = [part.span[0] for part in parts[i + 1 :] if part is not None and part.span is not None]
     return max(before, default=None), min(after, default=None)
@@ -100,10 +100,10 @@ def around(parts: Sequence[Part | None], i: int) -> tuple[int | None, int | None
 def widened(
     part: Part, before: int | None, after: int | None
 ) -> Iterator[tuple[Damage, Gap | None]]:
-    """The damages of one file, where its run goes on around it.
+    """The damages of one file, extended by its neighbours in the run.
 
-    A file that breaks off may have gone on until the next one begins. So each loss that touches an
-    end of its file extends to the messages of the files around it.
+    A truncated file may have continued until the next one begins. So each loss at an end of its
+    file extends to the messages of the neighbouring files.
 
     Args:
         part: the file.

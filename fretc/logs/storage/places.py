@@ -1,4 +1,4 @@
-"""Places that logs may be opened from: evidence of somebody else names places of its logs."""
+"""Restrictions on the locations of logs: evidence from elsewhere names locations."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from fretc.logs.storage.log_names import is_url
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
-    """The places that may be opened.
+class AllowedLocations:
+    """The locations that may be opened.
 
-    Files below the current folder and below folders that the user names, `https`, and URLs below
-    one that the user names.
+    Allowed are files below the current folder and below folders that the user names, `https`, and
+    URLs below one that the user names.
     """
 
     allowed: Sequence[str] = ()
-    """Folders, and beginnings of URLs."""
+    """Folders, and prefixes of URLs."""
     offline: bool = False
-    """Whether nothing is asked of any server."""
+    """Whether no server is contacted."""
 
     def refusal(self, place: str) -> str:
-        """Why a place is not opened; empty: it may be."""
+        """The reason why a location may not be opened; empty: it may be."""
         return self._of_url(place) if is_url(place) else self._of_file(place)
 
     def _of_url(self, url: str) -> str:
@@ -33,11 +33,11 @@ class Places:
         if any(_begins(url, start) for start in self.allowed if is_url(start)):
             return ""
         if "::" in url:
-            return "it is a chain of protocols"
+            return "it combines several protocols"
         try:
             parts = urlsplit(url)
         except ValueError:
-            return "it is no URL"
+            return "it is not a URL"
         scheme = parts.scheme.lower()
         return "" if scheme == "https" and parts.hostname else f"its protocol is `{scheme}`"
 
@@ -48,11 +48,11 @@ class Places:
             os.path.commonpath([real, folder]) == folder
             for folder in map(os.path.realpath, folders)
         )
-        return "" if inside else "it lies outside of the folders that are looked into"
+        return "" if inside else "it is outside the folders that are searched"
 
 
 def _begins(url: str, start: str) -> bool:
-    """Whether the URL lies below another one; a way up again, and another chain, do not."""
+    """Whether the URL is below another one, without `..` and without combined protocols."""
     if not url.startswith(start):
         return False
     rest = url[len(start) :]

@@ -1,8 +1,8 @@
-"""ROS 1 bags that belong together: the files of one run, and a bag with its backup.
+"""Related ROS 1 bags: the files of one run, and a bag with its backup.
 
 `rosbag record --split` writes `run_0.bag`, `run_1.bag`, and so on; the last one is called
-`run_2.bag.active` until the recorder has closed it. Such a run goes by the name `run_*.bag`.
-Times are nanoseconds, log times.
+`run_2.bag.active` until the recorder has closed it. Such a run has the name `run_*.bag`. Times are
+nanoseconds, log times.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ from fretc.logs.storage.bags import ends
 from fretc.logs.storage.folders import Folder
 
 ACTIVE = ".bag.active"
-"""The ending of a bag that its recorder has not closed."""
+"""The suffix of a bag that its recorder has not closed."""
 _FILE = re.compile(r"(?P<run>.+)_(?P<number>\d+)\.bag(\.active)?", re.DOTALL)
 _RUN = re.compile(r"(?P<run>.+)_\*\.bag", re.DOTALL)
 _SOON = 10**9
-"""The most time between two files of a run; files farther apart are runs of their own."""
+"""The most time between two files of a run; files farther apart are separate runs."""
 _BACKUP = re.compile(r".+\.orig\.bag|.+\.bag\.orig\.active", re.DOTALL)
 _HEADER = 4096
-"""Bytes that the header of a bag is padded to."""
+"""Bytes to which the header of a bag is padded."""
 
 
 def split(path: str) -> Folder | None:
-    """The run that a bag belongs to; None where the bag is a whole run.
+    """The run that a bag belongs to; None: the bag is a whole run.
 
-    Files of one name are one run if their numbers follow each other, none comes twice (`run_1.bag`
-    and `run_01.bag`), and each begins where the one before it ends: names alone could be those of
-    runs that were numbered.
+    Files of one name are one run if their numbers are consecutive, none occurs twice (`run_1.bag`
+    and `run_01.bag`), and each begins where the one before it ends: the names alone could be those
+    of numbered runs.
 
     Args:
-        path: of one of the files, or what `run_name` gives.
+        path: the path of one of the files, or a name from `run_name`.
 
     Raises:
         OSError: a file cannot be read.
@@ -74,17 +74,17 @@ def _in_time(parent: str, files: Sequence[str]) -> bool:
 
 
 def is_backup(path: str) -> bool:
-    """Whether it is the backup of a bag by `rosbag reindex`, beside the new bag."""
+    """Whether the file is a backup by `rosbag reindex`, beside the new bag."""
     root, name = os.path.split(path)
     if not _BACKUP.fullmatch(name):
         return False
     fixed = (name.replace(".orig.bag", ".bag"), name.replace(".bag.orig.active", ".bag"))
     originals = {*fixed, f"{fixed[1]}.active"} - {name}
-    return any(os.path.exists(os.path.join(root, each)) for each in originals)
+    return any(os.path.exists(os.path.join(root, original)) for original in originals)
 
 
 def unclosed_backup(path: str) -> str | None:
-    """The name of a bag's backup by `rosbag reindex`, if its recorder had not closed it.
+    """The name of a bag's backup by `rosbag reindex`, if its recorder had not closed the bag.
 
     Then the last, unfinished chunk is not in the bag.
 

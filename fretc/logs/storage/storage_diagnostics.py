@@ -14,7 +14,7 @@ from fretish.diagnostics.source import Source, Span
 
 
 def no_stdin(why: str) -> Diagnostic:
-    """Nothing can be read from standard input."""
+    """Standard input cannot be read."""
     return Diagnostic(
         Code.UNREADABLE,
         f"standard input cannot be read: {why}",
@@ -24,24 +24,24 @@ def no_stdin(why: str) -> Diagnostic:
 
 
 def no_package(url: str, error: ImportError, place: Span) -> Diagnostic:
-    """The package that the protocol of a URL needs is not installed, or that of all URLs."""
+    """The package for URLs, or for the protocol of a URL, is not installed."""
     if error.name == "fsspec":
         return no_fsspec(place)
     return no_protocol_package(url.partition("://")[0], str(error), place)
 
 
 def unlisted(error: OSError, place: Span) -> Diagnostic:
-    """A store does not say what is in it."""
+    """An object store cannot be listed."""
     return Diagnostic(
         Code.UNREADABLE,
-        f"what is there cannot be listed: {error.strerror or error}",
+        f"the folder cannot be listed: {error.strerror or error}",
         place,
         "check the address, the network, and whether your credentials may list it",
     )
 
 
 def no_fsspec(place: Span) -> Diagnostic:
-    """URLs need an extra."""
+    """The extra for URLs is not installed."""
     return missing_extra("a URL cannot be read: that needs", ["fsspec"], "remote", place)
 
 
@@ -53,15 +53,15 @@ def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
     package = packages.get(protocol.lower())
     if protocol.lower() in ("http", "https"):
         return missing_extra(
-            f"what is at `{protocol}://` cannot be read: that needs", ["aiohttp"], "remote", place
+            f"`{protocol}://` addresses cannot be read: that needs", ["aiohttp"], "remote", place
         )
     return Diagnostic(
         Code.MISSING_EXTRA,
-        f"what is at `{protocol}://` cannot be read: {reason}",
+        f"`{protocol}://` addresses cannot be read: {reason}",
         place,
         f"install its package: pip install {package}"
         if package
-        else "what each protocol needs is in fsspec's documentation",
+        else "fsspec's documentation lists the package for each protocol",
     )
 
 
@@ -69,25 +69,26 @@ def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
 
 
 def no_rosbags(place: Span) -> Diagnostic:
-    """Bags need an extra."""
+    """The extra for bags is not installed."""
     return missing_extra("a bag cannot be read: that needs", ["rosbags"], "bags", place)
 
 
 def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
-    """The reader of bags cannot read it."""
+    """A bag cannot be read by rosbags."""
     return Diagnostic(
         Code.UNREADABLE_LOG,
         f"the bag cannot be read: {why}",
         place,
         "fix it first: `rosbag reindex`, which loses the chunk that was being written (keep the "
-        "`.orig` file beside it, and audits say so); or copy it again from where it was recorded"
+        "`.orig` file beside it, so that audits report the loss); or copy it again from where "
+        "it was recorded"
         if indexed
         else "copy it again from where it was recorded",
     )
 
 
 def bag_of_no_file(place: Span) -> Diagnostic:
-    """A bag comes from standard input or a URL."""
+    """A bag from standard input or a URL."""
     return Diagnostic(
         Code.NOT_A_LOG, "a bag can only be read from a file", place, "save it as a file first"
     )
@@ -96,8 +97,8 @@ def bag_of_no_file(place: Span) -> Diagnostic:
 def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
     """The limits of a bag: no check sums, and types whose definitions it lacks."""
     message = (
-        "a bag has no check sums, and one time for each message: a changed byte within a message "
-        "cannot be seen, and publish_time is log_time"
+        "a bag has no check sums, and one time for each message: a changed byte within a "
+        "message is not detected, and publish_time is log_time"
     )
     if not assumed:
         return Diagnostic(Code.BAG_FORMAT, message, place, severity=Severity.NOTE)
@@ -105,10 +106,10 @@ def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
     more = ", ..." if len(set(assumed)) > 8 else ""
     return Diagnostic(
         Code.BAG_FORMAT,
-        f"{message}; it defines no types: those of ROS 2 itself, the same in all releases, are "
-        f"taken for {names}{more}",
+        f"{message}; it defines no types: the definitions of ROS 2, the same in all releases, "
+        f"are used for {names}{more}",
         place,
-        "a package of your own under such a name would be misread: record MCAP instead",
+        "if these are packages of your own with the same names, record MCAP instead",
         Severity.WARNING,
     )
 
@@ -117,7 +118,7 @@ def without_crc(place: Span) -> Diagnostic:
     """The limits of an MCAP file without CRCs of its messages."""
     return Diagnostic(
         Code.BAG_FORMAT,
-        "no CRC covers its messages: a changed byte within one of them cannot be seen",
+        "no CRC covers its messages: a changed byte within a message is not detected",
         place,
         "record with `noChunkCRC: false` in rosbag2's `--storage-config-file`",
         Severity.NOTE,
@@ -125,12 +126,12 @@ def without_crc(place: Span) -> Diagnostic:
 
 
 def bad_metadata(place: Span) -> Diagnostic:
-    """The description of a run in several files is not as rosbag2 writes it."""
+    """The `metadata.yaml` of a run is invalid."""
     return Diagnostic(
         Code.SPLIT_LOG,
-        "it does not say which files the run has",
+        "it does not list the files of the run",
         place,
-        "write it anew: `ros2 bag reindex FOLDER`",
+        "write it again: `ros2 bag reindex FOLDER`",
     )
 
 
@@ -138,7 +139,7 @@ def part_of_a_run(i: int, count: int, run: str, place: Span) -> Diagnostic:
     """One file of several is read as a run of its own; `run` is the name of the whole run."""
     return Diagnostic(
         Code.SPLIT_LOG,
-        f"it is file {i + 1} of {count} of one run, and judged alone",
+        f"it is file {i + 1} of {count} of one run, but judged alone",
         place,
         f"name {run}: its files are one log",
         Severity.NOTE,
@@ -146,13 +147,13 @@ def part_of_a_run(i: int, count: int, run: str, place: Span) -> Diagnostic:
 
 
 def compressed_folder(mode: str, place: Span) -> Diagnostic:
-    """rosbag2 has compressed whole files, or each message."""
+    """The files or messages of a run are compressed by rosbag2."""
     return Diagnostic(
         Code.NOT_A_LOG,
         f"rosbag2 has compressed each {mode} of the run",
         place,
-        "unpack it: `ros2 bag convert`, with `compression_mode: none`; MCAP compresses within the "
-        "file: `--storage-preset-profile zstd_fast`",
+        "unpack it: `ros2 bag convert`, with `compression_mode: none`; MCAP has a compression of "
+        "its own: `--storage-preset-profile zstd_fast`",
     )
 
 
@@ -167,10 +168,10 @@ def is_a_directory(place: Span) -> Diagnostic:
 
 
 def grown(size: int, place: Span) -> Diagnostic:
-    """F431: what was read is what there was when it was opened."""
+    """F431: the log grew while it was read; only its first bytes are used."""
     return Diagnostic(
         Code.GROWN,
-        f"it grew while it was read: what is judged are the first {size:,} bytes",
+        f"the log grew while it was read: the audit covers the first {size:,} bytes",
         place,
         "audit it again when its recording, or its copy, is complete",
         severity=Severity.WARNING,
@@ -185,11 +186,11 @@ def not_a_file(place: Span) -> Diagnostic:
 
 
 def unreadable(error: OSError, place: Span) -> Diagnostic:
-    """The system, or the server, does not let it be read."""
+    """The system or the server refuses to read the file."""
     reason = error.strerror or str(error)
     fix = "check its permissions"
     if "://" in place.source.name:
         fix = "check the address, the network, and whether your credentials reach it"
     elif error.errno == errno.ENOSPC:
-        fix = "make room in the folder for temporary files, or name another one in `TMPDIR`"
+        fix = "free space in the folder for temporary files, or set `TMPDIR` to another folder"
     return Diagnostic(Code.UNREADABLE, f"it cannot be read: {reason}", place, fix)

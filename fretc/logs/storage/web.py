@@ -1,6 +1,6 @@
-"""What a web server may do while a log is read from it: send what was asked for, and no more.
+"""Reading from web servers, with limits on time and on the answers.
 
-The only module that imports aiohttp, through which fsspec speaks to `http` and `https`.
+The only module that imports aiohttp, which fsspec uses for `http` and `https`.
 """
 
 from __future__ import annotations
@@ -11,21 +11,21 @@ from urllib.parse import urlsplit
 
 SCHEMES = frozenset({"http", "https"})
 PATIENCE, SLOWEST = 60, 10_000
-"""Seconds, after which a server has to have sent so many bytes a second."""
+"""Seconds after which a server must have sent so many bytes a second."""
 BLOCK = 2**22
-"""Bytes that are asked of a server at once."""
+"""Bytes of one request."""
 _CONNECT = 30
 """Seconds for a connection."""
 _RANGE = re.compile(r"bytes=(\d+)-(\d+)")
 
 
 def is_web(url: str) -> bool:
-    """Whether a web server is asked for it."""
+    """Whether a web server is needed for the path."""
     return urlsplit(url).scheme.lower() in SCHEMES
 
 
 def options(url: str) -> dict[str, Any]:
-    """What fsspec is to be told for a URL; nothing where that is no web server's."""
+    """The options of fsspec for a URL; empty: it is not on a web server."""
     if not is_web(url):
         return {}
     return {"get_client": _only_safe if urlsplit(url).scheme.lower() == "https" else _any}
@@ -40,9 +40,10 @@ async def _any(**arguments: Any) -> Any:
 
 
 def _client(scheme: str, **arguments: Any) -> Any:
-    """A session; what is unpacked on the way could be of any size, so nothing is.
+    """A session that unpacks nothing, because unpacked data could have any size.
 
-    A server that sends a byte now and then is never silent: so the whole answer has a limit, too.
+    A server that sends a byte now and then is never silent: so the whole answer has a time limit,
+    too.
     """
     import aiohttp
 
@@ -57,22 +58,22 @@ def _client(scheme: str, **arguments: Any) -> Any:
 
 
 class Stream:
-    """The bytes at a URL, in pieces as they come; it waits for each at most `PATIENCE`."""
+    """The bytes at a URL, in pieces as they arrive; each has to arrive within `PATIENCE`."""
 
     def __init__(self, system: Any, url: str) -> None:
         self._loop = system.loop
         self._answer = self._wait(_answer, system, url)
 
     def read(self, length: int) -> bytes:
-        """At most so many bytes: those that have come."""
+        """The bytes that have arrived, at most so many."""
         return bytes(self._wait(self._answer.content.read, length))
 
     def close(self) -> None:
-        """Hang up."""
+        """Close the connection."""
         self._loop.call_soon_threadsafe(self._answer.close)
 
     def _wait(self, ask: Any, *arguments: object) -> Any:
-        import asyncio  # where there is a server: most logs are files
+        import asyncio  # imported late, because most logs are files
 
         future = asyncio.run_coroutine_threadsafe(ask(*arguments), self._loop)
         try:
@@ -93,13 +94,13 @@ async def _answer(system: Any, url: str) -> Any:
 
 
 def _redirects(scheme: str) -> Any:
-    """From `https` a server may send us to `https` only."""
+    """Check a redirect: from `https` only to `https`."""
 
     async def check(session: object, context: object, request: Any) -> None:
         place = request.response.headers.get("Location", "")
         where = urlsplit(place).scheme.lower() or request.url.scheme
         if where not in {scheme, "https"}:
-            raise OSError(None, f"the server sends us on to another protocol, `{where}`")
+            raise OSError(None, f"the server redirects to another protocol, `{where}`")
 
     return check
 
@@ -113,4 +114,4 @@ async def _check_answer(session: object, context: object, request: Any) -> None:
     length = answer.content_length
     if length is None or length > int(part[2]) - int(part[1]) + 1:
         answer.close()
-        raise OSError(None, "the server sends another part than it was asked for")
+        raise OSError(None, "the server sent another byte range than requested")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from math import inf
 
-from fretc.audit.evidence.briefs import Brief, stretches
+from fretc.audit.evidence.result_summaries import ResultSummary, stretches
 from fretc.audit.evidence.schema import Result, Threshold
 from fretc.report.across.lanes import (
     Known,
@@ -199,7 +199,7 @@ def _results(
     ]
 
 
-def _count(result: Brief) -> tuple[int, int, int]:
+def _count(result: ResultSummary) -> tuple[int, int, int]:
     return result.violations, result.unknown, result.open
 
 

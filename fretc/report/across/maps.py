@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import dist
 
-from fretc.audit.evidence.courses import place
+from fretc.audit.evidence.run_plot_data import position_at
 from fretc.audit.evidence.schema import Result, Way
 from fretc.report.across.lanes import RunStretches
 from fretc.report.model import phrases
@@ -61,7 +61,7 @@ def extent(points: Iterable[tuple[float, float]]) -> float:
 def _marks(one: RunResult, way: Way) -> Iterable[PlaceMark]:
     violations = one.result.violations if one.result else ()
     for number, violation in enumerate(violations, 1):
-        at = place(way, violation.start_ns)
+        at = position_at(way, violation.start_ns)
         if at is not None:
             yield PlaceMark(
                 *at,

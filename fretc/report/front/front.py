@@ -12,7 +12,7 @@ from math import fsum
 from compiler.files.build_id import __version__
 from compiler.files.dates import is_date
 from compiler.logic.claims import Layer
-from fretc.audit.evidence.briefs import audited_s
+from fretc.audit.evidence.result_summaries import audited_s
 from fretc.audit.evidence.verdicts import BROKEN, RETIRED
 from fretc.report.front import violations
 from fretc.report.front.causes import causes, line, link

@@ -13,7 +13,7 @@ from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.bases import bases
-from fretc.audit.evidence.briefs import Briefs
+from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.evidence.verdicts import (
     BROKEN,
     NOT_EXERCISED,
@@ -167,7 +167,7 @@ class Assessment:
 
 def assessments(
     project: Project,
-    briefs: Briefs | None,
+    briefs: ResultSummaries | None,
     lock: Lock | None = None,
     waivers: Mapping[str, Waiver] = MappingProxyType({}),
     proofs: Sequence[Proof] = (),
@@ -222,7 +222,7 @@ def assessments(
 def _probability(
     id: str,
     requirement: FormalizedRequirement | None,
-    briefs: Briefs | None,
+    briefs: ResultSummaries | None,
     audits: Sequence[SingleAudit],
 ) -> ProbabilityAudit | None:
     estimations = briefs.source.probabilities if briefs is not None else ()

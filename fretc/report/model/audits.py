@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fretc.audit.evidence.briefs import Brief
 from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.result_summaries import ResultSummary
 from fretc.report.model.views import Mark, verdict_mark
 from monitors import kernel
 
@@ -14,7 +14,7 @@ from monitors import kernel
 class SingleAudit:
     """The result of one run, and why it does not count, if it does not."""
 
-    result: Brief
+    result: ResultSummary
     suspicions: tuple[str, ...]
     place: int = 0
     """Of the result in the evidence."""

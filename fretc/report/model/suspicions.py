@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from fretc.audit.evidence.basis import KINDS, MONITOR, Basis, why
-from fretc.audit.evidence.briefs import Brief, Recorded
 from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.result_summaries import Recorded, ResultSummary
 from fretc.audit.measurements.confidence_intervals import SUPPORTED
 from fretc.audit.measurements.trials import Trials
 from fretc.report.traceability.chain import outdated
@@ -33,7 +33,7 @@ class AboutResults:
         self._basis, self._audited_by, self._formalized = basis, audited_by, formalized
         self._outdated: dict[Recorded, tuple[str, ...]] = {}
 
-    def of(self, result: Brief) -> tuple[str, ...]:
+    def of(self, result: ResultSummary) -> tuple[str, ...]:
         """Why the result of one run does not count."""
         recorded = result.rests_on
         if recorded not in self._outdated:
@@ -49,7 +49,7 @@ class AboutResults:
             yield "the sentence could be formalized at the audit, and cannot be now"
 
 
-def _about_log(result: Brief) -> Iterator[str]:
+def _about_log(result: ResultSummary) -> Iterator[str]:
     if result.verdict in (kernel.SATISFIED, kernel.VACUOUS) and not result.intact:
         yield "the log is damaged, and a damaged log cannot show this"
     if result.verdict == kernel.SATISFIED and result.violations:

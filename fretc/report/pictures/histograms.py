@@ -9,7 +9,7 @@ from math import ceil, floor
 from statistics import median
 
 from compiler.formalization.formalized import FormalizedRequirement
-from fretc.audit.evidence.briefs import Brief
+from fretc.audit.evidence.result_summaries import ResultSummary
 from fretc.audit.evidence.schema import Threshold
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -80,7 +80,7 @@ def histograms(
     return (*latency_histogram, *islice(margins, _MARGINS))
 
 
-def _current_results(assessment: Assessment) -> list[Brief]:
+def _current_results(assessment: Assessment) -> list[ResultSummary]:
     return [audit.result for audit in assessment.audits if not audit.is_stale]
 
 
@@ -92,13 +92,13 @@ def is_answered(requirement: FormalizedRequirement | None) -> bool:
     return requirement is not None and requirement.watch.answer is not None
 
 
-def _unanswered(result: Brief) -> int:
+def _unanswered(result: ResultSummary) -> int:
     """Triggers that no longer wait and got no answer: time ran out, or their scope ended."""
     return max(0, result.triggers - result.answers - result.open)
 
 
 def _latency(
-    late: Sequence[float], runs: Sequence[Brief], requirement: FormalizedRequirement | None
+    late: Sequence[float], runs: Sequence[ResultSummary], requirement: FormalizedRequirement | None
 ) -> Histogram:
     bound = seconds_allowed(requirement)
     bins = _bins(late, [0.0, *([bound] if bound is not None else [])], _below)

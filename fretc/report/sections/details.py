@@ -12,8 +12,8 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from compiler.project.project import Project
-from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.declared_units import in_declared_units, thresholds_in_declared_units
+from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Result, Threshold
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.pictures import Histogram

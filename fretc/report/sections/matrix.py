@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from compiler.logic.claims import Layer
 from compiler.project.hazards import without_hazard
 from compiler.project.project import Project
-from fretc.audit.evidence.briefs import Briefs
+from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -126,7 +126,9 @@ def _review(assessment: Assessment) -> Mark:
 # Orphans ---------------------------------------------------------------------------------------
 
 
-def orphans(project: Project, assessments: Sequence[Assessment], briefs: Briefs | None) -> Orphans:
+def orphans(
+    project: Project, assessments: Sequence[Assessment], briefs: ResultSummaries | None
+) -> Orphans:
     """Every place where the chain from hazard to verdict ends too early."""
     return Orphans(
         hazards=tuple(_uncovered(project, assessments)),
@@ -174,7 +176,9 @@ def _undeclared(project: Project, assessments: Sequence[Assessment]) -> Iterable
                 yield f"{assessment.id} names {parent}, which is not declared"
 
 
-def unknown_ids(assessments: Sequence[Assessment], briefs: Briefs | None) -> tuple[str, ...]:
+def unknown_ids(
+    assessments: Sequence[Assessment], briefs: ResultSummaries | None
+) -> tuple[str, ...]:
     """The ids in the evidence that are not ids of the project."""
     ids = {assessment.id for assessment in assessments}
     audited = briefs.by_requirement.keys() if briefs else ()

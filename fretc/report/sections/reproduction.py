@@ -19,7 +19,7 @@ from compiler.files.shell_quoting import (
 from compiler.project.project import Project
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.evidence.basis import of_all, of_bindings
-from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE
 from fretc.logs.storage.log_names import STDIN, name_of, path_of, shell_word
 from fretc.report.model import phrases

@@ -12,7 +12,12 @@ from itertools import takewhile
 
 from compiler.files.records import replace
 from compiler.project.project import Project
-from fretc.audit.evidence.briefs import Brief, Briefs, RunFacts, audited_s
+from fretc.audit.evidence.result_summaries import (
+    ResultSummaries,
+    ResultSummary,
+    RunFacts,
+    audited_s,
+)
 from fretc.audit.evidence.schema import Checked, Finding, Topic
 from fretc.report.model import phrases
 from fretc.report.model.views import Remark, RunSummary, TopicView, sign_mark
@@ -48,12 +53,12 @@ class Run:
 RunKey = tuple[str, str]
 
 
-def run_key(result: Brief | RunFacts) -> RunKey:
+def run_key(result: ResultSummary | RunFacts) -> RunKey:
     """Name and hash of the file: results of one run have the same key."""
     return result.run, result.log
 
 
-def runs(briefs: Briefs | None) -> dict[RunKey, Run]:
+def runs(briefs: ResultSummaries | None) -> dict[RunKey, Run]:
     """The runs of the evidence, numbered from 1 in its order."""
     numbered: dict[RunKey, Run] = {}
     for facts in briefs.source.runs() if briefs else ():

@@ -8,7 +8,7 @@ from fretc.analysis.evidence import AnalyzedSet
 from fretc.attestation import statement as attestation
 from fretc.attestation.signatures import SignatureBook, Signing, State
 from fretc.attestation.statement import Subject
-from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import Signatures, SignatureView, Signed, sign_mark

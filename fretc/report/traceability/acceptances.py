@@ -8,7 +8,7 @@ from compiler.files.records import UNSET
 from compiler.project.acceptances import unused_acceptances
 from compiler.project.project import Project
 from compiler.project.refusals import unreviewable
-from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Finding
 from fretc.report.traceability.checks import checks, unreviewed
 from fretc.report.traceability.lock import Lock, ReviewedRequirement

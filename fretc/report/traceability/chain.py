@@ -24,7 +24,7 @@ from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.bases import audited_topics, bases
 from fretc.audit.evidence import basis
 from fretc.audit.evidence.basis import Basis
-from fretc.audit.evidence.briefs import Brief, Briefs, Recorded
+from fretc.audit.evidence.result_summaries import Recorded, ResultSummaries, ResultSummary
 from fretc.report.traceability import texts
 from fretc.report.traceability.analyses import Answer, answers
 from fretc.report.traceability.artefacts import Product, monitors, shared_products
@@ -77,7 +77,7 @@ class Chain:
     """SHA-256 of each node but the review, and those of the runs."""
     steps: tuple[Link, ...]
     """All links but those of the runs, sorted."""
-    results: Sequence[Brief] = ()
+    results: Sequence[ResultSummary] = ()
     """Of each run."""
     sources: tuple[Node, ...] = ()
     """What each verdict depends on, beside its log."""
@@ -130,13 +130,13 @@ class Chain:
         return tuple(result.run for result in self.results if not _print_of_log(result))
 
 
-def _verdict(result: Brief) -> Node:
+def _verdict(result: ResultSummary) -> Node:
     return Node(VERDICT, f"{result.requirement} {result.run}")
 
 
 def chains(
     project: Project,
-    briefs: Briefs | None,
+    briefs: ResultSummaries | None,
     artefacts: Mapping[int, Sequence[Product]] | None = None,
     proofs: Sequence[Proof] = (),
     known: Mapping[int, Basis] | None = None,
@@ -192,7 +192,7 @@ class _Common:
 
 def _common(
     project: Project,
-    briefs: Briefs | None,
+    briefs: ResultSummaries | None,
     artefacts: Mapping[int, Sequence[Product]],
     proofs: Sequence[Proof],
     known: Mapping[int, Basis] | None,
@@ -241,7 +241,7 @@ class _ChainBuilder:
         entry: RequirementEntry,
         requirement: FormalizedRequirement | None,
         artefacts: Iterable[Product],
-        results: Sequence[Brief],
+        results: Sequence[ResultSummary],
         proofs: Sequence[Proof],
     ) -> Chain:
         self._add_parents(entry, {entry.id})
@@ -401,7 +401,7 @@ class _ChainBuilder:
         )
 
     def _differences(
-        self, results: Sequence[Brief], sources: Mapping[str, Node]
+        self, results: Sequence[ResultSummary], sources: Mapping[str, Node]
     ) -> Mapping[Recorded, tuple[Node, ...]]:
         """Each basis of results that is out of date → the nodes that differ."""
         kinds_of = {
@@ -470,7 +470,7 @@ def outdated(recorded: Recorded, audited_by: str, now: Basis) -> tuple[str, ...]
     return basis.outdated(then, {**now, basis.FRETC: __version__})
 
 
-def _print_of_log(result: Brief) -> str:
+def _print_of_log(result: ResultSummary) -> str:
     """SHA-256 of the log, or of its summary where the audit read its index only; or ""."""
     return result.log or result.fingerprints.log_summary or ""
 

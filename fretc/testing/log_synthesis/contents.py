@@ -15,8 +15,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from fretc.logs.signals.enum_values import enum_index
 from fretc.logs.signals.signals import clearance, sample
-from fretc.logs.signals.words import word
 from fretc.testing.log_synthesis.messages import Content, Field, message
 from fretish import expressions as e
 from fretish.bindings.declarations import Reading, Reduce, Signal
@@ -35,7 +35,7 @@ class Choice:
     content: Content | None
     """None: no message comes at all."""
     value: float
-    """What the audit reads of it, as `sample` and `word` have it; NaN: unknown."""
+    """What the audit reads of it, as `sample` and `enum_index` have it; NaN: unknown."""
     nominal: Fraction | str | None
     """The number in base units, or the word, that it stands for."""
 
@@ -165,7 +165,7 @@ def read(signal: Signal, field: Field, content: Content) -> float | None:
     """What an audit reads of a message with that content; None where it finds no value in it."""
     made = message(field.message, 0, {signal.path: content})
     value = (
-        word(signal, made)
+        enum_index(signal, made)
         if signal.values
         else sample(signal, made, single=field.base == "float32")
     )

@@ -12,7 +12,7 @@ from typing import Literal
 
 from compiler.project.project import Project
 from compiler.targets.python import monitor as monitors
-from fretc.audit.many_logs import audited
+from fretc.audit.many_logs import audit_log
 from fretc.audit.plan import Plan, planned
 from fretc.testing.log_synthesis.messages import NoStageError
 from fretc.testing.log_synthesis.synthetic_log import EPOCH, SyntheticLog, staged
@@ -83,7 +83,7 @@ def _log(plan: Plan, test: Test, monitor: Monitor, temporary: Path, folder: Path
     stage = staged(test, plan.declarations, monitor)
     path = temporary / f"{test.name}.mcap"
     _write(stage, test, path)
-    verdicts = {each.requirement: each.verdict for each in audited(plan, str(path)).results}
+    verdicts = {each.requirement: each.verdict for each in audit_log(plan, str(path)).results}
     expected, actual = _expected(test, plan), verdicts[test.requirement]
     if actual != expected:
         why = f"the audit of it says {actual}, not {expected}"

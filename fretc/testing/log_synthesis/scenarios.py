@@ -24,9 +24,9 @@ import tomli_w
 from compiler.files.records import UnsetType
 from compiler.project.project import Project
 from fretc.audit.evidence.schema import Result
-from fretc.audit.many_logs import audited
+from fretc.audit.many_logs import audit_log
 from fretc.audit.plan import Plan, monitored_requirements, planned
-from fretc.audit.pool import WorkerDied, each
+from fretc.audit.pool import WorkerDied, map_processes
 from fretc.campaigns.campaign import recorded
 from fretc.testing.log_synthesis.variation import varied
 from fretc.testing.suite import Met, Obligation, Polarity, Suite
@@ -125,7 +125,7 @@ def search(
                 _next(known, [a for a in aims if a not in found.shown], chance, number)
                 for number in range(found.runs + 1, found.runs + size + 1)
             ]
-            with closing(each(function, batch, jobs)) as done:
+            with closing(map_processes(function, batch, jobs)) as done:
                 for place, one in done:
                     if isinstance(one, WorkerDied):
                         raise RuntimeError(f"the process of a mission was killed: {one}")
@@ -163,7 +163,7 @@ def shown(plan: Plan, folder: Path, scenario: Scenario) -> Shown:
     log = folder / f"{scenario.name}.mcap"
     try:
         recorded(scenario, SEED, log)
-        results = audited(plan, str(log)).results
+        results = audit_log(plan, str(log)).results
     finally:
         log.unlink(missing_ok=True)
     return Shown(

@@ -1,4 +1,4 @@
-"""The words of `--publish` → where verdicts go."""
+"""The publishers that the words of `--publish` name."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ _SERVER = re.compile(r"foxglove(?::(?:(?P<host>[\w.-]+|\[[\da-fA-F:.]+\]):)?(?P<
 
 
 def chosen(words: Sequence[str], source: Source) -> Sequence[Publisher] | Diagnostic:
-    """One for each word, open; or what is wrong, and none is open."""
+    """An open publisher for each word; or a diagnostic, and none is open."""
     publishers: list[Publisher] = []
     with ExitStack() as stack:
         for word in dict.fromkeys(words):
-            found = _publisher(word, source)
-            if isinstance(found, Diagnostic):
-                return found
-            publishers.append(found)
-            stack.callback(found.close)
+            publisher = _publisher(word, source)
+            if isinstance(publisher, Diagnostic):
+                return publisher
+            publishers.append(publisher)
+            stack.callback(publisher.close)
         stack.pop_all()
     return publishers
 
@@ -34,7 +34,8 @@ def _publisher(word: str, source: Source) -> Publisher | Diagnostic:
             return Diagnostics(source)
         return Diagnostic(
             Code.BAD_USAGE,
-            f"`--publish diagnostics` goes through what is watched, and `{source.name}` takes none",
+            f"`--publish diagnostics` publishes on the watched middleware, and `{source.name}` "
+            "accepts none",
             help="watch `dds` or `ros1`; or publish to Foxglove: `--publish foxglove`",
         )
     server = _SERVER.fullmatch(word)
@@ -49,7 +50,9 @@ def _publisher(word: str, source: Source) -> Publisher | Diagnostic:
 
 
 def addresses(publishers: Sequence[Publisher]) -> list[str]:
-    """Where people find the servers among them."""
+    """The addresses of the servers among the publishers."""
     return [
-        f"ws://{each.host}:{each.port}" for each in publishers if isinstance(each, FoxgloveServer)
+        f"ws://{publisher.host}:{publisher.port}"
+        for publisher in publishers
+        if isinstance(publisher, FoxgloveServer)
     ]

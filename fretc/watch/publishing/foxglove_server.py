@@ -1,4 +1,4 @@
-"""A Foxglove server: the robot's topics as they came, and the state of each requirement.
+"""A Foxglove server with the topics of the robot, and the state of each requirement.
 
 Source: https://docs.foxglove.dev/docs/sdk, the package foxglove-sdk.
 """
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import foxglove
 
 HOST, PORT = "127.0.0.1", 8765
-"""Where the server is, if nobody says otherwise: this machine, the usual port."""
+"""The default address: this machine, the usual port."""
 NAME = "fretc.RequirementState"
 LEVELS = ("OK", "WARN", "ERROR", "STALE")
 _OWED: dict[Truth, str] = {True: "yes", None: "perhaps", False: "no"}
@@ -39,22 +39,24 @@ SCHEMA = {
     },
     "required": [*_ALWAYS],
 }
-"""Plain types only, which is what panels of Foxglove read: a time that is not there is left out."""
+"""Plain types only, which panels of Foxglove can read: an absent time is left out."""
 
 
 class FoxgloveServer:
-    """Shows what arrives and what is known to all who connect."""
+    """A server that sends arriving messages and the states of requirements to all clients."""
 
     def __init__(self, host: str, port: int) -> None:
-        """Open it; port 0 is one that is free.
+        """Open the server; port 0 picks a free one.
 
         Raises:
             ImportError: the package is not installed.
-            RuntimeError: the port is taken, or the host is none of this machine.
+            RuntimeError: the port is in use, or the host is not this machine.
         """
         import foxglove
 
-        logging.getLogger("foxglove").addHandler(logging.NullHandler())  # else on the terminal
+        logging.getLogger("foxglove").addHandler(
+            logging.NullHandler()
+        )  # otherwise printed on the terminal
         self._context = foxglove.Context()
         self._server = foxglove.start_server(
             name="fretc watch", host=host, port=port, context=self._context
@@ -64,7 +66,7 @@ class FoxgloveServer:
         self._states: dict[str, foxglove.Channel] = {}
 
     def pass_on(self, arrival: Arrival) -> None:
-        """A message of the robot, on a channel as it has it."""
+        """Send a message of the robot, on a channel with the same encoding."""
         channel = self._channels.get(arrival.channel)
         if channel is None:
             channel = self._channels[arrival.channel] = self._opened(arrival.channel)
@@ -88,7 +90,7 @@ class FoxgloveServer:
             self._states[state.requirement].log(content, log_time=now or None)
 
     def close(self) -> None:
-        """Let it go."""
+        """Close the server."""
         self._server.stop()
 
     def _opened(self, channel: Channel) -> foxglove.Channel:
@@ -106,7 +108,7 @@ class FoxgloveServer:
 
 
 def message(state: State, status: Status) -> dict[str, object]:
-    """What is shown of a requirement; it fits `SCHEMA`."""
+    """The message about a requirement; it fits `SCHEMA`."""
     times = {name: getattr(state, name) for name in _TIMES}
     return {
         "requirement": state.requirement,
@@ -119,7 +121,7 @@ def message(state: State, status: Status) -> dict[str, object]:
 
 
 def opened(host: str, port: int) -> FoxgloveServer | Diagnostic:
-    """The server; or why it cannot be opened."""
+    """The server, or the diagnostic that says why it cannot be started."""
     try:
         return FoxgloveServer(host, port)
     except ImportError as error:
@@ -132,6 +134,6 @@ def opened(host: str, port: int) -> FoxgloveServer | Diagnostic:
         why = str(error).rpartition(": ")[2]
         return Diagnostic(
             Code.NOT_PUBLISHED,
-            f"no Foxglove server can be opened at {host}:{port}: {why}",
-            help="name another port: `--publish foxglove:8766`; 0 is one that is free",
+            f"no Foxglove server can be started at {host}:{port}: {why}",
+            help="name another port: `--publish foxglove:8766`; 0 picks a free one",
         )

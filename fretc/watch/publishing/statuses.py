@@ -1,4 +1,4 @@
-"""A session → what is published of it, by the levels of emitted nodes (`monitors/guard.py`)."""
+"""The statuses to publish for a session, with the levels of emitted nodes (`monitors/guard.py`)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from fretc.watch.session import Session
 from monitors.guard import OK, STALE, State, Status, status, status_of
 
 SOURCES = "sources"
-"""The name of the status of what is read."""
+"""The name of the status of the source."""
 
 
 def statuses(
@@ -16,20 +16,20 @@ def statuses(
     states: Collection[State],
     violated: Collection[str],
 ) -> list[Status]:
-    """One for what is read, and one for each requirement.
+    """A status of the source, and one for each requirement.
 
     Args:
         session: the present run.
-        states: what is known of its requirements.
+        states: the states of its requirements.
         violated: the requirements that were violated in earlier runs.
     """
     silent = {name for name, topic in session.topics.items() if not topic.count}
 
     def fault(topics: Collection[str]) -> str:
-        """Why what is read cannot be relied on; empty: nothing is wrong."""
+        """The reason why the source is not reliable; empty: it is."""
         if session.interrupted:
-            return "the source is gone"
-        return "; ".join(f"no message of {each} yet" for each in topics if each in silent)
+            return "the source is not connected"
+        return "; ".join(f"no message of {topic} yet" for topic in topics if topic in silent)
 
     wrong = fault(session.topics)
     values: dict[str, object] = {
@@ -39,8 +39,8 @@ def statuses(
     sources = status(STALE if wrong else OK, SOURCES, wrong or "all come", values)
     own = (
         status_of(
-            each, fault(session.reads[each.requirement]), violated=each.requirement in violated
+            state, fault(session.reads[state.requirement]), violated=state.requirement in violated
         )
-        for each in states
+        for state in states
     )
     return [sources, *own]

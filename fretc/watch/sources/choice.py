@@ -1,4 +1,4 @@
-"""The words of a command → the source that they name."""
+"""The source that the words of a command name."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 
 def chosen(words: Sequence[str], *, follow: bool) -> Source | Diagnostic:
-    """The source, not yet opened; or what is wrong with the words.
+    """The source, not yet opened; or a diagnostic about the words.
 
     Args:
-        words: the name of a middleware and what it needs, or the path of a log.
-        follow: whether what is still to be written to a log is waited for.
+        words: the name of a middleware and its arguments, or the path of a log.
+        follow: whether to wait for further messages of a log that is being written.
     """
     name, *more = words
     middleware = _MIDDLEWARE.get(name)
@@ -53,12 +53,12 @@ _MIDDLEWARE: Mapping[str, Callable[[Sequence[str]], Source | Diagnostic]] = {
     "dds": _dds,
     "foxglove": _foxglove,
 }
-"""Of each name what the words behind it mean."""
+"""For each name of a middleware, the parser of the words after it."""
 
 
 def _one_name_too_many(name: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
-        f"`{name}` is one name too many: a watch has one source",
-        help="watch two robots by two commands",
+        f"`{name}` is a second source: a watch has only one",
+        help="run one watch for each robot",
     )

@@ -1,8 +1,8 @@
-"""ROS 2's messages as a source, from its wire: DDS, without any ROS.
+"""Messages of ROS 2 as a source, read from DDS without ROS.
 
-Nobody is at the head of a domain of DDS: publishers come and go. Each kind of publisher of a topic
-(its type, and what it offers) has a reader of its own, which takes what publishers of this kind
-send. Times of arrival are when the message has reached this thread.
+A DDS domain has no master: publishers appear and disappear. Each kind of publisher of a topic (by
+its type and offer) has a reader of its own, which receives the messages of these publishers. The
+arrival time of a message is the time at which this thread gets it.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from monitors.guard import Status
 
 MOST_KINDS = 20
-"""Kinds of publishers of a topic; who makes more of them is not read."""
+"""The most kinds of publishers of a topic; further kinds are not read."""
 _MOST_PUBLISHERS = 10_000
-"""So many that are gone are remembered."""
+"""The most publishers that are kept after they disappeared."""
 _SOON = 3 * 10**9
-"""Nanoseconds in which a reader and a publisher find together."""
+"""Nanoseconds in which a reader and a publisher normally match."""
 _CLOCK = "/clock"
 _PERIOD = 0.5
-"""Seconds from one publication of what is known to the next."""
+"""Seconds between two publications of states."""
 _ARRAY = "diagnostic_msgs/msg/DiagnosticArray"
 _PARTS = {
     _ARRAY,
@@ -41,32 +41,32 @@ _PARTS = {
 
 
 class Dds(Middleware):
-    """The domain that `ROS_DOMAIN_ID` names."""
+    """The domain in `ROS_DOMAIN_ID`."""
 
     def __init__(self) -> None:
-        """Nothing is opened yet."""
+        """A source that is not yet open."""
         super().__init__("dds")
         self._statuses: Sequence[Status] = ()
 
     def diagnose(self, statuses: Sequence[Status]) -> None:
-        """The thread publishes them, twice a second."""
+        """Set the statuses that the thread publishes, twice a second."""
         self._statuses = statuses
 
     def _listen(self, topics: list[str]) -> bool:
-        """What comes of the topics; one that begins with no slash is a topic of DDS."""
+        """Receive messages of the topics; the name of a DDS topic has no leading slash."""
         domain = join()
         if isinstance(domain, Diagnostic):
             self._lost(domain)
             return False
         try:
-            self._opened(f"domain {domain.number} of DDS")
+            self._opened(f"DDS domain {domain.number}")
             listening = _Listening(domain, frozenset(topics), self._mailbox)
             diagnosing = _Diagnosing(domain)
             while not self._closed.is_set():
                 domain.wait(WAIT)
                 listening.look()
                 diagnosing.publish(self._statuses)
-        except Exception as error:  # what Cyclone DDS raises of what others send, it may be
+        except Exception as error:  # Cyclone DDS may raise any exception for data of others
             self._lost(_broken(error))
         finally:
             domain.close()
@@ -75,51 +75,52 @@ class Dds(Middleware):
 
 @dataclass(slots=True)
 class _Kind:
-    """Publishers of one topic that offer the same."""
+    """Publishers of one topic with the same offer."""
 
     reader: Reader | None
-    """None: they cannot be read."""
+    """None: their messages cannot be read."""
     channel: Channel
 
 
 @dataclass(slots=True)
 class _Peer:
-    """A publisher, there or gone."""
+    """A publisher, present or gone."""
 
     id: str
     topic: str
     offer: Offer
     last: int
-    """When something has come of it."""
+    """The time of its last message."""
     there: bool = True
     early: set[tuple[int | None, int]] = field(default_factory=set)
-    """What came through any reader before its own had found it: when it was sent, and its hash."""
+    """Messages that arrived through any reader before its own one matched: send time and hash."""
 
 
 class _Listening:
-    """Who publishes the topics, and what they send."""
+    """The publishers of the topics, and their messages."""
 
     def __init__(self, domain: Domain, topics: frozenset[str], mailbox: Mailbox) -> None:
         self._domain, self._topics, self._mailbox = domain, topics, mailbox
         self._kinds: dict[tuple[str, Offer], _Kind] = {}
         self._peers: dict[int, _Peer] = {}
-        """By handles; those that are gone, too: their last messages may still come."""
+        """Publishers by handle, also those that are gone, because their last messages may still
+        arrive."""
         self._lost: dict[str, int] = {}
-        """Publishers that are gone, by their ids: when something has last come of them."""
+        """Publishers that are gone, by id: the time of their last message."""
         self._unmatched: dict[int, int] = {}
-        """Publishers that their own reader has not found yet: since when."""
+        """Publishers that do not match their own reader yet: since when."""
         self._known: set[tuple[Code, str]] = set()
-        """What has been told of which topic."""
+        """The diagnostics that were reported for a topic."""
 
     def look(self) -> None:
-        """Hand on what has come since the last look."""
+        """Pass on the messages since the last call."""
         matched = self._matched()
         for kind in tuple(self._kinds.values()):
             if kind.reader is not None:
                 self._read(kind, kind.reader)
         for handle in matched:
             self._unmatched.pop(handle, None)
-        self._meet()  # who has gone has said his last before
+        self._meet()  # the last messages of a publisher come before its end
 
     def _read(self, kind: _Kind, reader: Reader) -> None:
         for sample in reader.samples():
@@ -129,15 +130,15 @@ class _Listening:
             if peer is not None:
                 own, key = self._kinds[peer.topic, peer.offer], (sample.sent, hash(sample.payload))
                 if key in peer.early and sample.sent is not None:
-                    continue  # it came through another reader, too
+                    continue  # the message came through another reader, too
                 if sample.publisher in self._unmatched:
                     peer.early.add(key)
                 elif own is not kind:
-                    continue  # its own reader takes it
+                    continue  # the publisher's own reader receives it
                 channel, peer.last = own.channel, self._mailbox.now
             self._mailbox.put(channel, sample.payload, sample.sent)
 
-    # Who is there
+    # Publishers
 
     def _meet(self) -> None:
         for publisher in self._domain.publishers():
@@ -179,7 +180,7 @@ class _Listening:
             self._mailbox.tell(Problem(_no_publisher(peer.topic)))
 
     def _open(self, topic: str, offer: Offer) -> None:
-        """A reader for publishers of a kind that is new."""
+        """Open a reader for a new kind of publishers."""
         definition = _definition(offer)
         channel = Channel(topic, "cdr", offer.type, "", b"")
         if definition is not None:
@@ -188,7 +189,12 @@ class _Listening:
             self._tell_once(topic, _no_definition(topic, offer))
         kind = self._kinds[topic, offer] = _Kind(None, channel)
         if sum(each == topic for each, _ in self._kinds) > MOST_KINDS:
-            self._tell_once(topic, _not_read(topic, f"they are of more than {MOST_KINDS} kinds"))
+            self._tell_once(
+                topic,
+                _not_read(
+                    topic, f"there are more than {MOST_KINDS} kinds of publishers of the topic"
+                ),
+            )
             return
         try:
             kind.reader = self._domain.reader(topic, offer, definition)
@@ -196,18 +202,18 @@ class _Listening:
             self._tell_once(topic, _not_read(topic, str(error)))
 
     def _matched(self) -> list[int]:
-        """Publishers that their readers have found, or do not agree with: of the type, say."""
-        found = []
+        """Publishers that match their readers, or never will, for example because of their type."""
+        handles = []
         for handle, since in self._unmatched.items():
             peer = self._peers.get(handle)
             reader = self._kinds[peer.topic, peer.offer].reader if peer is not None else None
             if peer is None or reader is None or reader.matches(handle):
-                found.append(handle)
+                handles.append(handle)
             elif self._mailbox.now - since > _SOON:
-                found.append(handle)
-                why = f"the fields or the encoding of its `{peer.offer.type}` are others"
+                handles.append(handle)
+                why = f"its `{peer.offer.type}` has other fields or another encoding"
                 self._tell_once(peer.topic, _not_read(peer.topic, why))
-        return found
+        return handles
 
     def _tell_once(self, topic: str, problem: Diagnostic) -> None:
         if (problem.code, topic) not in self._known:
@@ -216,7 +222,7 @@ class _Listening:
 
 
 class _Diagnosing:
-    """`diagnostic_msgs/DiagnosticArray` on `/diagnostics`, as a node of ROS 2 sends it."""
+    """`diagnostic_msgs/DiagnosticArray` on `/diagnostics`, as a ROS 2 node publishes it."""
 
     def __init__(self, domain: Domain) -> None:
         self._domain = domain
@@ -224,7 +230,7 @@ class _Diagnosing:
         self._last = float("-inf")
 
     def publish(self, statuses: Sequence[Status]) -> None:
-        """Twice a second, where there are any."""
+        """Publish the statuses, twice a second, if there are any."""
         if not statuses or time.monotonic() - self._last < _PERIOD:
             return
         self._last = time.monotonic()
@@ -232,52 +238,54 @@ class _Diagnosing:
             digest, definition = [*ros2_types.definitions(_ARRAY).items()][-1]
             offer = Offer(_ARRAY, digest, reliable=True)
             self._writer = self._domain.writer("/diagnostics", offer, definition)
-        with suppress(UnreadableError):  # who reads it is too slow; there will be another one
+        with suppress(UnreadableError):  # a reader is too slow; the next statuses follow soon
             self._writer.write(_array(statuses, time.time_ns()))
 
 
 def _array(statuses: Sequence[Status], now: int) -> bytes:
-    """As CDR."""
+    """The statuses as CDR."""
     store = ros2_types.latest()
     own = {name.rpartition("/")[2]: type_ for name, type_ in store.types.items() if name in _PARTS}
 
     def text(said: str) -> str:
         return said.encode(errors="replace").decode()
 
-    found = [
+    statuses_of_array = [
         own["DiagnosticStatus"](
-            level=each.level,
-            name=text(each.name),
-            message=text(each.message),
+            level=status.level,
+            name=text(status.name),
+            message=text(status.message),
             hardware_id="",
-            values=[own["KeyValue"](key=text(k), value=text(v)) for k, v in each.values],
+            values=[own["KeyValue"](key=text(k), value=text(v)) for k, v in status.values],
         )
-        for each in statuses
+        for status in statuses
     ]
     seconds, rest = divmod(now, 10**9)
     header = own["Header"](stamp=own["Time"](sec=seconds, nanosec=rest), frame_id="")
-    return bytes(store.serialize_cdr(own["DiagnosticArray"](header=header, status=found), _ARRAY))
+    return bytes(
+        store.serialize_cdr(own["DiagnosticArray"](header=header, status=statuses_of_array), _ARRAY)
+    )
 
 
 def _definition(offer: Offer) -> str | None:
-    """That of its hash; where it tells none, the only one that there is."""
-    found = ros2_types.definitions(offer.type)
+    """The definition with the publisher's hash; without a hash the only one, or None."""
+    definitions = ros2_types.definitions(offer.type)
     if offer.hash is not None:
-        return found.get(offer.hash)
-    return next(iter(found.values())) if len(found) == 1 else None
+        return definitions.get(offer.hash)
+    return next(iter(definitions.values())) if len(definitions) == 1 else None
 
 
 def _no_definition(topic: str, offer: Offer) -> Diagnostic:
-    found = ros2_types.definitions(offer.type)
-    if not found:
-        why = "is none of ROS 2's own, and DDS does not say what is in it"
+    definitions = ros2_types.definitions(offer.type)
+    if not definitions:
+        why = "is not a type of ROS 2 itself, and DDS does not send definitions"
     elif offer.hash is None:
-        why = "is not the same in all releases of ROS 2, and its publisher does not say which it is"
+        why = "differs between releases of ROS 2, and its publisher sends no type hash"
     else:
-        why = "is defined otherwise by its publisher: the type hash is another one"
+        why = "is defined differently by its publisher: the type hash differs"
     return Diagnostic(
         Code.NO_DEFINITION,
-        f"what `{topic}` sends cannot be decoded: `{offer.type}` {why}",
+        f"messages of `{topic}` cannot be decoded: `{offer.type}` {why}",
         help="watch through foxglove_bridge, which sends definitions, or follow a log of rosbag2",
     )
 
@@ -286,14 +294,14 @@ def _not_read(topic: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.PUBLISHER_NOT_READ,
         f"a publisher of `{topic}` is not read: {why}",
-        help="what it sends is not known; `fretc explain` says what it must offer",
+        help="its messages count as unknown; `fretc explain` lists what a publisher must offer",
     )
 
 
 def _no_publisher(topic: str) -> Diagnostic:
     return Diagnostic(
         Code.PUBLISHER_GONE,
-        f"nobody publishes `{topic}` any more",
+        f"`{topic}` has no publisher any more",
         help="`max_age` says for how long its last message counts",
         severity=Severity.WARNING,
     )
@@ -303,5 +311,5 @@ def _broken(error: Exception) -> Diagnostic:
     return Diagnostic(
         Code.ROBOT_NOT_REACHED,
         f"Cyclone DDS fails: {type(error).__name__}: {error}",
-        help="the domain is joined once more",
+        help="fretc joins the domain again",
     )

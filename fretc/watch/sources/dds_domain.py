@@ -1,7 +1,6 @@
-"""A domain of DDS, joined through Cyclone DDS: who publishes in it, and payloads in and out.
+"""A DDS domain, joined through Cyclone DDS: its publishers, readers and writers.
 
-Payloads are CDR as it is on the wire, with its head of four bytes. Topics and types are named as
-in ROS 2.
+Payloads are CDR as sent, with a head of four bytes. Topics and types have their names in ROS 2.
 """
 
 from __future__ import annotations
@@ -26,21 +25,22 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import install_help
 
 _HIGHEST = 232
-"""Of the numbers of domains: a higher one has no ports."""
+"""The largest domain number that has ports."""
 _SPEAKS = 7
-"""What Cyclone DDS prints by itself: fatal errors, errors and warnings."""
+"""The categories of messages that Cyclone DDS prints by itself: fatal errors, errors and
+warnings."""
 _AT_ONCE = 500
-"""Samples that are taken by one call."""
+"""The most samples of one call."""
 
 
 @dataclass(frozen=True, slots=True)
 class Publisher:
-    """A publisher that is there or, without an offer, that is there no more."""
+    """A publisher; without an offer, it is gone."""
 
     handle: int
-    """What its messages name it by."""
+    """Its identifier in messages."""
     id: str
-    """Stays the same when it is lost and found again."""
+    """An identifier that does not change when the publisher is lost and found again."""
     topic: str
     offer: Offer | None
 
@@ -51,33 +51,33 @@ class Sample:
 
     payload: bytes
     publisher: int
-    """A handle."""
+    """The handle of the publisher."""
     sent: int | None
-    """Nanoseconds, by the clock of the publisher; None: it does not say."""
+    """The send time in nanoseconds, on the clock of the publisher; None: not stated."""
 
 
 def domain_id() -> int | Diagnostic:
-    """The domain that `ROS_DOMAIN_ID` names, 0 where it names none."""
+    """The number in `ROS_DOMAIN_ID`, or 0."""
     text = os.environ.get("ROS_DOMAIN_ID", "").strip() or "0"
     if text.isascii() and text.isdigit() and len(text) < 9 and int(text) <= _HIGHEST:
         return int(text)
     return Diagnostic(
         Code.ROBOT_NOT_REACHED,
-        f"ROS_DOMAIN_ID is `{text[:40]}`, which is no number from 0 to {_HIGHEST}",
-        help="set it to that of the robot, or unset it",
+        f"ROS_DOMAIN_ID is `{text[:40]}`, which is not a number from 0 to {_HIGHEST}",
+        help="set it to the domain of the robot, or unset it",
     )
 
 
 def join() -> Domain | Diagnostic:
-    """A part of the domain that `ROS_DOMAIN_ID` names, as `CYCLONEDDS_URI` configures it."""
+    """A participant of the domain in `ROS_DOMAIN_ID`, as `CYCLONEDDS_URI` configures it."""
     try:
         import cyclonedds.domain  # noqa: F401
 
         definitions("std_msgs/msg/Header")
-    except Exception as error:  # beside the absent package, its C library may not be found
+    except Exception as error:  # the package or its C library is missing
         return Diagnostic(
             Code.MISSING_EXTRA,
-            f"DDS is watched by Cyclone DDS, which is not installed: {error}",
+            f"watching DDS needs Cyclone DDS, which is not installed: {error}",
             help=install_help("live"),
         )
     number = domain_id()
@@ -95,21 +95,21 @@ def _joined(number: int) -> Domain | Diagnostic:
     except DDSException:
         return Diagnostic(
             Code.ROBOT_NOT_REACHED,
-            f"domain {number} of DDS cannot be joined",
+            f"DDS domain {number} cannot be joined",
             help="Cyclone DDS has printed why: no network, or a mistake in CYCLONEDDS_URI",
         )
-    library.dds_set_log_mask(0)  # from here on it speaks of packets of others, without end
+    library.dds_set_log_mask(0)  # later messages would be about packets of others
     return domain
 
 
 class Domain:
-    """A participant of a domain, with nothing that is read or written yet."""
+    """A participant of a domain, without readers or writers yet."""
 
     def __init__(self, number: int) -> None:
-        """Join it.
+        """Join the domain.
 
         Raises:
-            DDSException: of Cyclone DDS; there is no network, or its configuration is wrong.
+            DDSException: from Cyclone DDS; there is no network, or the configuration is wrong.
         """
         from cyclonedds import builtin
         from cyclonedds.core import WaitSet
@@ -133,49 +133,49 @@ class Domain:
         self._wake.attach(ReadCondition(reader, anything))
 
     def close(self) -> None:
-        """Leave it; nothing of it may be used any more."""
+        """Leave the domain, which cannot be used any more."""
         for each in self._open:
             del each.entity
         self._topics.clear()
         del self._wake, self._news, self._participant
 
     def wait(self, seconds: float) -> None:
-        """Until something has come, or for so long."""
+        """Wait until data arrives, or for so long."""
         self._wake.wait(int(seconds * 1e9))
 
     def publishers(self) -> Iterator[Publisher]:
-        """Who has come, changed, or gone since the last call; this process among them."""
+        """Publishers that appeared, changed, or disappeared since the last call."""
         for _ in range(_AT_ONCE):
             try:
-                found = self._news.take()
-            except Exception:  # names of others may be no text, and each is one of its own
+                samples = self._news.take()
+            except Exception:  # names of others may be invalid text; each is separate
                 continue
-            if not found:
+            if not samples:
                 return
-            handle, id = found[0].sample_info.instance_handle, str(found[0].key)
-            if not found[0].sample_info.valid_data:
+            handle, id = samples[0].sample_info.instance_handle, str(samples[0].key)
+            if not samples[0].sample_info.valid_data:
                 yield Publisher(handle, id, "", None)
-            elif (topic := ros_topic(found[0].topic_name)) is not None:
-                yield Publisher(handle, id, topic, offered(found[0]))
+            elif (topic := ros_topic(samples[0].topic_name)) is not None:
+                yield Publisher(handle, id, topic, offered(samples[0]))
 
     def reader(self, topic: str, offer: Offer, definition: str | None) -> Reader:
-        """What reads the messages of publishers with such an offer, and of others that match.
+        """A reader for messages of publishers with such an offer, and of others that match.
 
         Args:
             topic: `/scan`.
-            offer: of a publisher.
-            definition: of the type; None: it is not known.
+            offer: the offer of a publisher.
+            definition: the definition of the type; None: unknown.
 
         Raises:
-            UnreadableError: the publisher has type information, and there is no definition that
-                could be compared with it; or the name of its type is none.
+            UnreadableError: the publisher has type information, and no definition can be compared
+                with it; or the name of its type is invalid.
         """
         from cyclonedds.core import DDSException
 
         if not is_type(offer.type):
             raise UnreadableError("its type has no name")
         if offer.described and definition is None:
-            raise UnreadableError("its type is none of ROS 2's own")
+            raise UnreadableError("its type is not a type of ROS 2")
         try:
             reader = Reader(self._participant, self._topic(topic, offer, definition), offer)
         except DDSException as error:
@@ -185,7 +185,7 @@ class Domain:
         return reader
 
     def _topic(self, name: str, offer: Offer, definition: str | None) -> Any:
-        """One for each type: Cyclone DDS does not come back where equal types are several."""
+        """The topic for a type, cached because Cyclone DDS hangs on equal types."""
         from cyclonedds.topic import Topic
 
         type_ = offer.type, definition if offer.described else None
@@ -197,15 +197,15 @@ class Domain:
         return self._topics[name, type_]
 
     def writer(self, topic: str, offer: Offer, definition: str) -> Writer:
-        """What publishes messages, so that ROS 2 and every reader with type information reads them.
+        """A writer whose messages ROS 2 and every reader with type information can read.
 
         Args:
             topic: `/diagnostics`.
-            offer: what is said of them.
-            definition: of the type.
+            offer: the offer of the writer.
+            definition: the definition of the type.
 
         Raises:
-            UnreadableError: it cannot be written.
+            UnreadableError: the type cannot be written.
         """
         from cyclonedds.core import DDSException
 
@@ -218,9 +218,9 @@ class Domain:
 
 
 class Reader:
-    """Reads a topic, and takes what comes from anybody who matches.
+    """A reader of a topic, for messages of all matching publishers.
 
-    What was lost on the wire is not known: Cyclone DDS does not count it as a lost sample.
+    Messages lost on the network are not reported: Cyclone DDS does not count them as lost samples.
     """
 
     def __init__(self, participant: Any, topic: Any, offer: Offer) -> None:
@@ -236,22 +236,22 @@ class Reader:
         self.entity: Any = DataReader(participant, topic, qos=_qos(policies))
 
     def samples(self) -> Iterator[Sample]:
-        """All that have come since the last call."""
-        while found := self.entity.take(N=_AT_ONCE):
-            for each in found:
+        """All messages since the last call."""
+        while samples_of_entity := self.entity.take(N=_AT_ONCE):
+            for each in samples_of_entity:
                 info = each.sample_info
                 if info.valid_data:
                     sent = info.source_timestamp
                     yield Sample(each.payload, info.publication_handle, sent if sent > 0 else None)
 
     def matches(self, handle: int) -> bool:
-        """Whether messages of the publisher come through."""
+        """Whether the reader receives messages of the publisher."""
         signed = ctypes.c_int64(handle).value
         return bool({handle, signed} & {*self.entity.get_matched_publications()})
 
 
 class Writer:
-    """Publishes on a topic."""
+    """A writer of messages of a topic."""
 
     def __init__(self, participant: Any, topic: Any, offer: Offer) -> None:
         from cyclonedds.pub import DataWriter
@@ -263,10 +263,10 @@ class Writer:
         self.entity: Any = DataWriter(participant, topic, qos=_qos(policies))
 
     def write(self, payload: bytes, sent: int | None = None) -> None:
-        """A message, as CDR with its head of four bytes; sent now, or at a time in nanoseconds.
+        """Write a message, as CDR with its head, sent now or at a time in nanoseconds.
 
         Raises:
-            UnreadableError: it is no message of the type.
+            UnreadableError: the payload is not a message of the type.
         """
         from cyclonedds.core import DDSException
 
@@ -279,7 +279,7 @@ class Writer:
 
     @property
     def readers(self) -> int:
-        """How many read it."""
+        """The number of its readers."""
         return len(self.entity.get_matched_subscriptions())
 
 

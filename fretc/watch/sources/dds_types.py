@@ -1,7 +1,7 @@
-"""Names, offers and types of DDS, and what they are in ROS 2.
+"""Names, offers and types of DDS, and their counterparts in ROS 2.
 
 Names are those of https://design.ros2.org/articles/topic_and_service_names.html. No type is ever
-made of untrusted type information: Cyclone DDS's Python would run the names in it as code.
+created from untrusted type information: Cyclone DDS's Python would execute the names in it as code.
 """
 
 from __future__ import annotations
@@ -20,30 +20,30 @@ _HASH = re.compile(rb"(?:^|;)typehash=(RIHS01_[0-9a-f]{64});")
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """What a publisher says of what it sends."""
+    """The properties of a publisher that it announces."""
 
     type: str
-    """`sensor_msgs/msg/LaserScan`, or the name as it is where it is none of ROS 2's."""
+    """`sensor_msgs/msg/LaserScan`, or the unchanged name of a type that is not of ROS 2."""
     hash: str | None = None
-    """`RIHS01_...`, of the definition."""
+    """The hash of the definition, `RIHS01_...`."""
     reliable: bool = False
     keeps: bool = False
-    """Whether who comes later gets the last messages (`transient_local`)."""
+    """Whether late readers get the last messages (`transient_local`)."""
     described: bool = False
-    """Whether it comes with type information, which a reader's has to agree with."""
+    """Whether it has type information, which that of a reader must match."""
 
 
 class UnreadableError(Exception):
-    """A type cannot be read or written; the text says why."""
+    """A type cannot be read or written; the text gives the reason."""
 
 
 def dds_topic(name: str) -> str:
-    """`/scan` → `rt/scan`; what has no slash before it is the name of a topic of DDS."""
+    """`/scan` → `rt/scan`; a name without a leading slash is that of a DDS topic."""
     return f"rt{name}" if name.startswith("/") else name
 
 
 def ros_topic(name: str) -> str | None:
-    """`rt/scan` → `/scan`; None: it is a topic within ROS 2, as services have them."""
+    """`rt/scan` → `/scan`; None: an internal topic of ROS 2, such as those of services."""
     if name.startswith("rt/"):
         return name[2:]
     return None if name.startswith("r") and name[2:3] == "/" else name
@@ -56,12 +56,12 @@ def ros_type(name: str) -> str:
 
 
 def is_type(name: str) -> bool:
-    """Whether a type of others has such a name that Cyclone DDS may print it."""
+    """Whether the name of a type is safe for Cyclone DDS to print."""
     return _NAME.fullmatch(name) is not None
 
 
 def _dds_type(name: str) -> str:
-    """As Cyclone's Python writes it, with `.`."""
+    """The name of the type in Cyclone's Python, with `.`."""
     parts = name.split("/")
     if len(parts) not in (2, 3):
         return name.replace("::", ".")
@@ -70,7 +70,7 @@ def _dds_type(name: str) -> str:
 
 
 def offered(endpoint: Any) -> Offer:
-    """What a publisher says, as Cyclone DDS hands it on."""
+    """The offer of a publisher, from the data of Cyclone DDS."""
     from cyclonedds.qos import Policy
 
     qos = endpoint.qos
@@ -90,11 +90,11 @@ def payloads_of(name: str, definition: str | None) -> Any:
     """A class of Cyclone DDS whose objects are payloads.
 
     Args:
-        name: of the type.
-        definition: None: it says nothing of its fields, and matches who says nothing either.
+        name: the name of the type.
+        definition: None: the class has no type information, and matches publishers without it.
 
     Raises:
-        UnreadableError: nobody can say such a definition.
+        UnreadableError: type information cannot express the definition.
     """
     fields: dict[str, Any] = {}
     if definition is not None:
@@ -130,12 +130,12 @@ def _field(field: ros.Field, types: ros.Types, made: dict[str, Any]) -> Any:
         kind = made[field.type]
     if not field.many:
         return kind
-    many: Any = idl  # its generics are made at run time
+    many: Any = idl  # its generic types exist only at run time
     return many.sequence[kind] if field.count is None else many.array[kind, field.count]
 
 
 def _payloads(struct: Any) -> Any:
-    """The class, whose objects come and go as bytes."""
+    """The class, whose objects are read and written as bytes."""
 
     def read(cls: Any, data: bytes, /, *_: object, **__: object) -> Any:
         sample = cls()

@@ -1,7 +1,7 @@
 """A Foxglove WebSocket server as a source: foxglove_bridge on a robot, or a program with the SDK.
 
-The server is not trusted: what it sends is bounded, what it must answer is waited for so long and
-no longer, and a connection on which something else is said than the protocol allows is closed.
+The server is not trusted: the size of its messages and the time for its answers are limited, and a
+connection that violates the protocol is closed.
 """
 
 from __future__ import annotations
@@ -41,31 +41,31 @@ if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
 
 PATIENCE = 5.0
-"""Seconds in which a server answers: to the connection, with its greeting, to a ping."""
+"""Seconds for a server to answer: to the connection, with its greeting, to a ping."""
 LARGEST = 2**26
-"""Bytes of a message."""
+"""The most bytes of a message."""
 MOST_CHANNELS = 256
-"""Different channels of all bound topics together."""
+"""The most different channels of all bound topics together."""
 MOST_STATUSES = 20
-"""Different words of a server that are shown."""
+"""The most different status messages of a server that are shown."""
 _PERIOD = 0.05
-"""Seconds between two looks whether the watch has ended."""
+"""Seconds between two checks whether the watch has ended."""
 _PING = 0.5
 """Seconds between two pings."""
 _WAITING = 4
-"""Frames that wait in the library."""
+"""Frames that the library may buffer."""
 _EXCERPT = 300
-"""Characters of a server's words that are shown."""
+"""Characters of a server's text that are shown."""
 _AGAIN = 0.1
-"""Seconds after which a channel is asked for again that the server did not know yet."""
+"""Seconds after which the client subscribes again to a channel that the server did not know yet."""
 _MOST_TRIES = 6
-"""Times that it is; each pause is twice the one before."""
+"""The most such attempts; each pause is twice the one before."""
 _TOO_BIG = 1009
-"""The code with which a connection is closed on which too large a message has come."""
+"""The code of a connection that was closed because of a too large message."""
 
 
 class _GoneError(Exception):
-    """The connection is of no use any more; the message says why."""
+    """The connection cannot be used any more; the message gives the reason."""
 
 
 @dataclass(slots=True)
@@ -77,60 +77,60 @@ class _Connection:
     opened: float = field(default_factory=time.monotonic)
     subscriptions: dict[int, Channel] = field(default_factory=dict)
     of_channel: dict[int, int] = field(default_factory=dict)
-    """Of each id of the server the subscription."""
+    """The subscription for each channel id of the server."""
     count: int = 0
-    """Of all subscriptions so far."""
+    """The number of all subscriptions so far."""
     heard: set[int] = field(default_factory=set)
-    """Subscriptions of which a message has come."""
+    """Subscriptions with at least one message."""
     subscribed_at: float = 0.0
-    """When the last channel was asked for, by the monotonic clock."""
+    """The time of the last subscription, on the monotonic clock."""
     tries: dict[int, int] = field(default_factory=dict)
-    """Of ids of the server how often they were asked for again."""
+    """For ids of the server, the number of further attempts."""
     again: dict[int, float] = field(default_factory=dict)
-    """When that is to be done."""
+    """The times of further attempts."""
     answer: Flag | None = None
-    """Set when the server has answered to the last ping; None: it has."""
+    """Set when the server has answered to the last ping; None: no ping is pending."""
     asked: int = 0
-    """The receive time at which that was sent."""
+    """The receive time of the last ping."""
     asked_at: float = 0.0
-    """The same by the monotonic clock, in seconds."""
+    """The time of the last ping on the monotonic clock, in seconds."""
 
     def ping(self, now: int) -> None:
-        """Ask the server for an answer to everything that was sent to it."""
+        """Ask the server for an answer, which comes after everything that was sent before."""
         self.answer, self.asked, self.asked_at = self.socket.ping(), now, time.monotonic()
 
     def subscribe(self, id: int, now: int) -> None:
-        """Ask for a channel, by the id of the server."""
+        """Subscribe to a channel, by the id of the server."""
         self.socket.send(subscribe(self.of_channel[id], id))
         self.subscribed_at = time.monotonic()
         self.ping(now)
 
     def is_unknown_yet(self, text: str) -> bool:
-        """Whether the server complains of a channel that it has advertised itself.
+        """Whether the server rejects a channel that it has advertised itself.
 
-        The SDK advertises a channel a little before it takes subscriptions to it. So it is asked
-        for again, by the same number: where there is a subscription, that changes nothing.
+        The SDK advertises a channel a little before it accepts subscriptions to it. So the client
+        subscribes again, by the same number: if the subscription exists, that changes nothing.
         """
         ids = {int(word) for word in re.findall(r"\d{1,10}", text)} & self.of_channel.keys()
         new = {id for id in ids if self.of_channel[id] not in self.heard}
-        found = {id for id in new if self.tries.get(id, 0) < _MOST_TRIES}
-        for id in found - self.again.keys():
+        unknown_ids = {id for id in new if self.tries.get(id, 0) < _MOST_TRIES}
+        for id in unknown_ids - self.again.keys():
             pause = _AGAIN * 2 ** self.tries.get(id, 0)
             self.tries[id] = self.tries.get(id, 0) + 1
             self.again[id] = time.monotonic() + pause
-        return bool(found)
+        return bool(unknown_ids)
 
     @property
     def subscribed(self) -> set[str]:
-        """The topics that it sends."""
+        """The subscribed topics."""
         return {channel.topic for channel in self.subscriptions.values()}
 
 
 class Foxglove(Middleware):
-    """One server."""
+    """A source for one server."""
 
     def __init__(self, url: SplitResult) -> None:
-        """Nothing is opened yet; `url` is one of `address`."""
+        """A source that is not yet open; `url` is from `address`."""
         self._host = url.hostname or ""
         self._port = url.port or (443 if url.scheme == "wss" else 80)
         host = f"[{self._host}]" if ":" in self._host else self._host
@@ -138,7 +138,7 @@ class Foxglove(Middleware):
         self._url = url.geturl()
         self._channels: dict[Channel, Channel] = {}
         self._topics: set[str] = set()
-        """Those that the server has had."""
+        """Topics that the server has advertised."""
         self._warnings: set[Diagnostic] = set()
         self._statuses = 0
 
@@ -174,7 +174,7 @@ class Foxglove(Middleware):
         return connection is not None and bool(connection.heard)
 
     def _socket(self) -> socket.socket:
-        """A connection that breaks off, too, where the server takes nothing any more."""
+        """Open a connection; it is also lost if the server does not accept data."""
         plain = socket.create_connection((self._host, self._port), PATIENCE)
         plain.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, int(1000 * PATIENCE))
         return plain
@@ -182,14 +182,14 @@ class Foxglove(Middleware):
     # One connection
 
     def _converse(self, connection: _Connection) -> None:
-        """Take what comes, until the watch ends.
+        """Receive messages until the watch ends.
 
         Raises:
             _GoneError, OSError, WebSocketException: the server is of no use any more.
-            SchemaError: it speaks another protocol.
+            SchemaError: it uses another protocol.
         """
         if connection.socket.subprotocol is None:
-            raise _GoneError("it does not speak Foxglove's protocol")
+            raise _GoneError("it does not use the Foxglove protocol")
         greeting = read(connection.socket.recv(timeout=PATIENCE), connection.topics)
         if not isinstance(greeting, Greeting):
             raise _GoneError("it does not begin with `serverInfo`")
@@ -202,12 +202,12 @@ class Foxglove(Middleware):
                 message = connection.socket.recv(timeout=_PERIOD)
             except TimeoutError:
                 continue
-            found = read(message, connection.topics)
-            if found is not None:
-                self._take(connection, found)
+            item = read(message, connection.topics)
+            if item is not None:
+                self._take(connection, item)
 
     def _look(self, connection: _Connection) -> None:
-        """Whether the server answers, and has all that it has had before."""
+        """Check that the server answers, and still offers all its earlier topics."""
         now = time.monotonic()
         for id in [id for id, due in connection.again.items() if due <= now]:
             del connection.again[id]
@@ -247,7 +247,7 @@ class Foxglove(Middleware):
             case ServerTime():
                 self._warn_once(simulated_time())
             case Greeting():
-                pass  # a new session: its channels are advertised anew
+                pass  # a new session advertises its channels again
             case _:
                 assert_never(message)
 
@@ -286,7 +286,7 @@ class Foxglove(Middleware):
             self._warn_once(_withdrawn(topic))
 
     def _repeat(self, text: str) -> None:
-        """The server's own words."""
+        """Report a status message of the server."""
         problem = _status(text[:_EXCERPT])
         if problem not in self._warnings:
             self._statuses += 1
@@ -299,36 +299,36 @@ class Foxglove(Middleware):
             self._warn(problem)
 
 
-_TRUST = "SSL_CERT_FILE names the file with the authority that has signed it"
+_TRUST = "set SSL_CERT_FILE to the file with the authority that signed it"
 
 
 def _reason(error: Exception) -> tuple[str, str | None]:
-    """Why a connection has ended, in words, and what to do where that is not the usual."""
+    """Why a connection has ended, and a special remedy, if there is one."""
     from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
 
     match error:
         case SSLCertVerificationError():
             return f"its certificate is not trusted: {error.verify_message}", _TRUST
         case SSLError():
-            return "it does not speak TLS", "write `ws://` in place of `wss://`"
+            return "it does not use TLS", "write `ws://` in place of `wss://`"
         case TimeoutError():
             return f"it has not answered within {PATIENCE:g} s", None
         case OSError():
             return error.strerror or str(error), None
         case SchemaError():
-            return f"it sends what is not of the protocol: {str(error)[:_EXCERPT]}", None
+            return f"it violates the protocol: {str(error)[:_EXCERPT]}", None
         case InvalidStatus():
             status = f"HTTP status {error.response.status_code}"
-            return f"{status}: does it speak Foxglove's protocol, at this address?", None
+            return f"{status}: check that a Foxglove server is at this address", None
         case InvalidHandshake() | EOFError():
-            return "it is no WebSocket server, or speaks another protocol than Foxglove's", None
+            return "it is not a WebSocket server with the Foxglove protocol", None
         case ConnectionClosed(sent=sent) if sent is not None and sent.code == _TOO_BIG:
             return f"it has sent a message of more than {LARGEST >> 20} MiB", None
         case ConnectionClosed(rcvd=rcvd) if rcvd is not None:
             why = f": {rcvd.reason[:_EXCERPT]}" if rcvd.reason else ""
             return f"it has closed the connection{why}", None
         case ConnectionClosed():
-            return "the connection has broken off", None
+            return "the connection was lost", None
         case _:
             return str(error)[:_EXCERPT], None
 
@@ -336,7 +336,7 @@ def _reason(error: Exception) -> tuple[str, str | None]:
 def _no_websockets(why: str) -> Diagnostic:
     return Diagnostic(
         Code.MISSING_EXTRA,
-        f"a Foxglove server is watched by `websockets`, which cannot be imported: {why}",
+        f"watching a Foxglove server needs `websockets`, which cannot be imported: {why}",
         help=install_help("live"),
     )
 
@@ -353,18 +353,18 @@ def _several_channels(topic: str) -> Diagnostic:
     return Diagnostic(
         Code.SEVERAL_PUBLISHERS,
         f"the server has several channels of `{topic}`",
-        help="each message counts, of whichever channel; end what should not publish",
+        help="messages of all channels count; stop the nodes that should not publish",
         severity=Severity.WARNING,
     )
 
 
 def _too_many_channels(most: int) -> Diagnostic:
-    """The server makes new ones without end."""
+    """The server keeps creating channels."""
     return Diagnostic(
         Code.CHANNEL_REFUSED,
-        f"the server has had {most} different channels of the topics that are bound: no more are "
+        f"the server has had {most} different channels of the bound topics: no further ones are "
         "watched",
-        help="does it change the types of its topics again and again?",
+        help="check whether the server keeps changing the types of its topics",
     )
 
 
@@ -372,16 +372,16 @@ def _unreadable_channel(topic: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.CHANNEL_REFUSED,
         f"a channel of `{topic}` cannot be watched: {why}",
-        help="what reads the topic is unknown; look at what the server advertises",
+        help="propositions that read the topic are unknown; check what the server advertises",
     )
 
 
 def _withdrawn(topic: str) -> Diagnostic:
-    """A warning, since what has stopped sends nothing."""
+    """A warning, because the topic has no messages any more."""
     return Diagnostic(
         Code.CHANNEL_REFUSED,
-        f"the server has withdrawn `{topic}`",
-        help="it is watched again when the server has it again; does its node still run?",
+        f"the server no longer offers `{topic}`",
+        help="it is watched again when the server offers it again; check that its node runs",
         severity=Severity.WARNING,
     )
 
@@ -389,17 +389,17 @@ def _withdrawn(topic: str) -> Diagnostic:
 def _status(text: str) -> Diagnostic:
     return Diagnostic(
         Code.SERVER_STATUS,
-        f"the server says: {text}",
-        help="look at the server's own log",
+        f"the server reports: {text}",
+        help="see the log of the server",
         severity=Severity.WARNING,
     )
 
 
 def _more_statuses(most: int) -> Diagnostic:
-    """The rest is not shown."""
+    """Further status messages are not shown."""
     return Diagnostic(
         Code.SERVER_STATUS,
-        f"the server says more than {most} different things; the rest is not shown",
-        help="look at the server's own log",
+        f"the server has reported more than {most} different texts; further ones are not shown",
+        help="see the log of the server",
         severity=Severity.WARNING,
     )

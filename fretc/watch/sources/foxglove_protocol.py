@@ -1,7 +1,7 @@
-"""What a Foxglove WebSocket server and its client say to each other.
+"""The messages between a Foxglove WebSocket server and its client.
 
-An untrusted server is read strictly: what is not of the protocol is an error, what is newer than
-this module is ignored.
+An untrusted server is read strictly: a violation of the protocol is an error, and unknown newer
+messages are ignored.
 
 Source: https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md
 """
@@ -22,9 +22,9 @@ from fretc.watch.sources.source import Channel
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
-"""The names of the protocol, which is the same: of the SDK, and of servers before it."""
+"""The names of the protocol: of the SDK, and of older servers."""
 LARGEST_SCHEMA = 2**20
-"""Characters of a definition of a type."""
+"""The most characters of a type definition."""
 _DATA_HEAD = struct.Struct("<xIQ")
 _SCHEMA_ENCODINGS: Mapping[str, str] = {
     "cdr": "ros2msg",
@@ -33,7 +33,7 @@ _SCHEMA_ENCODINGS: Mapping[str, str] = {
     "protobuf": "protobuf",
     "flatbuffer": "flatbuffer",
 }
-"""Of each encoding of messages that of its schema, where a server does not say."""
+"""For each encoding of messages, the encoding of its schema, unless the server states one."""
 _BINARY = ("protobuf", "flatbuffer")
 """Encodings of schemas that are bytes, which a server sends as base64."""
 
@@ -45,31 +45,31 @@ class Greeting:
 
 @dataclass(frozen=True, slots=True)
 class Advertised:
-    """A channel that the server has."""
+    """A channel that the server offers."""
 
     id: int
     topic: str
     channel: Channel | str
-    """Or why it cannot be read."""
+    """The channel, or the reason why it cannot be read."""
 
 
 @dataclass(frozen=True, slots=True)
 class Advertisement:
-    """Channels of the topics that are wanted."""
+    """Channels of the wanted topics."""
 
     channels: tuple[Advertised, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Withdrawal:
-    """Channels that the server has no more."""
+    """Channels that the server no longer offers."""
 
     ids: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """Words for people."""
+    """A status message of the server, for people."""
 
     is_grave: bool
     text: str
@@ -81,23 +81,23 @@ class Data:
 
     subscription: int
     time: int
-    """When the server received it, in nanoseconds of its clock."""
+    """The receive time at the server, in nanoseconds of its clock."""
     payload: bytes
 
 
 @dataclass(frozen=True, slots=True)
 class ServerTime:
-    """The server sets the time."""
+    """The time of the server, which sets the clock."""
 
 
 Message = Greeting | Advertisement | Withdrawal | Status | Data | ServerTime
 
 
 def read(message: str | bytes, topics: Collection[str]) -> Message | None:
-    """One message of a server; None: nothing that concerns these topics.
+    """One message of a server; None: it does not concern these topics.
 
     Raises:
-        SchemaError: it is not of the protocol.
+        SchemaError: the message violates the protocol.
     """
     return _text(message, topics) if isinstance(message, str) else _binary(message)
 
@@ -108,7 +108,7 @@ def _binary(message: bytes) -> Message | None:
             raise SchemaError("a binary message is empty")
         case b"\x01":
             if len(message) < _DATA_HEAD.size:
-                raise SchemaError("a message of a channel breaks off")
+                raise SchemaError("a message of a channel is truncated")
             subscription, time = _DATA_HEAD.unpack_from(message)
             return Data(subscription, time, message[_DATA_HEAD.size :])
         case b"\x02":
@@ -124,9 +124,9 @@ def _text(message: str, topics: Collection[str]) -> Message | None:
             return Greeting()
         case "advertise":
             items = shape.field("channels").items()
-            return Advertisement(tuple(_advertised(each) for each in items if _is_in(each, topics)))
+            return Advertisement(tuple(_advertised(item) for item in items if _is_in(item, topics)))
         case "unadvertise":
-            return Withdrawal(tuple(each.count() for each in shape.field("channelIds").items()))
+            return Withdrawal(tuple(item.count() for item in shape.field("channelIds").items()))
         case "status":
             return Status(shape.field("level").count() > 0, shape.field("message").text())
         case _:
@@ -159,7 +159,7 @@ def _advertised(shape: JsonValue) -> Advertised:
 
 
 def subscribe(subscription: int, channel: int) -> str:
-    """The message that asks for a channel by a number of the client's."""
+    """The message that subscribes to a channel by a number of the client's."""
     wanted = [{"id": subscription, "channelId": channel}]
     return json.dumps({"op": "subscribe", "subscriptions": wanted})
 
@@ -170,7 +170,7 @@ def unsubscribe(subscription: int) -> str:
 
 
 def address(url: str) -> SplitResult | Diagnostic:
-    """The parts of the URL of a server, or what is wrong with it."""
+    """The parts of the URL of a server, or a diagnostic about it."""
     try:
         parts = urlsplit(url)
         is_named = parts.scheme in ("ws", "wss") and parts.hostname and parts.port != 0
@@ -183,6 +183,6 @@ def address(url: str) -> SplitResult | Diagnostic:
 def _no_url(text: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
-        f"`{text}` is no URL of a Foxglove server" if text else "no Foxglove server is named",
-        help="write `ws://HOST:PORT`, or `wss://HOST:PORT`; foxglove_bridge has port 8765",
+        f"`{text}` is not the URL of a Foxglove server" if text else "no Foxglove server is named",
+        help="write `ws://HOST:PORT`, or `wss://HOST:PORT`; foxglove_bridge uses port 8765",
     )

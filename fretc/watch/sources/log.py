@@ -1,7 +1,8 @@
-"""An MCAP log as a source: what has been written so far and, where it is followed, what is added.
+"""An MCAP log as a source: the messages written so far and, if it is followed, further ones.
 
-A record whose end is not there yet is waited for. A recorder writes when it likes, so no clock says
-that nothing older comes: a tick is judged when a later message has been recorded.
+An incomplete record at the end is read when it is complete. A recorder writes at any time, so no
+clock shows that earlier messages are complete: a tick is judged when a later message has been
+recorded.
 """
 
 from __future__ import annotations
@@ -26,18 +27,18 @@ from fretish.diagnostics.source import Source as Text
 from fretish.diagnostics.source import Span
 
 _WAIT = 0.05
-"""Seconds between two looks at a file that has not grown."""
+"""Seconds between two checks of a file that has not grown."""
 _KNOWN = 256
-"""Bytes before the place of reading that are looked at again."""
+"""Bytes before the reading position that are compared again."""
 _MOST = 2**16
-"""Channels of a log; what declares more is damaged."""
+"""The most channels of a log; a log with more is damaged."""
 
 
 class Log:
     """One file, read from its beginning."""
 
     def __init__(self, path: str, *, follow: bool) -> None:
-        """Nothing is opened yet; `follow` waits for what is still to be written."""
+        """A source that is not yet open; with `follow` it waits for further messages."""
         self.name = name_of(path)
         self._path = path
         self._follow = follow
@@ -47,10 +48,10 @@ class Log:
         self._wanted: frozenset[str] = frozenset()
         self._latest = 0
         self._before = b""
-        """The last bytes that were read: a file that is written over has others there."""
+        """The last bytes that were read, to detect a file that was overwritten."""
 
     def close(self) -> None:
-        """Look no further."""
+        """Stop reading."""
         self._closed.set()
 
     def arrivals(self, topics: Collection[str]) -> Iterator[Arrival | Event | Idle]:
@@ -95,20 +96,20 @@ class Log:
     def _whole(
         self, stream: BinaryIO, at: int, length: int, place: Span
     ) -> Generator[Event | Idle, None, bytes | None]:
-        """So many bytes, once they are there."""
+        """So many bytes, once they have been written."""
         while True:
             # a stream would give again what it has in its buffer, whatever the file has now
             file, size = stream.fileno(), len(self._before)
-            known = os.pread(file, size, at - size)
+            bytes_before = os.pread(file, size, at - size)
             file_size = os.fstat(file).st_size
             is_there = file_size >= at + length
             data = os.pread(file, length, at) if is_there else b""
-            if known == self._before and len(data) == length:
-                self._before = (known + data[-_KNOWN:])[-_KNOWN:]
+            if bytes_before == self._before and len(data) == length:
+                self._before = (bytes_before + data[-_KNOWN:])[-_KNOWN:]
                 return data
             changed = self._changed(stream, at)
-            if changed is None and len(known) == size and known != self._before:
-                changed = "another log has been written over it"
+            if changed is None and len(bytes_before) == size and bytes_before != self._before:
+                changed = "another log was written over it"
             if changed is not None:
                 yield Problem(_broken(at, changed, place))
                 return None
@@ -122,7 +123,7 @@ class Log:
             self._closed.wait(_WAIT)
 
     def _changed(self, stream: BinaryIO, at: int) -> str | None:
-        """Whether it is not the file any more that was being read."""
+        """Whether the file is not the one that was being read."""
         own = os.fstat(stream.fileno())
         if own.st_size < at:
             return "it has become shorter than what was read of it"
@@ -150,17 +151,17 @@ class Log:
             yield Missed(self._latest, self._latest, 1)
 
     def _chunk(self, chunk: Chunk, at: int, place: Span) -> Iterator[Arrival | Event]:
-        found: list[Arrival] = []
+        arrivals: list[Arrival] = []
         try:
             data = unpacked(chunk)
             for opcode, start, end in frames(data):
                 arrival = self._single(opcode, data[start:end])
                 if arrival is not None:
-                    found.append(arrival)
+                    arrivals.append(arrival)
         except BrokenError as error:
             yield Problem(_broken(at, str(error), place))
             yield Missed(chunk.message_start_time, chunk.message_end_time, 1)
-        yield from sorted(found, key=_log_time)
+        yield from sorted(arrivals, key=_log_time)
 
     def _single(self, opcode: int, content: bytes) -> Arrival | None:
         match opcode:
@@ -206,7 +207,7 @@ def _log_time(arrival: Arrival) -> int:
 def _broken(at: int, why: str, place: Span) -> Diagnostic:
     return Diagnostic(
         Code.UNREADABLE_LOG,
-        f"the log cannot be read on from byte {at}: {why}",
+        f"the log cannot be read from byte {at} on: {why}",
         place,
-        "audit what there is of it with `fretc audit`",
+        "audit the part before it with `fretc audit`",
     )

@@ -1,7 +1,7 @@
-"""Between the thread of a middleware and the watch: a queue with an end to its memory.
+"""A queue of limited size between the thread of a middleware and the watch.
 
-What does not fit is dropped and counted, never in silence: the watch gets `Missed` at the place in
-the order at which messages are missing. Times are nanoseconds.
+Messages that do not fit are dropped and counted: the watch gets `Missed` at the position of the
+missing messages. Times are nanoseconds.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from threading import Condition
 from fretc.watch.sources.source import Arrival, Channel, Event, Idle, Missed
 
 MOST = 20_000
-"""Messages that wait at once."""
+"""The most messages in the queue."""
 MOST_BYTES = 2**28
-"""Their payloads together."""
+"""The most bytes of their payloads together."""
 WAIT = 0.05
-"""Seconds after which a reader learns that nothing has come."""
+"""Seconds after which a reader gets `Idle`."""
 
 
 class Mailbox:
-    """Takes messages from any thread, gives them to one reader, in the order of their arrival."""
+    """A queue from any threads to one reader, in the order of arrival."""
 
     def __init__(self, most: int = MOST, most_bytes: int = MOST_BYTES) -> None:
         self._most, self._most_bytes = most, most_bytes
@@ -34,11 +34,11 @@ class Mailbox:
 
     @property
     def now(self) -> int:
-        """The receive time: the wall clock of the beginning, and from there on never set back."""
+        """The receive time: the wall clock at the start, continued by a monotonic clock."""
         return self._offset + time.monotonic_ns()
 
     def put(self, channel: Channel, payload: bytes, publish_time: int | None = None) -> int:
-        """One message, sent at `publish_time` if that is known; the receive time, which is now."""
+        """Add a message, sent at `publish_time` if known; its receive time is now."""
         with self._change:
             now = self.now
             if len(self._waiting) >= self._most or self._bytes + len(payload) > self._most_bytes:
@@ -53,7 +53,7 @@ class Mailbox:
             return now
 
     def tell(self, event: Event) -> None:
-        """An event, behind the messages that have come before it; it always fits."""
+        """Add an event after all messages before it; an event always fits."""
         with self._change:
             self._tell_missed()
             self._waiting.append(event)
@@ -74,7 +74,7 @@ class Mailbox:
             return first
 
     def close(self) -> None:
-        """Nothing comes any more; what waits can still be taken."""
+        """Close the queue; remaining messages can still be taken."""
         with self._change:
             self._closed = True
             self._change.notify()

@@ -1,6 +1,7 @@
-"""What every middleware that can go away has in common: it is sought again, ever less often.
+"""The common part of middlewares: reconnection with growing pauses.
 
-It runs in a thread of its own. What was sent while it was away is lost, and nobody knows how much.
+It runs in a thread of its own. Messages sent while it is not connected are lost, and their number
+is unknown.
 """
 
 from __future__ import annotations
@@ -24,30 +25,31 @@ from fretc.watch.sources.source import (
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 _FIRST_PAUSE, _LONGEST_PAUSE = 0.5, 8.0
-"""Seconds before it is sought again; each pause is twice the one before."""
+"""Seconds before the next connection; each pause is twice the one before."""
 _LAST = 2.0
 """Seconds that the end of a watch waits for the thread."""
 
 
 class Middleware(ABC):
-    """A source that is there, gone, and there again."""
+    """A source that can be lost and reconnected."""
 
     def __init__(self, name: str) -> None:
-        """Nothing is opened yet."""
+        """A source that is not yet open."""
         self.name = name
         self._mailbox = Mailbox()
         self._closed = Flag()
         self._alive: int | None = None
-        """What was sent before this receive time has come; None: it was never there."""
+        """The receive time before which all sent messages have arrived; None: it was never
+        connected."""
         self._is_lost = False
 
     def close(self) -> None:
-        """Let it go."""
+        """Close the source."""
         self._closed.set()
         self._mailbox.close()
 
     def arrivals(self, topics: Collection[str]) -> Iterator[Arrival | Event | Idle]:
-        """What the thread hands on."""
+        """The messages and events from the thread."""
         thread = Thread(target=self._run, args=(sorted(topics),), daemon=True)
         thread.start()
         try:
@@ -59,7 +61,7 @@ class Middleware(ABC):
 
     @abstractmethod
     def _listen(self, topics: list[str]) -> bool:
-        """Hand on what comes, until it is gone; whether it was of any use."""
+        """Receive messages until the connection is lost; whether the connection was useful."""
 
     def _run(self, topics: list[str]) -> None:
         pause = _FIRST_PAUSE
@@ -73,10 +75,10 @@ class Middleware(ABC):
         finally:
             self._mailbox.close()
 
-    # What the thread says
+    # Events of the thread
 
     def _opened(self, name: str) -> None:
-        """It is there, and everything that is sent from now on comes."""
+        """Record a connection: everything that is sent from now on arrives."""
         now = self._mailbox.now
         if self._alive is None:
             self._mailbox.tell(Opened(name))
@@ -85,7 +87,7 @@ class Middleware(ABC):
         self._alive, self._is_lost = now, False
 
     def _is_alive(self, now: int) -> None:
-        """Everything that was sent before this receive time has come."""
+        """Record that everything sent before this receive time has arrived."""
         if self._alive is not None and not self._is_lost:
             self._alive = max(self._alive, now)
 
@@ -96,7 +98,7 @@ class Middleware(ABC):
         self._mailbox.tell(Problem(problem))
 
     def _lost(self, problem: Diagnostic) -> None:
-        """It is gone; said once. What was never there is an error, and the end."""
+        """Report a lost connection, once; without any connection before, as an error at the end."""
         if self._is_lost or self._closed.is_set():
             return
         self._is_lost = True
@@ -107,21 +109,21 @@ class Middleware(ABC):
 
 
 def several_publishers(topic: str, count: int, names: Collection[str] = ()) -> Diagnostic:
-    """F956; with the names of the nodes, where the middleware tells them."""
+    """F956, with the names of the nodes, if the middleware reports them."""
     who = f": {', '.join(names)}" if names else ""
     return Diagnostic(
         Code.SEVERAL_PUBLISHERS,
         f"{count} nodes publish `{topic}`{who}",
-        help="each message counts, no matter who sent it; end what should not publish",
+        help="messages of all publishers count; stop the nodes that should not publish",
         severity=Severity.WARNING,
     )
 
 
 def simulated_time() -> Diagnostic:
-    """F957: durations are wrong where it does not run as real time does."""
+    """F957: durations are wrong if the simulation does not run in real time."""
     return Diagnostic(
         Code.SIMULATED_TIME,
-        "the robot's time is simulated, and the times of arrival are those of this machine",
+        "the robot uses simulated time, but arrival times are measured by this machine",
         help='set `time = "header.stamp"` under `[clock]`, unless the simulation runs in real time',
         severity=Severity.WARNING,
     )

@@ -1,7 +1,7 @@
-"""ROS 1 as a source: its messages as bytes, through a node under the Python that knows rospy.
+"""Messages of ROS 1 as bytes, through a node under the Python that has rospy.
 
-Times of arrival are when the message has reached this process. Where the master ends, so does the
-node, for a new master does not know it; until there is one again, everything may be lost.
+The arrival time of a message is the time at which this process gets it. The node ends with the
+master, because a new master does not know it; until there is a new one, all messages may be lost.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.guard import Status
 
 PYTHON = "/usr/bin/python3"
-"""Debian's and Ubuntu's, for which ROS is packaged."""
+"""The Python of Debian and Ubuntu, for which ROS is packaged."""
 
 
 class Ros1(Middleware):
-    """The graph of the master that `ROS_MASTER_URI` names."""
+    """The graph of the master in `ROS_MASTER_URI`."""
 
     def __init__(self, python: str = PYTHON) -> None:
-        """Nothing is opened yet; `python` is the program that knows rospy."""
+        """A source that is not yet open; `python` is a Python with rospy."""
         super().__init__("ros1")
         self._python = python
         self._lock = Lock()
@@ -36,12 +36,12 @@ class Ros1(Middleware):
         self._several: set[str] = set()
         self._simulated = False
         self._statuses: Sequence[Status] | None = None
-        """What is to be published; None: nothing ever is."""
+        """The statuses to publish; None: nothing is ever published."""
         self._is_mute = False
         """Whether the node cannot publish."""
 
     def diagnose(self, statuses: Sequence[Status]) -> None:
-        """Hand them on with the next sign of life of the node, which comes twice a second."""
+        """Publish the statuses with the next heartbeat of the node, twice a second."""
         self._statuses = statuses
 
     @property
@@ -56,7 +56,7 @@ class Ros1(Middleware):
                 self._node.kill()
 
     def _listen(self, topics: list[str]) -> bool:
-        """One life of the node; whether it has found a master."""
+        """Run the node until it ends; whether it has found a master."""
         try:
             node = self._start()
         except OSError as error:
@@ -81,12 +81,12 @@ class Ros1(Middleware):
                 finally:
                     node.kill()
         except OSError:
-            pass  # its pipe broke: it has ended
+            pass  # its pipe is broken: the node has ended
         self._lost(_node_ended())
         return opened
 
     def _start(self) -> subprocess.Popen[bytes] | None:
-        """The node, unless the source was closed meanwhile."""
+        """Start the node, unless the source was closed meanwhile."""
         with self._lock:
             if self._closed.is_set():
                 return None
@@ -144,7 +144,7 @@ def _write(stream: IO[bytes], content: object) -> None:
 
 
 def _frames(stream: IO[bytes]) -> Iterator[tuple[dict[str, Any], bytes]]:
-    """All that are whole."""
+    """All complete frames."""
     lengths = ros1_bridge.LENGTHS
     while len(start := stream.read(lengths.size)) == lengths.size:
         of_head, of_payload = lengths.unpack(start)
@@ -157,7 +157,7 @@ def _frames(stream: IO[bytes]) -> Iterator[tuple[dict[str, Any], bytes]]:
 def _no_rospy(python: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.MISSING_EXTRA,
-        f"ROS 1 is watched by rospy, which `{python}` does not have: {why}",
+        f"watching ROS 1 needs rospy, which `{python}` does not have: {why}",
         help="apt install python3-rospy",
     )
 
@@ -181,6 +181,6 @@ def _no_master(uri: str) -> Diagnostic:
 def _node_ended() -> Diagnostic:
     return Diagnostic(
         Code.ROBOT_NOT_REACHED,
-        "the node that hands messages on has ended",
-        help="is there a name for this machine in /etc/hosts?",
+        "the node that forwards messages has exited",
+        help="check that /etc/hosts has a name for this machine",
     )

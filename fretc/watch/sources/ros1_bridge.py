@@ -98,7 +98,7 @@ def _connect(master: Any, subscribers: dict[str, Any]) -> None:
     """Wait for all who publish already; one of them may be dead, so not for ever."""
     try:
         publishers = dict(master.getSystemState()[0])
-    except Exception:  # it is gone, which the next look at it tells
+    except Exception:  # the master is gone, which the next check reports
         return
     end = time.monotonic() + _CONNECTING
     for topic, subscriber in subscribers.items():
@@ -114,7 +114,7 @@ def _watch_master(master: Any, pid: int, frames: _Frames, topics: list[str]) -> 
     while _pid(master) == pid:
         try:
             publishers = dict(master.getSystemState()[0])
-        except Exception:  # it is gone, and what is raised depends on how
+        except Exception:  # the master is gone; the exception depends on the cause
             break
         nodes = {topic: sorted(publishers.get(topic, ())) for topic in topics}
         frames.send({"kind": "alive", "publishers": nodes})
@@ -181,4 +181,4 @@ if __name__ == "__main__":
     try:
         _main()
     finally:
-        os._exit(0)  # rospy's threads would go on
+        os._exit(0)  # rospy's threads would continue

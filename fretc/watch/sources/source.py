@@ -1,7 +1,7 @@
-"""What every source of messages gives: arrivals and events, in the order of their arrival.
+"""The interface of sources: messages and events, in the order of their arrival.
 
-A message is handed on as it came, as bytes with the definition of its type: a recording holds these
-very bytes, and the watch decodes them as an audit of the recording does. Times are nanoseconds.
+A message is passed on as bytes with the definition of its type: a recording holds these bytes, and
+the watch decodes them as an audit of the recording does. Times are nanoseconds.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from monitors.guard import Status
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """A topic and how its messages are written, in the words of MCAP.
+    """A topic and the encoding of its messages, in the terms of MCAP.
 
     Equal channels are one channel of a recording. A topic whose type changes has several.
     """
 
     topic: str
-    """As the bindings call it: `/scan`."""
+    """The name in the bindings: `/scan`."""
     message_encoding: str
     """`cdr`, `ros1`, `json`, `protobuf`."""
     schema_name: str
-    """`sensor_msgs/msg/LaserScan`; nothing where there is no schema."""
+    """`sensor_msgs/msg/LaserScan`; empty: there is no schema."""
     schema_encoding: str
     """`ros2msg`, `ros1msg`, `jsonschema`, `protobuf`."""
     schema: bytes
-    """The definition, with those of all types that it names."""
+    """The definition, with those of all types that it uses."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,14 +40,14 @@ class Arrival:
     channel: Channel
     payload: bytes
     log_time: int
-    """When it was received. From one arrival of a middleware to the next it never decreases."""
+    """The receive time. It never decreases between arrivals of a middleware."""
     publish_time: int
-    """When it was sent, where the middleware tells; else `log_time`, as MCAP has it."""
+    """The send time, if the middleware states it; else `log_time`, as in MCAP."""
 
 
 @dataclass(frozen=True, slots=True)
 class Opened:
-    """The source is there."""
+    """The source is connected."""
 
     name: str
     """`ws://robot:8765`, `domain 0`, ..."""
@@ -55,16 +55,16 @@ class Opened:
 
 @dataclass(frozen=True, slots=True)
 class Interrupted:
-    """The source is gone, and is sought again; nothing that was sent since `since` is known."""
+    """The connection is lost, and is tried again; messages since `since` are unknown."""
 
     since: int
-    """The receive time of the last that is known to be complete."""
+    """The receive time up to which messages are known to be complete."""
     problem: Diagnostic
 
 
 @dataclass(frozen=True, slots=True)
 class Reconnected:
-    """The source is there again: messages sent from `since` to `until` may be lost."""
+    """The source is connected again: messages sent from `since` to `until` may be lost."""
 
     since: int
     until: int
@@ -81,7 +81,7 @@ class Missed:
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What a user should know, and the watch goes on: another type than bound, say."""
+    """A diagnostic for the user, such as a wrong type; the watch continues."""
 
     diagnostic: Diagnostic
 
@@ -91,7 +91,7 @@ class Idle:
     """Nothing has arrived for a while."""
 
     now: int | None
-    """All that was received before this time was handed on; None: no clock tells that."""
+    """All messages received before this time were passed on; None: no clock shows that."""
 
 
 Event = Opened | Interrupted | Reconnected | Missed | Problem
@@ -102,7 +102,7 @@ class Source(Protocol):
 
     @property
     def name(self) -> str:
-        """What people call it."""
+        """The name of the source, for people."""
 
     def arrivals(self, topics: Collection[str]) -> Iterator[Arrival | Event | Idle]:
         """All messages of the topics from now on, until `close`, or until the source has ended.
@@ -114,15 +114,15 @@ class Source(Protocol):
         """
 
     def close(self) -> None:
-        """Let it go; the iterator ends. It may be called from any thread, and more than once."""
+        """Close the source and end the iterator, from any thread, possibly more than once."""
 
 
 @runtime_checkable
 class Diagnosing(Protocol):
-    """A middleware through which statuses can be published."""
+    """A middleware that can publish statuses."""
 
     def diagnose(self, statuses: Sequence[Status]) -> None:
-        """Publish them on `/diagnostics`, soon; of those that wait the latest count.
+        """Publish statuses on `/diagnostics`, soon; only the latest ones count.
 
-        It never waits. The first call comes before `arrivals`, with nothing: there will be some.
+        It never waits. The first call comes before `arrivals`, without statuses, to announce them.
         """

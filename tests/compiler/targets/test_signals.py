@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fretc.logs.signals.enum_values import enum_index
 from fretc.logs.signals.propositions import Steps, truth_values
 from fretc.logs.signals.samples import EXACT, Values
 from fretc.logs.signals.traces import combined
-from fretc.logs.signals.words import word
 from fretish import expressions as e
 from fretish.bindings.declarations import Aggregate, Declarations, Proposition, Signal, path
 from fretish.clock import Clock
@@ -152,7 +152,7 @@ def states(
     found = []
     for text, number in rows:
         message = SimpleNamespace(mode=text, gear=number)
-        places = {name: word(each, message) for name, each in declarations.signals.items()}
+        places = {name: enum_index(each, message) for name, each in declarations.signals.items()}
         row = {n: np.array([np.nan if isinstance(p, str) else p]) for n, p in places.items()}
         tree = proposition.expression
         if isinstance(tree, e.Not) and isinstance(tree.arg, e.Persistence):

@@ -9,14 +9,14 @@ from compiler.files.records import decoded, plain, replace
 from fretc.audit.evidence.probabilities import Outcomes
 from fretc.audit.evidence.samples import Surroundings, Window
 from fretc.audit.evidence.schema import Answer, Hashes, Health, Result, State, Threshold, Violation
-from fretc.audit.evidence.writer import unjudged
+from fretc.audit.evidence.writer import unjudged_result
 from fretc.audit.measurements.tallies import Tally
 from fretc.audit.measurements.violations import Moment
 
 SHA = "0" * 64
 HEALTH = Health(True, 1000, None, (), (), {})
 HASHES = {"sentence": SHA, "bindings": SHA, "monitor": SHA}
-BLANK = unjudged("a.mcap", "R1", "why", HASHES, HEALTH)
+BLANK = unjudged_result("a.mcap", "R1", "why", HASHES, HEALTH)
 BROKEN: dict[str, Any] = {
     "first_tick": 0,
     "last_tick": 0,

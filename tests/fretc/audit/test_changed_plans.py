@@ -49,7 +49,7 @@ def stored(own: Plan, folder: str) -> None:
 
         def engine(plan: Plan, logs: Sequence[str]) -> Any:
             for log in logs:
-                yield log, auditing.audited(plan, log, results(log))
+                yield log, auditing.audit_log(plan, log, results(log))
 
         one.run(engine, lambda _: None)
 

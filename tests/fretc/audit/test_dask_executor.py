@@ -147,7 +147,7 @@ def test_a_worker_without_fretc_is_refused(
     assert isinstance(diagnostic, Diagnostic)
     assert (diagnostic.code.number, diagnostic.message) == (
         "F911",
-        "a worker has no fretc, or another one: No module named 'compiler'",
+        "a worker has no fretc, or another version: No module named 'compiler'",
     )
 
 
@@ -189,7 +189,7 @@ def test_a_log_that_kills_its_workers_is_told_and_the_others_are_audited(
     assert (finding.code, finding.message) == (
         "F419",
         f"the process that audited `{deadly.LOG}` was killed, and again when it ran alone: "
-        "all workers of Dask that tried it died",
+        "all Dask workers that tried it died",
     )
 
 
@@ -203,7 +203,7 @@ def test_a_scheduler_that_is_not_there_is_told(
     run = fretc("audit", *LOGS, "--engine", address)
     assert (run.status, run.out) == (2, "")
     assert run.err.startswith(
-        f"F910 the fleet at `{address}` cannot be reached: no scheduler of Dask answers\n"
+        f"F910 the Dask cluster at `{address}` cannot be reached: no Dask scheduler answers\n"
     )
     assert not Path("build").exists()
 
@@ -225,7 +225,7 @@ def test_an_engine_that_is_none_is_told(fretc: Fretc, name: str) -> None:
     run = fretc("audit", *LOGS, "--engine", name)
     assert (run.status, run.out) == (2, "")
     assert run.err == (
-        f"F907 `{name}` is no engine\nhelp: it is `local`, `dask`, or `dask://HOST:PORT`\n"
+        f"F907 `{name}` is no engine\nhelp: write `local`, `dask` or `dask://HOST:PORT`\n"
     )
 
 
@@ -241,7 +241,9 @@ def test_without_the_extra_the_line_that_installs_it_is_told(
     monkeypatch.setattr(extras, "find_spec", lambda name: None)
     run = fretc("audit", *LOGS, "--engine", "dask")
     assert run.status == 2
-    assert run.err.startswith("F908 a fleet needs `distributed` and `cryptography`\nhelp: install ")
+    assert run.err.startswith(
+        "F908 the engine `dask` needs `distributed` and `cryptography`\nhelp: install "
+    )
 
 
 @pytest.mark.slow

@@ -17,7 +17,14 @@ import pytest
 from compiler.files import text_files as files
 from compiler.files.user_key import user_key
 from fretc.audit.into_store import StoredAudit, StoreWriter
-from fretc.audit.many_logs import SEQUENTIAL, Engine, LogAudits, audit_logs, audited, local_executor
+from fretc.audit.many_logs import (
+    SEQUENTIAL,
+    Engine,
+    LogAudits,
+    audit_log,
+    audit_logs,
+    local_executor,
+)
 from fretc.audit.plan import Plan
 from fretc.audit.store import parts
 from fretc.audit.store.reader import Store, evidence, opened
@@ -88,7 +95,7 @@ def damage(log: str) -> None:
 def backwards(plan: Plan, logs: Sequence[str]) -> LogAudits:
     """An engine that is done with the last log first."""
     for log in reversed(logs):
-        yield log, audited(plan, log)
+        yield log, audit_log(plan, log)
 
 
 def interrupted(after: int) -> Engine:
@@ -96,7 +103,7 @@ def interrupted(after: int) -> Engine:
 
     def engine(plan: Plan, logs: Sequence[str]) -> LogAudits:
         for log in logs[:after]:
-            yield log, audited(plan, log)
+            yield log, audit_log(plan, log)
         raise KeyboardInterrupt
 
     return engine
@@ -222,7 +229,7 @@ def test_a_log_of_the_same_name_elsewhere_is_another_one(
 def test_a_log_that_could_not_be_read_or_has_changed_meanwhile_is_tried_again(fretc: Fretc) -> None:
     def growing(plan: Plan, logs: Sequence[str]) -> LogAudits:
         for log in logs:
-            yield log, replace(audited(plan, log), stamp=None)
+            yield log, replace(audit_log(plan, log), stamp=None)
 
     Path("bad.mcap").write_bytes(b"no log")
     stored(["bad.mcap", *LOGS[:2]])
@@ -305,14 +312,14 @@ from fretc.audit import into_store, many_logs
 from fretc.cli import main
 
 into_store._PATIENCE = into_store._SHARE = 0
-judge, process = many_logs.audited, os.getpid()
+judge, process = many_logs.audit_log, os.getpid()
 
-def audited(plan, log, *more):
+def audit_log(plan, log, *more):
     while log > "b" and os.getppid() == process:
         time.sleep(0.02)
     return judge(plan, log, *more)
 
-many_logs.audited = audited
+many_logs.audit_log = audit_log
 main()
 """
 """`fretc` whose processes wait at some logs as long as it lives."""
@@ -357,7 +364,7 @@ def test_two_audits_do_not_share_a_store(fretc: Fretc) -> None:
     with session():
         run = fretc("audit", *LOGS)
         assert (run.status, run.out) == (2, "")
-        assert run.err.startswith(f"F912 another audit is at work on `{STORE}`\n")
+        assert run.err.startswith(f"F912 another audit is writing to `{STORE}`\n")
     assert fretc("audit", *LOGS).status == 0
 
 

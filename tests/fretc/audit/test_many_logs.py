@@ -205,7 +205,7 @@ def test_without_bindings_nothing_can_be_audited(fretc: Fretc) -> None:
     Path("requirements/bindings.toml").unlink()
     run = fretc("audit", "run.mcap")
     assert run.status == 2
-    assert run.err.startswith("F304 no bindings say what the propositions mean in the messages\n")
+    assert run.err.startswith("F304 no bindings map the propositions to messages\n")
 
 
 @pytest.mark.confined
@@ -257,14 +257,14 @@ def test_results_can_be_read_by_other_tools(fretc: Fretc) -> None:
 def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audited(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch, jobs: str
 ) -> None:
-    real = auditing.audited
+    real = auditing.audit_log
 
     def deadly(plan: Plan, log: str, *rest: Any) -> auditing.LogResult:
         if log == "bad.mcap":
             os.kill(os.getpid(), signal.SIGKILL)
         return real(plan, log, *rest)
 
-    monkeypatch.setattr(auditing, "audited", deadly)
+    monkeypatch.setattr(auditing, "audit_log", deadly)
     for name in ("run", "bad", "other"):
         Path(f"{name}.mcap").write_bytes(part())
     run = fretc("audit", "run.mcap", "bad.mcap", "other.mcap", "--jobs", jobs)
@@ -273,7 +273,7 @@ def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audit
         "F419 the process that audited `bad.mcap` was killed, and again when it ran alone: "
         "signal 9\n"
         "  --> bad.mcap\n"
-        "help: was there memory enough? audit this log on a machine that has more\n"
+        "help: it may have run out of memory: audit this log on a machine with more memory\n"
         "wrote build/evidence\n"
     )
     content = evidence()

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from fretc.audit.pool import Limits, TimedOut, WorkerDied, each
+from fretc.audit.pool import Limits, TimedOut, WorkerDied, map_processes
 
 pytestmark = pytest.mark.confined
 
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.confined
 @pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 2, 5])
 def test_each_thing_has_its_result_once(jobs: int) -> None:
-    results = list(each(lambda thing: thing * thing, range(40), jobs))
+    results = list(map_processes(lambda thing: thing * thing, range(40), jobs))
     assert sorted(results, key=lambda done: done[0]) == [(i, i * i) for i in range(40)]
     assert not active_children()
 
@@ -27,7 +27,7 @@ def test_each_thing_has_its_result_once(jobs: int) -> None:
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_a_mistake_in_the_work_is_raised(jobs: int) -> None:
     with pytest.raises(ZeroDivisionError):
-        list(each(lambda thing: 1 // thing, [2, 1, 0, 3], jobs))
+        list(map_processes(lambda thing: 1 // thing, [2, 1, 0, 3], jobs))
     assert not active_children()
 
 
@@ -39,7 +39,7 @@ def test_a_mistake_that_cannot_be_sent_is_raised_in_words() -> None:
         raise LocalError(f"of {thing}")
 
     with pytest.raises(RuntimeError, match=r"LocalError: of \d"):
-        list(each(work, [0, 1], 2))
+        list(map_processes(work, [0, 1], 2))
 
 
 def test_a_result_comes_when_it_is_done() -> None:
@@ -47,7 +47,7 @@ def test_a_result_comes_when_it_is_done() -> None:
         time.sleep(seconds)
         return seconds
 
-    assert [place for place, _ in each(wait, [0.5, 0.0], 2)] == [1, 0]
+    assert [place for place, _ in map_processes(wait, [0.5, 0.0], 2)] == [1, 0]
 
 
 @pytest.mark.slow
@@ -58,7 +58,7 @@ def test_a_thing_that_kills_its_process_twice_is_told_and_the_others_are_done(jo
             os.kill(os.getpid(), signal.SIGKILL)
         return -thing
 
-    results = dict(each(work, range(8), jobs))
+    results = dict(map_processes(work, range(8), jobs))
     assert results.pop(3) == WorkerDied(-signal.SIGKILL)
     assert results == {i: -i for i in range(8) if i != 3}
     assert not active_children()
@@ -72,25 +72,25 @@ def test_a_thing_whose_process_is_killed_once_is_done_the_second_time(tmp_path: 
             os._exit(7)
         return f"done {thing}"
 
-    assert dict(each(work, range(3), 2)) == {i: f"done {i}" for i in range(3)}
+    assert dict(map_processes(work, range(3), 2)) == {i: f"done {i}" for i in range(3)}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_a_thing_that_takes_too_long_is_late_and_the_others_are_done(jobs: int) -> None:
     work = lambda thing: time.sleep(60 if thing % 3 == 1 else 0)  # noqa: E731
-    results = dict(each(work, range(6), jobs, Limits(each=0.3)))
+    results = dict(map_processes(work, range(6), jobs, Limits(each=0.3)))
     assert results == {0: None, 1: TimedOut.OWN, 2: None, 3: None, 4: TimedOut.OWN, 5: None}
     assert not active_children()
 
 
 def test_when_the_time_of_all_is_over_each_that_is_not_done_is_late() -> None:
     work = lambda thing: time.sleep(60 if thing else 0)  # noqa: E731
-    assert dict(each(work, range(5), 1, Limits(all=0.5))) == {
+    assert dict(map_processes(work, range(5), 1, Limits(all=0.5))) == {
         0: None,
         **dict.fromkeys(range(1, 5), TimedOut.ALL),
     }
-    assert dict(each(work, [0], 1, Limits(all=0.0))) == {0: TimedOut.ALL}
+    assert dict(map_processes(work, [0], 1, Limits(all=0.0))) == {0: TimedOut.ALL}
     assert not active_children()
 
 
@@ -101,7 +101,7 @@ def test_a_thing_is_late_however_the_process_is_busy() -> None:
         while thing:
             pass
 
-    assert dict(each(work, [1], 1, Limits(each=0.3))) == {0: TimedOut.OWN}
+    assert dict(map_processes(work, [1], 1, Limits(each=0.3))) == {0: TimedOut.OWN}
 
 
 def test_how_a_process_ended_is_told_in_words() -> None:
@@ -110,14 +110,14 @@ def test_how_a_process_ended_is_told_in_words() -> None:
 
 @pytest.mark.slow
 def test_a_result_that_is_larger_than_a_pipe_comes_whole() -> None:
-    assert dict(each(lambda thing: bytes(10**7 + thing), [0, 1], 2)) == {
+    assert dict(map_processes(lambda thing: bytes(10**7 + thing), [0, 1], 2)) == {
         0: bytes(10**7),
         1: bytes(10**7 + 1),
     }
 
 
 def test_closing_ends_the_work_at_once() -> None:
-    with closing(each(lambda thing: time.sleep(thing), [0, 60, 60], 2)) as results:
+    with closing(map_processes(lambda thing: time.sleep(thing), [0, 60, 60], 2)) as results:
         assert next(results) == (0, None)
         start = time.monotonic()
     assert time.monotonic() - start < 10
@@ -137,7 +137,7 @@ def test_a_process_that_dies_while_it_sends_a_result_costs_no_other_thing_its_re
             return bytes(10**7)  # the pipe holds less than that: it is still being sent
         return bytes(thing)
 
-    with closing(each(work, range(4), 2)) as results:
+    with closing(map_processes(work, range(4), 2)) as results:
         first = next(results)
         time.sleep(0.5)
         assert dict([first, *results]) == {i: bytes(i) for i in range(4)}

@@ -37,8 +37,8 @@ WITHIN = "whenever c the robot shall with probability >= 0.9 within 2 ticks sati
 HALF = WITHIN.replace("0.9", "0.5")
 """Five logs support or refute it."""
 AVERAGE = (
-    "this is the average over the triggers seen; PCTL demands it of every reachable state with a "
-    "trigger, which is more"
+    "this is the average over the recorded triggers; PCTL demands the probability in "
+    "every reachable state with a trigger, which is stronger"
 )
 
 
@@ -166,7 +166,8 @@ def test_so_few_logs_cannot_support_it_however_many_triggers_they_have(fretc: Fr
     assert (run.status, run.err) == (
         3,
         "F506 warning: the probability of R7 is estimated from 4 logs with a trigger\n"
-        "help: audit 5 or more: triggers of one log may depend on each other, so logs count\n"
+        "help: audit 5 or more: triggers of one log may depend on each other, so logs are "
+        "counted, not triggers\n"
         "wrote build/evidence.json\n",
     )
     assert "    80 of 80 triggers answered, 0 failed, 0 open, in 4 logs\n" in run.out
@@ -243,7 +244,10 @@ def test_what_is_unknown_in_the_middle_is_open_and_damage_withholds_support(fret
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     run = fretc("audit", "runs")
     assert run.status == 3
-    assert "1 log is damaged or could not be read: what is lost could speak against it" in run.out
+    assert (
+        "1 log is damaged or could not be read: the lost part could contradict the requirement"
+        in run.out
+    )
     answered, failed, _ = counts()
     assert (answered > 100, failed) == (True, 0)
     assert estimate()["logs"]["damaged"] == 1

@@ -193,7 +193,7 @@ def test_bindings_that_are_not_there_are_told_once(fretc: Fretc) -> None:
     Path("requirements/bindings.toml").unlink()
     check, audit = fretc("check"), fretc("audit", log("l.mcap", [1]))
     assert (check.status, audit.status) == (2, 2)
-    assert check.err.count("no bindings say") == audit.err.count("no bindings say") == 1
+    assert check.err.count("no bindings map") == audit.err.count("no bindings map") == 1
 
 
 def test_evidence_is_not_verified_by_a_project_that_cannot_be_judged(fretc: Fretc) -> None:

@@ -14,7 +14,7 @@ from compiler.project.project import Project
 from fretc.audit import many_logs as auditing
 from fretc.audit import one_log
 from fretc.audit.evidence.schema import Result
-from fretc.audit.many_logs import LogResult, audited
+from fretc.audit.many_logs import LogResult, audit_log
 from fretc.audit.plan import Plan, keys, planned
 from fretc.logs.signals.integrity import Integrity
 from tests.effort import some
@@ -152,10 +152,10 @@ def test_after_each_change_only_what_it_changes_is_judged_and_all_is_as_from_not
 ) -> None:
     texts, expected = CHANGES[name]
     before, now = plan(PROJECT), plan(texts)
-    earlier = audited(before, log)
-    from_nothing = audited(now, log)
+    earlier = audit_log(before, log)
+    from_nothing = audit_log(now, log)
     judged.clear()
-    assert audited(now, log, taken(before, now, earlier)) == from_nothing
+    assert audit_log(now, log, taken(before, now, earlier)) == from_nothing
     no_data = {"R4"} if earlier.results[0].health != from_nothing.results[0].health else set()
     assert {*judged} == (expected | no_data) & {*keys(now)}
 
@@ -165,30 +165,30 @@ def test_after_each_change_only_what_it_changes_is_judged_and_all_is_as_from_not
 def test_and_back_again(tmp_path: Path, log: str, name: str) -> None:
     texts, _ = CHANGES[name]
     before, now = plan(texts), plan(PROJECT)
-    known = taken(before, now, audited(before, log))
-    assert audited(now, log, known) == audited(now, log)
+    known = taken(before, now, audit_log(before, log))
+    assert audit_log(now, log, known) == audit_log(now, log)
 
 
 def test_nothing_is_taken_over_of_another_log(tmp_path: Path, log: str, judged: list[str]) -> None:
     made = plan(PROJECT)
-    known = audited(made, log).results
+    known = audit_log(made, log).results
     write(Path(log), [*sent(late=True)])
     judged.clear()
-    found = audited(made, log, known)
-    assert found == audited(made, log)
+    found = audit_log(made, log, known)
+    assert found == audit_log(made, log)
     assert judged[:4] == ["R1", "R2", "R3", "R4"]
     other = str(write(tmp_path / "other.mcap", [*sent(late=True)]))
-    assert audited(made, other, found.results) == audited(made, other)
+    assert audit_log(made, other, found.results) == audit_log(made, other)
 
 
 def test_a_result_of_a_log_that_is_damaged_by_now_is_not_taken_over(
     tmp_path: Path, log: str
 ) -> None:
     made = plan(PROJECT)
-    good = audited(made, log).results
+    good = audit_log(made, log).results
     worse = [record_with(each, health=record_with(each.health, intact=False)) for each in good]
     wrong = [record_with(each, verdict="violated") for each in worse]
-    assert audited(made, log, wrong) == audited(made, log)
+    assert audit_log(made, log, wrong) == audit_log(made, log)
 
 
 @pytest.mark.slow

@@ -83,7 +83,7 @@ def test_where_no_log_is_left_nothing_is_shown_and_evidence_stays(robot: Fretc) 
 @pytest.mark.slow
 def test_a_sample_is_reported_as_one(robot: Fretc) -> None:
     run = robot("audit", "runs", "--sample", "2", "--seed", "5")
-    assert "2 of 3 logs: a sample of 3 by chance, seed 5" in run.err
+    assert "2 of 3 logs: a sample of 3 chosen at random, seed 5" in run.err
     assert len(runs()) == 2
     first = evidence()
     robot("audit", "runs", "--sample", "2", "--seed", "5")
@@ -91,7 +91,7 @@ def test_a_sample_is_reported_as_one(robot: Fretc) -> None:
     assert robot("report", "--json", "r.json").status == 0
     claims = json.loads(Path("r.json").read_text())["claims"]
     assert claims.endswith(
-        "audited against 2 runs, which are 2 of 3 logs: a sample of 3 by chance, seed 5."
+        "audited against 2 runs, which are 2 of 3 logs: a sample of 3 chosen at random, seed 5."
     )
 
 
@@ -152,7 +152,7 @@ def test_limits_that_are_not_reached_change_nothing(robot: Fretc) -> None:
     [
         (["--time", "soon"], "`--time soon` is no time"),
         (["--log-time", "5"], "`--log-time 5` is no time"),
-        (["--since", "soon"], "`--since soon` is neither a date nor a time ago"),
+        (["--since", "soon"], "`--since soon` is neither a date nor a length of time"),
         (["--time", "1h", "--engine", "dask"], "`--engine dask` has no limits of time"),
         (["--notify", ""], "`--notify` names no command: it is empty"),
         (["--notify", "a 'b"], "`--notify` names no command: no closing quotation"),

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.audit.bindings.beginning import Bound, first_requirement
-from fretc.audit.bindings.beginning import _limit as limit
+from fretc.audit.bindings.starter_files import Bound, first_requirement
+from fretc.audit.bindings.starter_files import _limit as limit
 from tests.command import Fretc
 from tests.command import write as put
 from tests.fretc.logs.logs import MS, TWELVE, S, Sent, number, write

@@ -209,7 +209,9 @@ def test_a_command_that_hangs_ends_with_the_watch_and_with_all_that_it_started(
     log = recorded("run.mcap", stops=False)
     run = fretc("watch", log, "--on-violation", "/bin/sh hang.sh")
     assert run.status == 1
-    assert run.err.startswith("F954 warning: `/bin/sh` was ended: it still ran 1 s after the watch")
+    assert run.err.startswith(
+        "F954 warning: `/bin/sh` was stopped: it still ran 1 s after the end of the watch"
+    )
     for pid in map(int, Path("pids").read_text().split()):
         assert not _is_running(pid)
 

@@ -13,7 +13,7 @@ import pytest
 
 from compiler.files.templating import template_root
 from compiler.targets.python import monitor as target
-from fretc.audit.measurements.judgement import Judgement, judged
+from fretc.audit.measurements.judgement import Judgement, judge
 from fretc.coverage import mutation_record
 from fretc.coverage.mutation import (
     Difference,
@@ -56,7 +56,7 @@ def by_itself(own: Monitor, trace: Trace, *, intact: bool) -> Judgement:
     cut = trace.cut and {name: trace.cut[name] for name in columns}
     ticks = len(trace.timeline.times)
     end = kernel.INCONCLUSIVE
-    return judged(own, columns, cut, ticks, intact=intact, end=end, engine=kernel.stepped)
+    return judge(own, columns, cut, ticks, intact=intact, end=end, engine=kernel.stepped)
 
 
 def together(of: MutantBatch, trace: Trace, *, intact: bool = True) -> list[Judgement]:

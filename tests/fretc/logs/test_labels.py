@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.logs.labels import given as given_labels
-from fretc.logs.labels import labels, over
+from fretc.logs.labels import labels, with_overrides
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Recording
@@ -160,10 +160,10 @@ def test_markup_and_control_characters_are_kept_as_they_are() -> None:
 
 
 def test_the_command_counts_before_all_and_says_so() -> None:
-    found, said = over({"version": "1", "seed": "3"}, {"version": "2", "robot": "r"})
+    found, said = with_overrides({"version": "1", "seed": "3"}, {"version": "2", "robot": "r"})
     assert found == {"version": "2", "seed": "3", "robot": "r"}
     assert told(said) == ["F552"]
-    assert over({"version": "2"}, {"version": "2"})[1] == ()
+    assert with_overrides({"version": "2"}, {"version": "2"})[1] == ()
 
 
 @pytest.mark.parametrize("text", ["version", "=2", "1x=2", "a b=2", "v=", "v=" + "x" * 201])

@@ -28,7 +28,7 @@ def test_clocks_that_are_mixed_and_far_apart_are_a_warning(tmp_path: Path) -> No
     (finding,) = recorded(write(tmp_path / "log.mcap", sent), declare(text)).findings
     assert finding.severity is Severity.WARNING
     assert finding.message == (
-        "the messages of `/x` have no header.stamp: their log_time is used, and that is 6 s "
+        "the messages of `/x` have no header.stamp: their log_time is used, which is 6 s "
         "away from the stamps of the other topics"
     )
 
@@ -60,10 +60,10 @@ def test_a_truncated_log_says_how_far_whole_messages_go(tmp_path: Path) -> None:
     path.write_bytes(data[: third + 20])
     (finding,) = recorded(path, X).findings
     assert render(finding) == (
-        f"F403 warning: the log breaks off after byte {third}: whole messages go 0.7 s far, and "
-        "what came then is unknown\n"
+        f"F403 warning: the log breaks off after byte {third}: complete messages end after 0.7 "
+        "s; what follows is unknown\n"
         f"  --> {path}\n"
-        "help: what it shows up to there counts, and nothing counts as satisfied"
+        "help: violations up to there count, but no requirement counts as satisfied"
     )
 
 
@@ -72,11 +72,10 @@ def test_damage_is_told_with_its_place_and_time(tmp_path: Path) -> None:
     second = chunk_starts(path)[1]
     damaged(path, second + 9 + 28 + 4 + 8 + 40)
     assert render(recorded(path, X).findings[0]) == (
-        f"F404 warning: the log is damaged near byte {second}: a chunk has another CRC than it "
-        "states; what was recorded from 0.4 s to 0.7 s counts as unknown\n"
+        f"F404 warning: the log is damaged near byte {second}: the CRC of a chunk does not match "
+        "its data; what was recorded from 0.4 s to 0.7 s counts as unknown\n"
         f"  --> {path}\n"
-        "help: copy the log again from where it was recorded; nothing counts as shown by a "
-        "damaged log"
+        "help: copy the log again from where it was recorded; a damaged log does not count as shown"
     )
 
 
@@ -111,5 +110,5 @@ def test_a_log_cut_before_its_first_whole_message_says_so() -> None:
 
 def test_another_kind_of_recording_is_named() -> None:
     found = log_diagnostics.not_a_log(b"\x28\xb5\x2f\xfd\0", PLACE)
-    assert found.message == "it is a whole file compressed with zstd"
-    assert found.help == "unpack it first: `zstd -d FILE`; MCAP compresses within the file"
+    assert found.message == "the whole file is compressed with zstd"
+    assert found.help == "unpack it first: `zstd -d FILE`; MCAP has a compression of its own"

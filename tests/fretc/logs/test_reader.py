@@ -126,5 +126,5 @@ def test_a_log_of_which_nothing_is_whole_is_refused(tmp_path: Path) -> None:
     path = write(tmp_path / "log.mcap", TWELVE, compression=NONE)
     damaged(path, chunk_starts(path)[0] + 200)
     assert refused(path).message == (
-        "no message of the log can be read: a chunk has another CRC than it states"
+        "no message of the log can be read: the CRC of a chunk does not match its data"
     )

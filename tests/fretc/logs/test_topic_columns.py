@@ -36,9 +36,7 @@ def test_messages_out_of_order_are_sorted_and_counted(tmp_path: Path) -> None:
     (finding,) = recording.findings
     assert finding.code is Code.OUT_OF_ORDER
     assert finding.severity is Severity.WARNING
-    assert finding.message == (
-        "1 of 3 messages of `/x` are earlier than one before them: they are sorted by time"
-    )
+    assert finding.message == ("1 of 3 messages of `/x` are out of order: they are sorted by time")
     assert recording.intact
 
 
@@ -174,7 +172,7 @@ def test_messages_of_two_types_on_one_topic_are_told_with_both(
     (finding,) = recording.findings
     assert (finding.code, finding.severity) == (Code.SEVERAL_TYPES, Severity.WARNING)
     assert finding.message == (
-        "`/x` has messages of `std_msgs/Float64` and `std_msgs/Int64`: `x` is read of all of them"
+        "`/x` has messages of `std_msgs/Float64` and `std_msgs/Int64`: `x` is read from all of them"
     )
     assert values(recording, "x") == [0.0] * 6
 

@@ -12,7 +12,7 @@ from fretc.audit.bases import bases
 from fretc.audit.evidence import reader as reading
 from fretc.audit.evidence.basis import BINDINGS as BINDINGS_PART
 from fretc.audit.evidence.basis import KINDS, of_all
-from fretc.audit.evidence.briefs import Briefs
+from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.report.make import ReportBuild, make
 from fretc.report.traceability.chain import chains
 from fretc.report.traceability.lock import Lock, accepted
@@ -290,7 +290,7 @@ def write_lock(known: Project, folder: Path, evidence: str, day: str = "2026-01-
     """The path of a lock in the folder, in which everything is accepted as it is now."""
     audited = reading.read(evidence)
     assert not isinstance(audited, Diagnostic)
-    accepting = chains(known, Briefs.of(audited))
+    accepting = chains(known, ResultSummaries.of(audited))
     reviews = {each.requirement: accepted(each, "A", "B", day, "c") for each in accepting}
     return write(str(folder / "fretc.lock"), lock_text(Lock(reviews)))
 

@@ -209,7 +209,7 @@ def test_one_reason_for_many_requirements_is_one_message(tmp_path: Path) -> None
     [
         ("sentence", "the sentence has changed since the audit"),
         ("bindings", "the bindings have changed since the audit"),
-        ("monitor", "the monitor that is made now is not the one of the audit"),
+        ("monitor", "the generated monitor has changed since the audit"),
     ],
 )
 def test_evidence_of_something_else_is_suspect_and_never_satisfied(

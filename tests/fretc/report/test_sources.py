@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, Phase, given, settings
 from benchmarks.report import JSON, STORE, project, written
 from compiler.files.templating import to_json
 from compiler.project.project import Project
-from fretc.audit.evidence.briefs import Briefs, EvidenceSource, brief, run_facts
 from fretc.audit.evidence.reader import EvidenceFile
+from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummaries, brief, run_facts
 from fretc.audit.evidence.schema import Result
 from fretc.audit.store.anywhere import source
 from fretc.audit.store.writer import write_document
@@ -206,8 +206,8 @@ def test_how_much_is_read_at_once_changes_nothing(
     assert ("".join(json_pieces(report, details)), html(report, details)) == (text, page)
 
 
-def test_briefs_stand_by_requirement_in_their_order(audited: Path) -> None:
-    briefs = Briefs.of(opened(audited)).by_requirement
+def test_result_summaries_stand_by_requirement_in_their_order(audited: Path) -> None:
+    briefs = ResultSummaries.of(opened(audited)).by_requirement
     assert {id: [place for place, _ in some] for id, some in briefs.items()} == {
         f"R{n}": [*range(n, 3 * RUNS, 3)] for n in range(3)
     }

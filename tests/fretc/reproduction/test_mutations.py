@@ -27,8 +27,8 @@ from compiler.logic.claims import (
 )
 from compiler.project.folder import load_folder
 from compiler.project.project import Project
-from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.reader import read
+from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.many_logs import SEQUENTIAL, LogAudits, LogResult, audit_logs
 from fretc.audit.measurements import confidence_intervals
 from fretc.audit.plan import Plan, planned
@@ -269,7 +269,7 @@ def case(folder: Path) -> Case:
     assert not isinstance(audit, Diagnostic)
     audited = read(write("build/evidence.json", audit.evidence))
     assert not isinstance(audited, Diagnostic)
-    chain_of = chains(project, Briefs.of(audited))
+    chain_of = chains(project, ResultSummaries.of(audited))
     reviews = {c.requirement: accepted(c, "A", "b", "2026-01-02", "c") for c in chain_of}
     return Case(project, plan, Lock(reviews), manifest)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fretc.audit.evidence.reader import EvidenceFile
-from fretc.trends.changes import Tone
+from fretc.trends.changes import RoundOutcome
 from fretc.trends.charts import strip
 from fretc.trends.page import html
 from fretc.trends.trends import Trends
@@ -78,12 +78,18 @@ def test_it_asks_nothing_of_anybody() -> None:
 
 
 def test_a_strip_is_read_without_colours() -> None:
-    tones = [None, Tone.SHOWN, Tone.SHOWN, Tone.VIOLATED, Tone.OPEN]
-    found = strip(tones)
+    round_outcomes = [
+        None,
+        RoundOutcome.SHOWN,
+        RoundOutcome.SHOWN,
+        RoundOutcome.VIOLATED,
+        RoundOutcome.OPEN,
+    ]
+    found = strip(round_outcomes)
     assert found.text == "rounds 1 not judged, 2 to 3 shown, 4 violated, 5 open"
     heights = {cell.kind: cell.height for cell in found.cells}
     assert len({*heights.values()}) == len(heights) == 4
-    assert strip([Tone.SHOWN] * 100).text == "rounds 41 to 100 shown"
+    assert strip([RoundOutcome.SHOWN] * 100).text == "rounds 41 to 100 shown"
 
 
 # In a browser -----------------------------------------------------------------------------------

@@ -78,7 +78,7 @@ def test_versions_of_one_time_are_in_their_natural_order(order: Sequence[str], b
     found = trends_of(nights, by)
     assert isinstance(found, Trends)
     assert [each.versions for each in found.rounds] == [("v9",), ("v10",), ("v11",)]
-    assert (found.held.before, found.held.after) == ("version v10", "version v11")
+    assert (found.compared.before, found.compared.after) == ("version v10", "version v11")
 
 
 def test_runs_of_a_scenario_are_comparable_whatever_their_names() -> None:
@@ -220,8 +220,8 @@ def test_it_is_worse_only_where_that_is_more_than_chance() -> None:
         ]
 
     steady, slower = trends(*nights(0.0)), trends(*nights(0.1))
-    assert not steady.found(Finding.REGRESSED)
-    (found,) = slower.found(Finding.REGRESSED)  # of one answer, the longest is the median
+    assert not steady.with_finding(Finding.REGRESSED)
+    (found,) = slower.with_finding(Finding.REGRESSED)  # of one answer, the longest is the median
     assert str(found.measure) == "longest latency"
     assert (found.runs_before, found.runs_after) == (20, 10)
     assert slower.is_worse
@@ -245,7 +245,7 @@ def test_a_margin_that_shrinks_is_worse_and_one_that_is_crossed_has_none_left() 
         ]
 
     found = trends(night(0, 0.2), night(1, 0.0))
-    (one,) = found.found(Finding.REGRESSED)
+    (one,) = found.with_finding(Finding.REGRESSED)
     assert one.measure.requirements == ("R1", "R2")
     assert one.measure.threshold == "clearance < 0.05 m (too_close)"
     assert one.after == 0
@@ -256,7 +256,7 @@ def test_few_runs_tell_nothing_and_that_is_said() -> None:
     before = [judged("0.mcap", late=[0.1], scenario="door")]
     now = [judged("1.mcap", night=1, late=[9.0], scenario="door")]
     found = trends(before, now)
-    assert len(found.found(Finding.TOO_FEW)) == 1
+    assert len(found.with_finding(Finding.TOO_FEW)) == 1
     assert not found.is_worse
 
 
@@ -270,14 +270,14 @@ def test_a_copy_of_a_log_counts_once() -> None:
             for run, log in enumerate(logs)
         ]
 
-    assert trends(before, late(range(12))).found(Finding.REGRESSED)
-    assert not trends(before, late([7] * 12)).found(Finding.REGRESSED)
+    assert trends(before, late(range(12))).with_finding(Finding.REGRESSED)
+    assert not trends(before, late([7] * 12)).with_finding(Finding.REGRESSED)
 
 
 def test_runs_of_a_requirement_that_was_another_one_are_not_compared() -> None:
     before = [judged(f"{run}.mcap", late=[0.1], scenario="d", sentence=OTHER) for run in range(12)]
     now = [judged(f"n{run}.mcap", night=1, late=[9.0], scenario="d") for run in range(12)]
-    assert not trends(before, now).found(Finding.REGRESSED)
+    assert not trends(before, now).with_finding(Finding.REGRESSED)
 
 
 VERDICTS = st.sampled_from(["satisfied", "violated", "no data", "vacuous", "inconclusive"])

@@ -12,7 +12,7 @@ from fretc.audit.one_log import audit
 from fretc.audit.plan import Plan, monitored_requirements
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
-from fretc.watch.news import Found, Late, News, RunEnded
+from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, WatchEvent
 from fretc.watch.sources.log import Log
 from fretc.watch.sources.source import Idle
 from fretc.watch.watch import Watch
@@ -36,7 +36,7 @@ def written(path: Path, some: Sequence[Sent], per_chunk: int | None) -> str:
     return str(write(path, sent, per_chunk=per_chunk, chunked=per_chunk is not None))
 
 
-def watched(plan: Plan, log: str, record: Path | None) -> tuple[Watch, list[News]]:
+def watched(plan: Plan, log: str, record: Path | None) -> tuple[Watch, list[WatchEvent]]:
     watch = Watch(plan, record, log)
     items = (item for item in Log(log, follow=False).arrivals(watch.topics))
     news = [each for item in items if not isinstance(item, Idle) for each in watch.take(item)]
@@ -73,7 +73,7 @@ def test_what_is_shown_at_the_end_is_what_the_evidence_says(
         record = Path(folder) / "seen.mcap" if records else None
         watch, news = watched(plan, log, record)
         (ended,) = [each for each in news if isinstance(each, RunEnded)]
-        codes = [each.diagnostic.code for each in news if isinstance(each, Found)]
+        codes = [each.diagnostic.code for each in news if isinstance(each, DiagnosticEvent)]
         assert (Code.DISORDERED in codes) is (watch.session.disordered > 0)
         for audited_log in [str(record)] * records + [log] * (setting.time == "log_time"):
             recording, verdicts = audited(plan, audited_log)
@@ -96,4 +96,4 @@ def test_by_arrival_in_order_nothing_is_late_and_nothing_judged_again(some: list
         log = written(Path(folder) / "run.mcap", ordered, 3)
         watch, news = watched(plan_of(BY_ARRIVAL), log, None)
         assert not watch.session.disordered
-        assert not any(isinstance(each, Late) for each in news)
+        assert not any(isinstance(each, LateMessages) for each in news)

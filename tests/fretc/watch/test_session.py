@@ -14,7 +14,7 @@ from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
 from fretc.watch.recording import Recorder
-from fretc.watch.session import Ended, Jump, Session
+from fretc.watch.session import EndedRun, Jump, Session
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.kernel.verdicts import Truth
 from tests.effort import examples
@@ -36,7 +36,7 @@ messages = st.lists(
 
 def recorded(
     plan: Plan, some: Sequence[Sent], idle: int, missed: Sequence[int] = ()
-) -> tuple[Session, Ended, Recording]:
+) -> tuple[Session, EndedRun, Recording]:
     """A watch of the messages, with what its recording holds; `idle` milliseconds come last."""
     session = Session(plan)
     arrivals = sorted((each.arrival for each in some), key=lambda each: each.log_time)
@@ -53,7 +53,7 @@ def recorded(
             recorder.grid(session.origin)
         session.idle(arrivals[-1].log_time + idle * MS)
         ended = session.end()
-        assert isinstance(ended, Ended)
+        assert isinstance(ended, EndedRun)
         recorder.grid(session.origin)
         recorder.close(ended.until, session.missed)
         recording = read(str(path), plan.declarations, list(plan.declarations.signals))
@@ -169,7 +169,7 @@ def test_nothing_is_judged_while_the_source_is_gone(some: list[Sent], data: st.D
             session.idle(arrivals[-1].log_time + 30 * MS)
             session.miss(since, session.received)
         ended = session.end()
-        assert isinstance(ended, Ended)
+        assert isinstance(ended, EndedRun)
         recorder.grid(session.origin)
         recorder.close(ended.until, session.missed)
         recording = read(str(path), plan.declarations, list(plan.declarations.signals))

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from fretc.audit.plan import Plan
+from fretc.watch.events import DiagnosticEvent, RunEnded, StateChange, WatchEvent
 from fretc.watch.json_lines import line
-from fretc.watch.news import Changed, Found, News, RunEnded
 from fretc.watch.recording import Recorder
 from fretc.watch.sources.source import (
     Arrival,
@@ -36,7 +36,7 @@ def plan() -> Plan:
     return plan_of(SETTING)
 
 
-def told(watch: Watch, items: Iterable[Item]) -> list[News]:
+def told(watch: Watch, items: Iterable[Item]) -> list[WatchEvent]:
     """All news of the items, and of the end; every one fits the schema."""
     news = [each for item in items for each in watch.take(item)]
     news += watch.finish()
@@ -51,11 +51,11 @@ def steady(first: int, last: int, value: float = 9.0) -> Iterator[Arrival]:
         yield Sent("/y", 9.0, at).arrival
 
 
-def codes(news: Sequence[News]) -> list[Code]:
-    return [each.diagnostic.code for each in news if isinstance(each, Found)]
+def codes(news: Sequence[WatchEvent]) -> list[Code]:
+    return [each.diagnostic.code for each in news if isinstance(each, DiagnosticEvent)]
 
 
-def runs(news: Sequence[News]) -> list[RunEnded]:
+def runs(news: Sequence[WatchEvent]) -> list[RunEnded]:
     return [each for each in news if isinstance(each, RunEnded)]
 
 
@@ -63,7 +63,7 @@ def runs(news: Sequence[News]) -> list[RunEnded]:
 def test_each_change_of_a_requirement_is_news_once(plan: Plan) -> None:
     items = [*steady(0, 100), *steady(100, 130, 1.0), *steady(130, 300)]
     news = told(Watch(plan), items)
-    changes = [each for each in news if isinstance(each, Changed)]
+    changes = [each for each in news if isinstance(each, StateChange)]
     states = [each.state for each in changes if each.state.requirement == "R0"]
     assert states[-1].verdict == "violated"
     assert runs(news)[0].verdicts["R0"] == "violated"
@@ -84,7 +84,7 @@ def test_what_is_owed_is_news_before_the_tick_and_soon(last: str) -> None:
     owed = [
         each.state.owed
         for each in [*first, *watch.take(more)]
-        if isinstance(each, Changed) and each.state.requirement == "R0"
+        if isinstance(each, StateChange) and each.state.requirement == "R0"
     ]
     assert owed[-1] is True
     assert ticks > 5
@@ -117,7 +117,7 @@ def test_two_clocks_that_take_turns_are_given_up(
     monkeypatch.setattr("fretc.watch.watch.MOST_RUNS", 3)
     turns = (next(later([Sent("/x", 9.0, 5000 * (i % 2)).arrival], 10_000 + i)) for i in range(100))
     watch = Watch(plan)
-    news: list[News] = []
+    news: list[WatchEvent] = []
     for item in turns:
         news += watch.take(item)
         if watch.ended:
@@ -131,7 +131,7 @@ def test_a_topic_of_which_nothing_comes_is_told_of_once(plan: Plan) -> None:
     received = START + SILENCE + 5 * MS
     items: list[Item] = [Sent("/x", 9.0, 0).arrival, Idle(received), Idle(received + 50 * MS)]
     news = told(Watch(plan), items)
-    (found,) = [each for each in news if isinstance(each, Found)]
+    (found,) = [each for each in news if isinstance(each, DiagnosticEvent)]
     assert found.diagnostic.code is Code.NOTHING_COMES
     assert "`/y`" in found.diagnostic.message
 

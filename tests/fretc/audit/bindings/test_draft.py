@@ -103,7 +103,7 @@ def test_names_are_ones_that_expressions_can_use(tmp_path: Path) -> None:
     text = drafted(write(tmp_path / "a.mcap", [m for t in topics for m in every(MS, 1, t)]))
     declarations = declare(text)
     assert set(declarations.signals) == {"a_b", "a_b_2", "min_2", "a_c", "not_2"}
-    assert "# no path can name a topic that is called so" in text  # /9
+    assert "# a path cannot contain the name of this topic" in text  # /9
     expr = " + ".join(declarations.signals)
     declare(f'{text}\n[proposition.p]\nexpr = "{expr} > 0"\n')
 

@@ -19,7 +19,7 @@ import pytest
 
 from compiler.files.records import decoded
 from compiler.project.folder import load_folder
-from fretc.audit.evidence.briefs import Briefs
+from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.evidence.schema import Document
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read, source
@@ -541,10 +541,10 @@ def test_a_change_is_in_the_chains_of_what_is_made_of_it_and_of_nothing_else(
             shutil.copytree(base, ".", dirs_exist_ok=True)
 
 
-def briefs() -> Briefs:
+def briefs() -> ResultSummaries:
     evidence = source("build/evidence")
     assert not isinstance(evidence, Diagnostic)
-    return Briefs.of(evidence)
+    return ResultSummaries.of(evidence)
 
 
 @pytest.mark.slow

@@ -4,7 +4,7 @@ import pytest
 
 from compiler.formalization.formalize import formalize
 from compiler.targets.python.monitor import text
-from fretc.audit.measurements.judgement import Engine, judged
+from fretc.audit.measurements.judgement import Engine, judge
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from monitors import kernel
@@ -55,7 +55,7 @@ def test_a_cut_tick_counts_as_unchanged_only_where_all_of_it_is_known(
 ) -> None:
     watching = monitor("when p the r shall immediately satisfy q")
     columns = {"p": column(bytes([T, last[0]])), "q": column(bytes([T, last[1]]))}
-    judgement = judged(
+    judgement = judge(
         watching,
         columns,
         {"p": TRUTHS[cut[0]], "q": TRUTHS[cut[1]]},

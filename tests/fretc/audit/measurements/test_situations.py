@@ -9,7 +9,7 @@ import pytest
 from compiler.logic import formula as f
 from compiler.logic.definition import holds
 from compiler.situations.situations import Situation, situations
-from fretc.audit.measurements.situations import Encounter, encounters, nowhere_known
+from fretc.audit.measurements.situations import SituationTicks, nowhere_known, situation_ticks
 from monitors.kernel import Column
 from monitors.kernel.verdicts import Truth
 from tests.compiler.situations.by_index import At
@@ -48,10 +48,10 @@ def completions(run: Sequence[Row]) -> Iterator[list[dict[str, bool]]]:
         ]
 
 
-def shown(of: Sequence[Situation], run: Sequence[Row]) -> dict[str, Encounter]:
+def shown(of: Sequence[Situation], run: Sequence[Row]) -> dict[str, SituationTicks]:
     names = [*run[0]]
     ticks, columns = packed({name: [row[name] for row in run] for name in names})
-    return {one.key: one for one in encounters(of, columns, ticks, nowhere_known(ticks))}
+    return {one.key: one for one in situation_ticks(of, columns, ticks, nowhere_known(ticks))}
 
 
 def runs(drawn: Template, unknowns: int) -> Iterator[list[Row]]:
@@ -71,16 +71,16 @@ def test_what_is_known_is_seen_at_its_first_tick(template: Template) -> None:
     of = situations(requirement(template.sentence), exact=True)
     for run in runs(template, unknowns=0):
         (known,) = completions(run)
-        expected = {one.key: Encounter(one.key, met(one, run, known), None) for one in of}
+        expected = {one.key: SituationTicks(one.key, met(one, run, known), None) for one in of}
         assert shown(of, run) == expected
 
 
-def exact(one: Situation, firsts: Sequence[int | None]) -> Encounter:
+def exact(one: Situation, firsts: Sequence[int | None]) -> SituationTicks:
     """From the first tick of each completion: by when all have shown it, or some."""
     shows = [tick for tick in firsts if tick is not None]
     if shows and None not in firsts:
-        return Encounter(one.key, max(shows), None)
-    return Encounter(one.key, None, min(shows, default=None))
+        return SituationTicks(one.key, max(shows), None)
+    return SituationTicks(one.key, None, min(shows, default=None))
 
 
 @pytest.mark.slow
@@ -120,12 +120,12 @@ def test_every_situation_is_that_of_the_table_whatever_is_unknown(template: Temp
 def test_a_proposition_without_a_column_is_unknown_throughout() -> None:
     here = Situation("here", "p", f.Atom("p"))
     gone = Situation("gone", "q", f.Atom("q"), at_end=True)
-    found = encounters([here, gone], {"p": Column(0b100, 0)}, 4, nowhere_known(4))
-    assert [*found] == [Encounter("here", 2, None), Encounter("gone", None, 3)]
+    found = situation_ticks([here, gone], {"p": Column(0b100, 0)}, 4, nowhere_known(4))
+    assert [*found] == [SituationTicks("here", 2, None), SituationTicks("gone", None, 3)]
 
 
 def test_a_run_without_a_tick_shows_nothing() -> None:
     always = Situation("always", "", f.TRUE)
     last = Situation("last", "", f.TRUE, at_end=True)
-    found = encounters([always, last], {}, 0, nowhere_known(0))
-    assert [*found] == [Encounter("always", None, None), Encounter("last", None, None)]
+    found = situation_ticks([always, last], {}, 0, nowhere_known(0))
+    assert [*found] == [SituationTicks("always", None, None), SituationTicks("last", None, None)]

@@ -82,7 +82,7 @@ def test_what_happened_is_told_in_order_of_time() -> None:
     messages, _ = read(sidecar([result()], RULES))
     events = [(ns // S, one["level"], one["message"]) for ns, one in messages[VERDICTS]]
     assert events == [
-        (102, 2, "R1: triggered, an answer is awaited"),
+        (102, 2, "R1: triggered, waiting for the response"),
         (105, 4, "R1: violated from here on, triggered at 2 s: x = 5 km/h"),
         (105, 4, "R1: violated up to here"),
         (120, 4, "R1: violated: broken"),
@@ -105,8 +105,8 @@ def test_only_changes_of_state_are_messages() -> None:
     )
     messages, _ = read(sidecar([quiet], RULES))
     assert [(ns // S - 100, one["message"]) for ns, one in messages[VERDICTS]] == [
-        (10, "R1: triggered, an answer is awaited"),
-        (14, "R1: answered after 4 s"),
+        (10, "R1: triggered, waiting for the response"),
+        (14, "R1: response after 4 s"),
         (20, "R1: unknown from here on"),
         (20, "R1: satisfied: broken"),
         (25, "R1: known again"),

@@ -266,7 +266,7 @@ def test_a_query_that_cannot_be_answered_is_told_and_touches_no_file(
     before = sorted(Path().rglob("*"))
     run = fretc("audit", "runs.parquet", "--query", query)
     assert (run.status, run.out) == (2, "")
-    assert run.err.startswith("F913 the query cannot be answered: ")
+    assert run.err.startswith("F913 the query fails: ")
     assert sorted(Path().rglob("*")) == before
 
 

@@ -161,4 +161,4 @@ def test_a_damaged_or_foreign_parquet_file_is_told() -> None:
         Path("cut.parquet").write_bytes(good[:part])
         assert code("cut.parquet")[0] == "F503"
     files.write_table(pyarrow.table({"run": ["a"]}), "other.parquet")
-    assert code("other.parquet") == ("F503", "`other.parquet` is no table of `fretc-table-2`")
+    assert code("other.parquet") == ("F503", "`other.parquet` is not a table of `fretc-table-2`")

@@ -6,12 +6,12 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.audit.evidence.briefs import brief
+from fretc.audit.evidence.result_summaries import brief
 from fretc.audit.evidence.schema import Result
 from fretc.audit.outputs.totals import (
     COUNTED,
     NOT_JUDGED,
-    Marks,
+    VerdictWords,
     longest,
     runs,
     severity,
@@ -24,9 +24,9 @@ VERDICTS = ("violated", "no data", "inconclusive", "vacuous", "satisfied")
 TRIALS = {"answered": 1, "failed": 0, "open": 0}
 
 
-def marks(results: Iterable[Result], refused: Collection[str] = ()) -> Marks:
+def marks(results: Iterable[Result], refused: Collection[str] = ()) -> VerdictWords:
     """Those of these results."""
-    return Marks.of(map(brief, results), (), refused)
+    return VerdictWords.of(map(brief, results), (), refused)
 
 
 def audits(most: int = 6) -> st.SearchStrategy[list[Result]]:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from compiler.formalization.formalize import formalize
 from compiler.targets.python.monitor import text
-from fretc.audit.measurements.judgement import judged
+from fretc.audit.measurements.judgement import judge
 from fretc.audit.phases.by_shift import Phases, Stretch, phases
 from fretc.logs.signals.samples import Late, Recording, Samples, Topic
 from fretc.logs.signals.traces import trace
@@ -110,7 +110,7 @@ def at(phase: int, declarations: Declarations, log: Recording, watching: Monitor
     clock = replace(declarations.clock, phase=phase)
     other = replace(declarations, clock=clock)
     truths = trace(other, log, watching.PROPOSITIONS)
-    return judged(
+    return judge(
         watching,
         {name: truths.columns[name] for name in watching.PROPOSITIONS},
         truths.cut,

@@ -41,4 +41,4 @@ def test_without_a_choice_all_logs_are_audited_and_nothing_is_said() -> None:
     assert chosen(["a", "b"], None, None, 0) == (["a", "b"], None)
     _, selection = chosen(["a", "b"], None, 1, 7)
     assert selection is not None
-    assert in_words(selection) == "1 of 2 logs: a sample of 2 by chance, seed 7"
+    assert in_words(selection) == "1 of 2 logs: a sample of 2 chosen at random, seed 7"

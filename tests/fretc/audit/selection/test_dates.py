@@ -98,4 +98,4 @@ def test_what_has_no_date_is_not_older(log: str) -> None:
 def test_a_bad_time_is_one_message() -> None:
     found = since("last week")
     assert isinstance(found, Diagnostic)
-    assert found.message == "`--since last week` is neither a date nor a time ago"
+    assert found.message == "`--since last week` is neither a date nor a length of time"

@@ -14,7 +14,7 @@ from fretc.audit.evidence.writer import text
 from fretc.audit.store.agreement import COLUMNS
 from fretc.audit.store.anywhere import read, source
 from fretc.audit.store.errors import StoreError
-from fretc.audit.store.tables import TABLES, TableName, tabled
+from fretc.audit.store.tables import TABLES, TableName, to_tables
 from fretc.audit.store.writer import write_document
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.effort import FULL, some
@@ -59,7 +59,7 @@ def others(kind: pa.DataType, value: Any) -> Iterator[Any]:
 
 def forgeries() -> Iterator[Forgery]:
     """What is done, the table, and what it is then."""
-    for name, table in tabled(DOCUMENT.results, DOCUMENT.fretc).items():
+    for name, table in to_tables(DOCUMENT.results, DOCUMENT.fretc).items():
         for place, field in enumerate(table.schema):
             values = table[field.name].to_pylist()
             for row in (0, len(values) - 1):
@@ -80,7 +80,7 @@ def test_no_change_of_a_table_is_hidden(tmp_path: Path, monkeypatch: pytest.Monk
     assert isinstance(write_document(Path("store"), DOCUMENT, 0.95), str)
     manifest, before = Path("store/manifest.json"), text(DOCUMENT)
     sound = manifest.read_bytes()
-    genuine = tabled(DOCUMENT.results, DOCUMENT.fretc)
+    genuine = to_tables(DOCUMENT.results, DOCUMENT.fretc)
     all_of_them = [each for each in forgeries() if not each[2].equals(genuine[each[1]])]
     assert {name for _, name, _ in all_of_them} == {*TABLES}
     hidden = []

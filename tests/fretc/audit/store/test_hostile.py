@@ -14,7 +14,7 @@ from compiler.files.records import UNSET
 from fretc.audit.store.anywhere import read
 from fretc.audit.store.files import encoded
 from fretc.audit.store.reader import Store, opened
-from fretc.audit.store.tables import TABLES, TableName, tabled
+from fretc.audit.store.tables import TABLES, TableName, to_tables
 from fretc.audit.store.writer import is_store, remove, write_document
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import made_once
@@ -133,11 +133,11 @@ def test_what_is_no_manifest_is_refused(store: Path, text: str) -> None:
 
 def test_a_store_whose_audit_was_stopped_says_so(store: Path) -> None:
     os.rename(store / "manifest.json", store / "unfinished.json")
-    assert refused(store).endswith("has no manifest: its audit has not come to its end")
+    assert refused(store).endswith("has no manifest: its audit was not finished")
 
 
 def tables() -> dict[TableName, pa.Table]:
-    return dict(tabled(RESULTS, "1"))
+    return dict(to_tables(RESULTS, "1"))
 
 
 @pytest.mark.slow

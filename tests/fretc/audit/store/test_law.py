@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pyarrow.parquet import ParquetFile
 
 from compiler.files.records import UNSET, decoded, replace, types
-from fretc.audit.evidence.briefs import brief, run_facts
+from fretc.audit.evidence.result_summaries import brief, run_facts
 from fretc.audit.evidence.schema import Document, Result
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.reader import Store, evidence, opened

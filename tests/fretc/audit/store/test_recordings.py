@@ -11,7 +11,7 @@ import pytest
 
 from compiler.files import text_files
 from fretc.audit import many_logs as auditing
-from fretc.audit.many_logs import audited
+from fretc.audit.many_logs import audit_log
 from fretc.audit.plan import Plan
 from fretc.audit.store import recordings
 from fretc.audit.store.recordings import SampleCache
@@ -75,16 +75,16 @@ def test_a_log_is_read_again_only_where_something_else_of_it_is_read(
     tmp_path: Path, log: str, kept: SampleCache, opened: list[str], name: str
 ) -> None:
     before, now = plan(PROJECT), plan(CHANGES[name][0])
-    audited(before, log, kept=kept)
-    from_nothing = audited(now, log)
+    audit_log(before, log, kept=kept)
+    from_nothing = audit_log(now, log)
     opened.clear()
-    assert audited(now, log, kept=kept) == from_nothing
+    assert audit_log(now, log, kept=kept) == from_nothing
     assert opened == ([log] if name in READ_AGAIN else [])
 
 
 def _kept(folder: Path, log: str, kept: SampleCache) -> tuple[Plan, Path]:
     made = plan(PROJECT)
-    audited(made, log, kept=kept)
+    audit_log(made, log, kept=kept)
     (path,) = kept.folder.iterdir()
     return made, path
 
@@ -95,11 +95,11 @@ def test_a_log_that_is_another_one_is_read_again(
     made, _ = _kept(tmp_path, log, kept)
     write(Path(log), [*sent(late=True)])
     opened.clear()
-    found = audited(made, log, kept=kept)
+    found = audit_log(made, log, kept=kept)
     assert opened == [log]
-    assert found == audited(made, log)
+    assert found == audit_log(made, log)
     opened.clear()
-    assert audited(made, log, kept=kept) == found
+    assert audit_log(made, log, kept=kept) == found
     assert opened == []
 
 
@@ -108,10 +108,10 @@ def test_where_times_do_not_tell_the_log_is_hashed(
 ) -> None:
     monkeypatch.setattr(text_files, "_COARSEST", 10**18)
     made, _ = _kept(tmp_path, log, kept)
-    found = audited(made, log)
+    found = audit_log(made, log)
     monkeypatch.setattr(auditing, "read", lambda *_: pytest.fail("it was read"))
     opened.clear()
-    assert audited(made, log, kept=kept) == found
+    assert audit_log(made, log, kept=kept) == found
     assert opened == [log]
 
 
@@ -121,7 +121,7 @@ def test_a_log_can_be_known_by_its_hash_alone(
     made, _ = _kept(tmp_path, log, kept)
     for rehash, by in ((False, "stamp"), (True, "sha256")):
         opened.clear()
-        assert audited(made, log, kept=SampleCache(kept.folder, KEY, rehash)).known_by == by
+        assert audit_log(made, log, kept=SampleCache(kept.folder, KEY, rehash)).known_by == by
         assert opened == [log] * rehash
 
 
@@ -130,10 +130,10 @@ def test_a_log_that_is_gone_is_an_error_as_before(
 ) -> None:
     made, _ = _kept(tmp_path, log, kept)
     Path(log).unlink()
-    found = audited(made, log, kept=kept)
+    found = audit_log(made, log, kept=kept)
     assert not found.read
     assert [each.code.number for each in found.diagnostics] == ["F901"]
-    assert found == audited(made, log)
+    assert found == audit_log(made, log)
 
 
 def test_what_is_not_of_this_user_and_this_place_is_not_believed(
@@ -171,9 +171,9 @@ def test_of_a_file_that_does_not_stand_alone_nothing_is_kept(
     made = plan(PROJECT)
     other = Path(log).with_name("run.bin")
     shutil.copy(log, other)
-    audited(made, str(other), kept=kept)
+    audit_log(made, str(other), kept=kept)
     (other.parent / "metadata.yaml").write_text("rosbag2_bagfile_information: {version: 5}\n")
-    audited(made, log, kept=kept)
+    audit_log(made, log, kept=kept)
     assert not kept.folder.exists()
 
 

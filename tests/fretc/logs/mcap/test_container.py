@@ -27,7 +27,7 @@ def test_an_absurd_size_is_refused_before_memory_is_asked_for(tmp_path: Path) ->
     data[at : at + 8] = struct.pack("<Q", 2**40)
     path.write_bytes(data)
     recording = recorded(path, X)
-    assert "absurd size" in recording.findings[0].message
+    assert "impossible size" in recording.findings[0].message
     assert recording.gaps == ((1000 * S + 400 * MS, 1000 * S + 700 * MS),)
 
 
@@ -40,7 +40,7 @@ def test_a_damaged_summary_and_bytes_after_the_end_are_found(tmp_path: Path) -> 
     assert "its summary is damaged" in recording.findings[0].message
     path.write_bytes(data + b"more")
     recording = recorded(path, X)
-    assert "it goes on after its end" in recording.findings[0].message
+    assert "it contains data after its end" in recording.findings[0].message
     assert not recording.intact
 
 
@@ -73,13 +73,13 @@ def test_a_record_never_reads_the_bytes_of_the_next_one() -> None:
 @pytest.mark.parametrize(
     ("found", "why"),
     [
-        (chunk(b"abc", 2), "a chunk has another size than it states"),
-        (chunk(b"abc", 4), "a chunk has another size than it states"),
-        (chunk(b"abc", 3, crc=1), "a chunk has another CRC than it states"),
+        (chunk(b"abc", 2), "the size of a chunk differs from the size that it states"),
+        (chunk(b"abc", 4), "the size of a chunk differs from the size that it states"),
+        (chunk(b"abc", 3, crc=1), "the CRC of a chunk does not match its data"),
         (chunk(b"abc", 3, compression="zstd"), "a chunk does not decompress"),
         (chunk(b"no lz4 frame", 3, compression="lz4"), "a chunk does not decompress"),
-        (chunk(b"abc", 3, compression="zip"), "a chunk is compressed with the unknown `zip`"),
-        (chunk(b"abc", 200_001), "a chunk states the absurd size of 200001 bytes"),
+        (chunk(b"abc", 3, compression="zip"), "a chunk is compressed with the unknown codec `zip`"),
+        (chunk(b"abc", 200_001), "a chunk states an impossible size of 200001 bytes"),
     ],
 )
 def test_a_chunk_that_is_not_as_it_states_is_broken(found: Chunk, why: str) -> None:

@@ -111,8 +111,8 @@ def test_a_chunk_without_crc_and_index_is_held_against_its_own_times_and_size(
 @pytest.mark.parametrize(
     ("was", "now", "message"),
     [
-        (b"float64 data", b"float64 date", "it defines `std_msgs/msg/Float64` in two ways"),
-        (b"/x", b"/y", "it declares the topic `/y` in two ways"),
+        (b"float64 data", b"float64 date", "it defines `std_msgs/msg/Float64` twice, differently"),
+        (b"/x", b"/y", "it declares the topic `/y` twice, differently"),
     ],
 )
 def test_what_a_log_says_twice_must_be_the_same(
@@ -190,8 +190,8 @@ def message_starts(path: Path) -> list[int]:
 @pytest.mark.parametrize(
     ("offset", "byte", "kept", "what"),
     [
-        (0, 0x85, 7, "a chunk holds a record that does not belong there"),
-        (0, 0, 7, "a record has no kind"),
+        (0, 0x85, 7, "a chunk contains a record that is not allowed in chunks"),
+        (0, 0, 7, "a record has the opcode 0"),
         (1, 8, 7, "a message is cut off"),
         (3, 255, 7, "a record is cut off"),
         (1, 50, 8, "a record is cut off"),  # told by what then stands where the next should begin
@@ -233,8 +233,6 @@ def test_a_damaged_message_index_is_told_and_costs_nothing_where_a_crc_shows_the
     assert not isinstance(overview, Diagnostic)
     recording = overview.recording
     assert "F404" in codes(recording)
-    assert "the index of a chunk names other messages than are in it" in (
-        recording.findings[0].message
-    )
+    assert "the index of a chunk does not match its messages" in (recording.findings[0].message)
     assert not recording.intact
     assert recording.gaps == (() if crcs else ((TWELVE[4].time, TWELVE[7].time),))

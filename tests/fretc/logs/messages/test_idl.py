@@ -190,9 +190,9 @@ def test_a_definition_that_is_none_is_an_error_and_never_a_fault(
 )
 def test_what_has_no_end_is_looked_for_once(opened: str) -> None:
     """From each quote anew, a definition of 100 kB takes many seconds."""
-    with pytest.raises(DefinitionError, match="has no end"):
+    with pytest.raises(DefinitionError, match="is not closed"):
         types("a/msg/B", opened)
-    with pytest.raises(DefinitionError, match="has no end"):
+    with pytest.raises(DefinitionError, match="is not closed"):
         types("a/msg/B", f"{MIXED} {opened}")
 
 

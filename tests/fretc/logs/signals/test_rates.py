@@ -28,8 +28,8 @@ def test_a_topic_that_comes_with_each_tick_is_fast_enough(tmp_path: Path, period
 
 def test_one_slower_than_the_tick_is_told(tmp_path: Path) -> None:
     assert warnings_of(tmp_path, 200 * MS, UNAGED) == [
-        "F315 `/x` comes every 200 ms, and the clock ticks every 100 ms: most ticks see a sample "
-        "of an earlier one"
+        "F315 `/x` comes every 200 ms, and the clock ticks every 100 ms: most ticks use the "
+        "sample of an earlier tick"
     ]
 
 

@@ -290,8 +290,8 @@ def warnings(declarations: Declarations, limit: float) -> list[str]:
 def test_a_bound_below_the_least_range_is_blind() -> None:
     declarations = bound("gap < 5 cm", "min")
     assert warnings(declarations, 0.2) == [
-        "`close` compares `gap` with 0.05 m, and `/scan` reports nothing nearer than 0.2 m: what "
-        "is nearer than the bound cannot be seen"
+        "`close` compares `gap` with 0.05 m, and `/scan` reports nothing nearer than 0.2 m: an "
+        "obstacle nearer than the bound is not detected"
     ]
     (diagnostic,) = blind_zones(declarations.propositions["close"], declarations, {"gap": 0.2})
     assert diagnostic.span is not None
@@ -325,9 +325,9 @@ def test_around_an_outline_only_some_directions_may_be_blind() -> None:
     assert warnings(bound("gap < 5 cm", "outline"), 1.0) == []
     (some,) = warnings(bound("gap < 5 cm", "outline"), 1.2)
     share = 4 * 2 * math.degrees(math.acos(1.05 / 1.2))
-    assert some.endswith(f"cannot be seen in {round(share)} of 360 degrees")
+    assert some.endswith(f"is not detected in {round(share)} of 360 degrees")
     (everywhere,) = warnings(bound("gap < 5 cm", "outline"), 2.0)
-    assert everywhere.endswith("cannot be seen")
+    assert everywhere.endswith("is not detected")
 
 
 def test_a_direction_in_which_the_sensor_looks_at_the_outline_is_not_blind() -> None:

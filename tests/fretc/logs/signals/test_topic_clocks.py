@@ -93,7 +93,7 @@ def test_a_message_with_a_zero_stamp_is_unknown_from_the_one_before(tmp_path: Pa
     (finding,) = recording.findings
     assert (finding.code.number, finding.severity) == ("F416", Severity.WARNING)
     assert finding.message == (
-        "3 of 5 messages of `/scan` have a zero for a time: their samples are unknown"
+        "3 of 5 messages of `/scan` have the time 0: their samples are unknown"
     )
 
 
@@ -247,7 +247,7 @@ def test_a_clock_topic_that_no_signal_reads_is_looked_at_too(tmp_path: Path) -> 
     recording = recorded(write(tmp_path / "log.mcap", sent), declare(text))
     (finding,) = recording.findings
     assert finding.message == (
-        "1 of 1 messages of `/beat` have a zero for a time: their samples are unknown"
+        "1 of 1 messages of `/beat` have the time 0: their samples are unknown"
     )
     assert finding.span is not None
     assert finding.span.text == '"/beat"'
@@ -334,5 +334,5 @@ def test_a_clock_that_stands_still_is_told(tmp_path: Path, count: int, expected:
         if finding.code.number == "F420":
             assert finding.message == (
                 f"the clock of `/scan` stands still: {count} of {count + 3} messages have the "
-                "header.stamp of 9 or more beside them"
+                "header.stamp of 9 or more neighbours"
             )

@@ -39,7 +39,7 @@ from tests.fretc.logs.messages.test_decoding import bindings
 
 NOTE = (
     "a bag has no check sums, and one time for each message: a changed byte within a message "
-    "cannot be seen, and publish_time is log_time"
+    "is not detected, and publish_time is log_time"
 )
 
 
@@ -235,7 +235,7 @@ def test_types_that_a_bag_does_not_define_are_those_of_every_release(tmp_path: P
     assert values(recording, "x") == [i / 100 for i in range(12)]
     (finding,) = recording.findings
     assert finding.code is Code.BAG_FORMAT
-    assert "are taken for std_msgs/Float64" in finding.message
+    assert "are used for std_msgs/Float64" in finding.message
 
 
 def test_a_type_that_has_changed_between_releases_is_not_guessed(tmp_path: Path) -> None:

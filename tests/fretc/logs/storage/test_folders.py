@@ -183,7 +183,7 @@ def test_fewer_messages_than_stated_are_a_loss_of_any_time(tmp_path: Path) -> No
     (finding,) = recording.findings
     assert finding.code is Code.COUNT_MISMATCH
     assert finding.message.startswith(
-        "its metadata.yaml states 12 messages, and its files hold 11; what was recorded from"
+        "its metadata.yaml states 12 messages, but its files hold 11; what was recorded from"
     )
 
 
@@ -235,7 +235,7 @@ def test_a_file_of_a_run_that_is_named_alone_is_told(tmp_path: Path) -> None:
     recording = recorded(path / "run_1.mcap", X)
     assert values(recording, "x") == [0.04, 0.05, 0.06, 0.07]
     (finding,) = recording.findings
-    assert finding.message == "it is file 2 of 3 of one run, and judged alone"
+    assert finding.message == "it is file 2 of 3 of one run, but judged alone"
     assert finding.help == f"name the folder `{path}`: its files are one log"
     assert recording.intact
 

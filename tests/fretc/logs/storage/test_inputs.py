@@ -445,7 +445,7 @@ def test_a_log_that_grows_while_it_is_read_is_what_it_was(
     *found, finding = grown.findings
     assert found == list(still.findings)
     assert render(finding) == (
-        f"F431 warning: it grew while it was read: what is judged are the first {len(begun):,} "
+        f"F431 warning: the log grew while it was read: the audit covers the first {len(begun):,} "
         f"bytes\n  --> {path}\nhelp: audit it again when its recording, or its copy, is complete"
     )
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from fretc.logs.storage.places import Places
+from fretc.logs.storage.places import AllowedLocations
 
 
 @pytest.fixture(autouse=True)
@@ -27,7 +27,7 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ],
 )
 def test_files_below_the_present_folder_and_https_are_opened(place: str) -> None:
-    assert Places().refusal(place) == ""
+    assert AllowedLocations().refusal(place) == ""
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_files_below_the_present_folder_and_https_are_opened(place: str) -> None
     ],
 )
 def test_nothing_else_is(place: str) -> None:
-    assert Places().refusal(place) != ""
+    assert AllowedLocations().refusal(place) != ""
 
 
 @pytest.mark.parametrize(
@@ -82,10 +82,10 @@ def test_nothing_else_is(place: str) -> None:
 def test_what_the_user_names_is_opened_and_nothing_beside_it(
     named: str, place: str, opened: bool
 ) -> None:
-    assert (Places((named,)).refusal(place) == "") is opened
+    assert (AllowedLocations((named,)).refusal(place) == "") is opened
 
 
 @pytest.mark.parametrize("place", ["https://host/a.mcap", "s3://bucket/a.mcap"])
 def test_offline_no_server_is_asked(place: str) -> None:
-    assert Places(("s3://bucket/",), offline=True).refusal(place) != ""
-    assert Places(offline=True).refusal("a.mcap") == ""
+    assert AllowedLocations(("s3://bucket/",), offline=True).refusal(place) != ""
+    assert AllowedLocations(offline=True).refusal("a.mcap") == ""

@@ -85,7 +85,7 @@ def test_one_file_of_a_run_that_is_named_alone_is_told(tmp_path: Path) -> None:
     recording = recorded(folder / "run_1.bag", X)
     assert codes(recording) == ["F415", "F413"]
     finding = recording.findings[1]
-    assert finding.message == "it is file 2 of 2 of one run, and judged alone"
+    assert finding.message == "it is file 2 of 2 of one run, but judged alone"
     assert finding.help == f"name '{folder}/run_*.bag': its files are one log"
 
 
@@ -129,9 +129,9 @@ def test_a_bag_that_was_reindexed_has_lost_its_end(tmp_path: Path, name: str, ba
     assert (codes(recording), recording.intact) == (["F422", "F415"], False)
     assert recording.gaps == ((SIX[5].time, SIX[5].time),)
     assert recording.findings[0].message == (
-        "it was reindexed, and the chunk that was being written when its recording broke off is "
-        f"not in it (`{backup}` is beside it): whole messages go 0.5 s far, and what came then "
-        "is unknown"
+        "the bag was reindexed: the chunk that was being written when the recording stopped is "
+        f"missing (`{backup}` is beside it): complete messages end after 0.5 s; what follows is "
+        "unknown"
     )
 
 

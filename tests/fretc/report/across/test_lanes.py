@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.audit.evidence.briefs import Stretches
+from fretc.audit.evidence.result_summaries import Stretches
 from fretc.report.across.lanes import MOST_LANES, RunStretches, plan
 from fretc.report.model.across import LaneMark, Lanes
 from fretc.report.model.marks import verdict_mark

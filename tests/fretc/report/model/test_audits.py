@@ -1,6 +1,6 @@
 """What a result shows of its requirement."""
 
-from fretc.audit.evidence.briefs import brief
+from fretc.audit.evidence.result_summaries import brief
 from fretc.report.model.audits import SingleAudit
 from tests.fretc.audit.results import result
 

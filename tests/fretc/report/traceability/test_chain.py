@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from compiler.project.project import Project
 from fretc.audit.evidence import reader as reading
-from fretc.audit.evidence.briefs import Briefs
+from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.report.traceability.chain import Chain, Link, Node, chains, suspects
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.fretc.report import cases
@@ -29,7 +29,7 @@ whenever near the robot shall within 300 milliseconds satisfy stopped
 def chain(project: Project, *results: Mapping[str, Any]) -> Chain:
     audited = reading.read(cases.write_evidence(project, Path(), *results))
     assert not isinstance(audited, Diagnostic), audited
-    (only,) = chains(project, Briefs.of(audited))
+    (only,) = chains(project, ResultSummaries.of(audited))
     return only
 
 

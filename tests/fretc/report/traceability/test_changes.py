@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from compiler.project.folder import load_folder
-from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.reader import EvidenceFile
+from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.store.anywhere import read as read_evidence
 from fretc.report.traceability.chain import Node, chains
 from fretc.report.traceability.comparison import Difference, differences
@@ -151,11 +151,11 @@ EXPECTED: Mapping[str, dict[str, list[Expected]]] = {
 }
 """What each single change is reported as; a change that is not here changes nothing."""
 OF_EVIDENCE = {
-    "another fretc": "another version of fretc has made the audit",
+    "another fretc": "the audit was made with another version of fretc",
     "a sentence": "the sentence has changed since the audit",
     "numbers": "the numbers in `params` have changed since the audit",
     "a clock": "the clock has changed since the audit",
-    "topics": "the topics that the audit reads, and its ticks begin with, have changed since then",
+    "topics": "the topics that the audit reads have changed since the audit",
     "bindings": "the bindings have changed since the audit",
     "a monitor": "what was audited or proved is about another artefact r1_monitor.py",
     "of before the clock": "the clock has changed since the audit",
@@ -196,7 +196,9 @@ def compared(lock: Lock | None = None) -> dict[str, Difference]:
     assert not isinstance(project, Diagnostic)
     assert not isinstance(evidence, Diagnostic)
     base = lock or locked()
-    found = differences(standings(chains(project, Briefs.of(evidence)), base), base, project)
+    found = differences(
+        standings(chains(project, ResultSummaries.of(evidence)), base), base, project
+    )
     return {each.requirement: each for each in found if each.state != "same"}
 
 

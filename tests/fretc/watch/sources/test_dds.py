@@ -84,7 +84,7 @@ def played(log: Path, folder: Path, first: float, last: float) -> tuple[Watched,
             with node as core, process(here, "tests.dds_robot", *words) as robot:
                 printed = robot.communicate(timeout=300)[0]
                 until(
-                    "all is over", lambda: all(run.says(f"nobody publishes `{t}`") for t in TOPICS)
+                    "all is over", lambda: all(run.says(f"`{t}` has no publisher") for t in TOPICS)
                 )
                 said = json.loads(core.communicate(timeout=60)[0])
             assert run.end() in (0, 1, 3)

@@ -218,9 +218,9 @@ OTHER_HASH = "RIHS01_" + "0" * 64
 @pytest.mark.parametrize(
     ("type_", "digest", "why"),
     [
-        (BOOL, OTHER_HASH, "the type hash is another one"),
-        ("my_msgs/msg/Own", OTHER_HASH, "is none of ROS 2's own"),
-        ("sensor_msgs/msg/Range", None, "not the same in all releases"),
+        (BOOL, OTHER_HASH, "the type hash differs"),
+        ("my_msgs/msg/Own", OTHER_HASH, "is not a type of ROS 2 itself"),
+        ("sensor_msgs/msg/Range", None, "differs between releases"),
     ],
 )
 def test_what_nobody_defines_is_told_of_and_handed_on(

@@ -21,7 +21,7 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from websockets.sync.server import ServerConnection
 
 from fretc.commands.watch_output import Lines
-from fretc.watch.news import Found
+from fretc.watch.events import DiagnosticEvent
 from fretc.watch.session import Session
 from fretc.watch.sources import foxglove
 from fretc.watch.sources.foxglove import Foxglove
@@ -227,7 +227,7 @@ def saying(*messages: str | bytes) -> Callable[[ServerConnection], None]:
 @each("subprotocols", [None, ["foxglove.websocket.v99"]])
 def test_a_server_of_another_protocol_is_one_error(subprotocols: list[str] | None) -> None:
     with hostile(silent, subprotocols=subprotocols) as url:
-        assert "Foxglove's" in only_problem(url).message
+        assert "Foxglove" in only_problem(url).message
 
 
 @each("first", [None, "{}", '{"op": "status", "level": 0, "message": ""}', b"\x01", "no json"])
@@ -293,14 +293,14 @@ def test_nothing_of_a_stranger_reaches_the_terminal_as_it_is(
     plan = plan_of(Setting(slow="y < 5"))
     lines = Lines()
     for problem in found.of(Problem):
-        lines.tell(Found(problem.diagnostic), Session(plan))
+        lines.tell(DiagnosticEvent(problem.diagnostic), Session(plan))
     with hostile(closes) as url, listened(url) as found:
         found.wait("it is reported", lambda: found.of(Interrupted))
     for event in found.of(Interrupted):
         lines.tell(event, Session(plan))
     output = capsys.readouterr()
     assert "out of order" in output.out
-    assert "the server says" in output.err
+    assert "the server reports" in output.err
     assert not {"\x1b", "\x07"} & {*output.out, *output.err}
 
 
@@ -357,7 +357,7 @@ def test_a_channel_that_cannot_be_decoded_is_told_of(encoding: str) -> None:
         found.wait("the message comes", lambda: found.of(Arrival))
     watch = Watch(plan_of(Setting(slow="y < 5")))
     news = [each for item in found.items for each in watch.take(item)]
-    problems = [each.diagnostic.code for each in news if isinstance(each, Found)]
+    problems = [each.diagnostic.code for each in news if isinstance(each, DiagnosticEvent)]
     assert Code.UNKNOWN_ENCODING in problems
 
 

@@ -70,7 +70,7 @@ CHANGES: list[tuple[Callable[[Path], None], str]] = [
     (_gone, "it is gone"),
     (_another, "another file has taken its place"),
     (_shorter, "it has become shorter than what was read of it"),
-    (_over, "another log has been written over it"),
+    (_over, "another log was written over it"),
 ]
 
 

@@ -1,4 +1,4 @@
-"""The first files of a project: hazards, bindings and one requirement, which can be audited.
+"""The first files of a project: hazards, bindings and one requirement that can be audited.
 
 With a log the requirement bounds a signal of it, by the least round number that the log keeps; so
 its first audit shows something, and a person puts the true limit in its place.
@@ -25,26 +25,26 @@ from fretish.diagnostics.source import Source
 from fretish.printer import identifier
 
 _PREFERENCE = ("m/s", "m", "rad/s")
-"""Units of the signals that a first requirement is best about; any other comes after them."""
+"""Units of the signals that suit a first requirement best; all other units come after them."""
 _DIGITS = 2
-"""Of a limit, that count."""
+"""Significant digits of a limit."""
 _NAMES = ("r1.fret", "bindings.toml", "hazards.toml")
 
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """A signal, and what it does not exceed."""
+    """A signal and its upper limit."""
 
     signal: str
     limit: str
-    """As a decimal."""
+    """A decimal number."""
     unit: str
-    """Empty: a plain number."""
+    """The unit; empty: a plain number."""
 
 
 @dataclass(frozen=True, slots=True)
 class FirstRequirement:
-    """A requirement, and what its sentence needs in the bindings."""
+    """A requirement, and the bindings that its sentence needs."""
 
     title: str
     text: str
@@ -53,7 +53,7 @@ class FirstRequirement:
 
 
 def first_requirement(bound: Bound, origin: str) -> FirstRequirement:
-    """How a requirement about one signal is written: the only place that knows.
+    """The text of a requirement about one signal.
 
     Args:
         bound: what is required.
@@ -68,24 +68,24 @@ def first_requirement(bound: Bound, origin: str) -> FirstRequirement:
 
 
 @dataclass(frozen=True, slots=True)
-class Beginning:
+class StarterFiles:
     """The first files of a project."""
 
     files: Mapping[str, str]
-    """Name → text."""
+    """The text of each file, by name."""
     findings: tuple[Diagnostic, ...] = ()
-    """About the log that they are drafted from."""
+    """Diagnostics about the log from which the files are drafted."""
 
 
-def without_log() -> Beginning:
-    """The beginning of a project of which no log is known."""
+def without_log() -> StarterFiles:
+    """The first files of a project without a log."""
     bound = Bound("speed", "1.5", "m/s")
     requirement = first_requirement(bound, "is an example.")
-    return Beginning(_files(requirement, render("project/speed.toml.j2")))
+    return StarterFiles(_files(requirement, render("project/speed.toml.j2")))
 
 
-def from_log(log: str) -> Beginning | Diagnostic:
-    """The beginning of a project whose first requirement is about a signal of the log."""
+def from_log(log: str) -> StarterFiles | Diagnostic:
+    """The first files of a project whose first requirement is about a signal of the log."""
     overview = look(log, words=True)
     if isinstance(overview, Diagnostic):
         return overview
@@ -101,7 +101,7 @@ def from_log(log: str) -> Beginning | Diagnostic:
         return _no_signal(log)
     origin = f"is the largest value in {Path(overview.recording.name).name}, rounded up."
     files = _files(first_requirement(bound, origin), signals)
-    return Beginning(files, overview.recording.findings)
+    return StarterFiles(files, overview.recording.findings)
 
 
 def _files(requirement: FirstRequirement, signals: str) -> dict[str, str]:
@@ -114,14 +114,14 @@ def _files(requirement: FirstRequirement, signals: str) -> dict[str, str]:
 
 
 def _signals(overview: Overview) -> str:
-    """Clock and signals; of a log without a well-known type of message every field."""
+    """The clock and signals; if no message type is well known, a signal for every field."""
     text = draft(overview, ())
     plain = () if drafted_signals(overview) else plain_signals(overview)
     return text + render("project/signals.toml.j2", signals=plain)
 
 
 def _bounds(declarations: Declarations, recording: Recording) -> Iterator[Bound]:
-    """What each signal of the recording keeps, the best one to begin with first."""
+    """The bound that each signal of the recording satisfies, the best first requirement first."""
     signals = sorted(
         declarations.signals.values(),
         key=lambda signal: (
@@ -140,14 +140,14 @@ def _bounds(declarations: Declarations, recording: Recording) -> Iterator[Bound]
 
 
 def _is_steady(signal: Signal, recording: Recording) -> bool:
-    """Whether its topic comes so often that the signal is known throughout."""
+    """Whether the topic of the signal is frequent enough for the signal to be known throughout."""
     topic = recording.topics[signal.path.topic]
     gap = topic.longest_gap_ns
     return signal.max_age is not None and gap is not None and gap <= signal.max_age
 
 
 def _varies(signal: Signal, recording: Recording) -> bool:
-    """Whether it has more than one value: the limit of any other would say nothing."""
+    """Whether the signal has more than one value: the limit of a constant would show nothing."""
     samples = recording.samples.get(signal.name)
     return samples is not None and bool((samples.values[1:] != samples.values[:-1]).any())
 
@@ -158,7 +158,7 @@ def _rank(signal: Signal) -> int:
 
 
 def _limit(largest: float) -> str:
-    """The least number of two digits that is not below it."""
+    """The least number of two digits that is not below the value."""
     exact = Decimal(largest)
     if not exact:
         return "0"
@@ -170,7 +170,7 @@ def _limit(largest: float) -> str:
 def _no_signal(log: str) -> Diagnostic:
     return Diagnostic(
         Code.NOTHING_TO_DO,
-        f"no number of `{name_of(log)}` can be read throughout: there is nothing to require of it",
+        f"no number of `{name_of(log)}` is known throughout: no requirement can be drafted from it",
         Source(name_of(log), "").span(),
-        help="look at it with `fretc info`, or leave `--from` out",
+        help="list its topics with `fretc info`, or leave out `--from`",
     )

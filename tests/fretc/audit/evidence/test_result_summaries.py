@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.files.records import replace
-from fretc.audit.evidence.briefs import audited_s, stretches
+from fretc.audit.evidence.result_summaries import audited_s, stretches
 from fretc.audit.evidence.schema import Result
 from fretish.clock import Clock
 from tests.fretc.audit.results import result

@@ -1,4 +1,4 @@
-"""A result without its events, and evidence that gives results in this form: what counts of many.
+"""Summaries of results without their events, and the interface of evidence that provides them.
 
 Ten thousand runs do not fit into memory with all their events. What counts results, marks them and
 sorts them reads briefs, and asks for the few results that it shows in full.
@@ -31,12 +31,12 @@ from fretish.bindings.canonical import digest
 from fretish.clock import period_of
 
 Recorded = tuple[str | UnsetType, ...]
-"""SHA-256 of each of `fretc.audit.evidence.basis.KINDS`; unset where it was not known then."""
+"""SHA-256 of each of `fretc.audit.evidence.basis.KINDS`; unset if it is unknown."""
 
 
 @dataclass(frozen=True, slots=True)
-class Brief:
-    """What the audit of one run says of one requirement, with its events counted."""
+class ResultSummary:
+    """The result of one requirement in one run, with the number of its events."""
 
     run: str
     requirement: str
@@ -49,38 +49,38 @@ class Brief:
     triggers: int
     answers: int
     at_once: int
-    """Of the answers, those at the tick of their trigger."""
+    """Number of answers at the tick of their trigger."""
     open: int
     violations: int
     violated_ticks: int
     first_violation_ns: int | None
     first_violation_s: float | None
     unknown: int
-    """Stretches of ticks at which it cannot be known whether a demand was broken."""
+    """Number of intervals of ticks at which it is unknown whether a demand was broken."""
     unknown_ticks: int
     latency_median_s: float | None
     latency_max_s: float | None
     intact: bool
-    """Whether nothing of the log could have been lost."""
+    """False: messages of the log may have been lost."""
     fingerprints: Hashes
     judgement: str
-    """SHA-256 of the verdict and the ticks that it is about, as a review accepts it."""
+    """SHA-256 of the verdict and its ticks, as a review accepts it."""
     trials: Trials | None
-    """Of a requirement with a probability, where the log could be read."""
+    """Present for a requirement with a probability, if the log could be read."""
 
     @property
     def log(self) -> str:
-        """SHA-256 of the log; empty where it was not read whole, or could not be read."""
+        """SHA-256 of the log; empty if it was not read as a whole, or could not be read."""
         return self.fingerprints.log or ""
 
     @property
     def rests_on(self) -> Recorded:
-        """The fingerprints of what the verdict rests on beside the log."""
+        """The fingerprints of the inputs of the verdict other than the log."""
         return tuple(getattr(self.fingerprints, kind) for kind in KINDS)
 
     @property
     def content(self) -> str:
-        """What tells its log from another one: copies have the same.
+        """Hash of the content of the log, to detect copies of it.
 
         So has a log whose messages were written again, in other chunks, say. What cannot be read
         has no hash.
@@ -91,7 +91,7 @@ class Brief:
 
 @dataclass(frozen=True, slots=True)
 class RunFacts:
-    """What all results of one run share."""
+    """The facts that all results of one run share."""
 
     run: str
     clock: str
@@ -99,7 +99,7 @@ class RunFacts:
     start_ns: int | None
     end_ns: int | None
     log: str
-    """SHA-256 of the log; empty where it was not read whole, or could not be read."""
+    """SHA-256 of the log; empty if it was not read as a whole, or could not be read."""
     log_summary: str
     health: Health
     assumptions: tuple[str, ...]
@@ -109,12 +109,12 @@ class RunFacts:
 
 
 Span = tuple[float, float]
-"""From and to, in seconds from the first tick of a run."""
+"""Start and end, in seconds from the first tick of a run."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stretches:
-    """When a requirement was violated, unknown or open in one run: for a picture of many runs.
+    """The intervals of one run at which a requirement was violated, unknown or open.
 
     A tick lasts until the next one. Where the clock ticks by message, ends of ticks of which the
     evidence has no time lie evenly between those of which it has one.
@@ -129,7 +129,7 @@ class Stretches:
 
 
 class Head(Protocol):
-    """What evidence says of its audit as a whole, in a file or in the manifest of a store."""
+    """The facts of an audit as a whole, in a file or in the manifest of a store."""
 
     @property
     def fretc(self) -> str:
@@ -137,27 +137,27 @@ class Head(Protocol):
 
     @property
     def bindings(self) -> Bindings:
-        """Those that the logs were read by."""
+        """The bindings with which the logs were read."""
 
     @property
     def requirements(self) -> Sequence[Requirement]:
-        """Of the audit."""
+        """The requirements of the audit."""
 
     @property
     def probabilities(self) -> Sequence[Estimated] | UnsetType:
-        """Of all runs; unset without such a requirement."""
+        """The answers of all runs; unset if no requirement has a probability."""
 
     @property
     def selection(self) -> Selection | UnsetType:
-        """Of logs; unset: all."""
+        """The selection of logs; unset: all."""
 
 
-class Headed:
-    """The part of an `EvidenceSource` that its head gives."""
+class HeadProperties:
+    """The properties of an `EvidenceSource` that its head provides."""
 
     @property
     def head(self) -> Head:
-        """What it says of the audit as a whole."""
+        """The facts of the audit as a whole."""
         raise NotImplementedError
 
     @property
@@ -167,35 +167,35 @@ class Headed:
 
     @property
     def bindings(self) -> Bindings:
-        """Those that the logs were read by."""
+        """The bindings with which the logs were read."""
         return self.head.bindings
 
     @property
     def requirements(self) -> Sequence[Requirement]:
-        """Of the audit."""
+        """The requirements of the audit."""
         return self.head.requirements
 
     @property
     def probabilities(self) -> Sequence[Estimated]:
-        """What all runs say of each requirement with a probability."""
+        """The answer of all runs for each requirement with a probability."""
         return self.head.probabilities or ()
 
     @property
     def selection(self) -> Selection | None:
-        """Which of the named logs were audited; None: all."""
+        """The selection of the named logs that were audited; None: all."""
         return self.head.selection or None
 
 
 class EvidenceSource(Protocol):
-    """Evidence in a file or in a store. The place of a result is its number in it, from 0."""
+    """Evidence in a file or in a store. The index of a result counts from 0."""
 
     @property
     def file(self) -> str:
-        """Its name, as the user gave it."""
+        """The name of the evidence, as the user gave it."""
 
     @property
     def sha256(self) -> str:
-        """Of the file; of a store that of its manifest, which has those of its tables."""
+        """SHA-256 of the evidence file; of a store the SHA-256 of its manifest."""
 
     @property
     def fretc(self) -> str:
@@ -203,31 +203,31 @@ class EvidenceSource(Protocol):
 
     @property
     def bindings(self) -> Bindings:
-        """Those that the logs were read by."""
+        """The bindings with which the logs were read."""
 
     @property
     def requirements(self) -> Sequence[Requirement]:
-        """Of the audit."""
+        """The requirements of the audit."""
 
     @property
     def probabilities(self) -> Sequence[Estimated]:
-        """What all runs say of each requirement with a probability."""
+        """The answer of all runs for each requirement with a probability."""
 
     @property
     def selection(self) -> Selection | None:
-        """Which of the named logs were audited; None: all."""
+        """The selection of the named logs that were audited; None: all."""
 
-    def briefs(self) -> Iterator[tuple[int, Brief]]:
-        """Each result with its place, in order: the requirements of a run stand together."""
+    def briefs(self) -> Iterator[tuple[int, ResultSummary]]:
+        """The summary of each result with its index, in order; the results of a run adjoin."""
 
     def runs(self) -> Iterator[RunFacts]:
         """The facts of each run, in the order of their first results."""
 
-    def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
-        """The whole results at some places, in order."""
+    def details(self, indices: Collection[int]) -> Iterator[tuple[int, Result]]:
+        """The whole results at the given indices, in order."""
 
     def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
-        """Latencies in seconds of each result of some requirements, with its place, in order.
+        """Latencies in seconds of each result of some requirements, with its index, in order.
 
         A store is read once for all of them.
         """
@@ -235,42 +235,42 @@ class EvidenceSource(Protocol):
     def thresholds(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Sequence[Threshold]]]:
-        """The thresholds of each result of some requirements, with its place, in order."""
+        """The thresholds of each result of some requirements, with its index, in order."""
 
     def situations(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Situations | UnsetType]]:
-        """Which situations each result of some requirements shows, with its place, in order."""
+        """The situations that each result of some requirements shows, with its index, in order."""
 
 
 @dataclass(frozen=True, slots=True)
-class Briefs:
-    """All results of some evidence in brief, and the evidence, which has the rest."""
+class ResultSummaries:
+    """The summaries of all results of some evidence, and the evidence itself."""
 
     source: EvidenceSource
-    by_requirement: Mapping[str, Sequence[tuple[int, Brief]]]
-    """Those of each requirement that has any, with their places, in order."""
+    by_requirement: Mapping[str, Sequence[tuple[int, ResultSummary]]]
+    """The summaries of each requirement that has results, with their indices, in order."""
     firsts: Mapping[tuple[str, str], int]
-    """The place of the first result of each run, by the name and the hash of its log."""
+    """The index of the first result of each run, by the name and the hash of its log."""
 
     @classmethod
-    def of(cls, source: EvidenceSource) -> Briefs:
-        """Those of the evidence, read once; values that many have are there once, too."""
-        groups: dict[str, list[tuple[int, Brief]]] = {}
+    def of(cls, source: EvidenceSource) -> ResultSummaries:
+        """The summaries of all results, read once; equal values are shared to save memory."""
+        groups: dict[str, list[tuple[int, ResultSummary]]] = {}
         pools: _Pools = {str: {}, int: {}, float: {}}
         firsts: dict[tuple[str, str], int] = {}
-        for place, each in source.briefs():
+        for index, each in source.briefs():
             shared = _sharing(each, pools)
-            groups.setdefault(each.requirement, []).append((place, shared))
-            firsts.setdefault((shared.run, shared.log), place)
+            groups.setdefault(each.requirement, []).append((index, shared))
+            firsts.setdefault((shared.run, shared.log), index)
         return cls(source, groups, firsts)
 
 
 _Pools = dict[type, dict[Any, Any]]
 
 
-def _sharing(brief: Brief, pools: _Pools) -> Brief:
-    """The same with values that are there already."""
+def _sharing(brief: ResultSummary, pools: _Pools) -> ResultSummary:
+    """The summary with its values replaced by equal ones that are already in memory."""
     values, share = [*_values(brief)], pools[str].setdefault
     for at, kind in _COMMON:
         value = values[at]
@@ -278,11 +278,11 @@ def _sharing(brief: Brief, pools: _Pools) -> Brief:
             values[at] = pools[kind].setdefault(value, value)
     prints = [each and share(each, each) for each in _prints(brief.fingerprints)]
     values[_AT] = Hashes(**dict(zip(_PRINTS, prints, strict=True)))
-    return Brief(*values)
+    return ResultSummary(*values)
 
 
 _PRINTS = Hashes.__struct_fields__
-_FIELDS = tuple(each.name for each in fields(Brief))
+_FIELDS = tuple(field.name for field in fields(ResultSummary))
 _AT = _FIELDS.index("fingerprints")
 _COMMON = tuple(
     (_FIELDS.index(name), kind)
@@ -293,15 +293,15 @@ _COMMON = tuple(
     )
     for name in names.split()
 )
-"""Fields that many briefs have the same value of, and its type; small counts are there once."""
+"""Fields that often have equal values, with their types; small counts are always shared."""
 _prints, _values = attrgetter(*_PRINTS), attrgetter(*_FIELDS)
 
 
-def brief(result: Result) -> Brief:
-    """The brief of a result."""
+def brief(result: Result) -> ResultSummary:
+    """The summary of a result."""
     violations, latencies = result.violations, result.latencies
     first = violations[0] if violations else None
-    return Brief(
+    return ResultSummary(
         run=result.run,
         requirement=result.requirement,
         verdict=result.verdict,
@@ -330,12 +330,12 @@ def brief(result: Result) -> Brief:
 
 
 def judgement(result: Result) -> str:
-    """SHA-256 of the verdict and the ticks that it is about."""
+    """SHA-256 of the verdict and its ticks."""
     return judgement_of(
         result.verdict,
         result.finite,
         len(result.triggers),
-        [[each.first_tick, each.last_tick] for each in result.violations],
+        [[violation.first_tick, violation.last_tick] for violation in result.violations],
         [moment.tick for moment in result.open],
     )
 
@@ -347,13 +347,13 @@ def judgement_of(
     violations: Sequence[Sequence[int]],
     open_at: Sequence[int | None],
 ) -> str:
-    """The same of the parts of a result.
+    """SHA-256 of the verdict and its ticks, from the parts of a result.
 
     Args:
-        verdict: its word.
-        finite: whether it holds of the run as it is, as a whole one.
-        triggers: how many.
-        violations: the first and the last tick of each.
+        verdict: the word of the verdict.
+        finite: FRET's verdict of the whole finite trace.
+        triggers: the number of triggers.
+        violations: the first and the last tick of each violation.
         open_at: the tick of each trigger whose demand is open at the end.
     """
     return digest(
@@ -371,7 +371,7 @@ def run_facts(results: Sequence[Result]) -> RunFacts:
     """The facts of a run.
 
     Args:
-        results: all of one run, at least one.
+        results: all results of one run, at least one.
     """
     first = results[0]
     assumptions = dict.fromkeys(text for result in results for text in result.assumptions)
@@ -390,7 +390,7 @@ def run_facts(results: Sequence[Result]) -> RunFacts:
 
 
 def stretches(result: Result) -> Stretches:
-    """The stretches of a result."""
+    """The intervals at which a result is violated, unknown or open."""
     if not (result.violations or result.unknown or result.open):
         return Stretches(_length(result), (), (), ())
     at = _seconds(result)
@@ -405,23 +405,23 @@ def stretches(result: Result) -> Stretches:
 
 
 def _seconds(result: Result) -> Callable[[int], float]:
-    """The time at which a tick begins; behind the last tick, when that one ends."""
+    """The time at which a tick begins; for an index after the last tick, the end of that tick."""
     moments = [*result.triggers, *result.open, *(v.first for v in result.violations)]
     moments += [v.last for v in result.violations]
     times = {0: 0.0} | {moment.tick: moment.seconds for moment in moments}
     times |= {state.tick: state.seconds for state in result.states}
     times |= {answer.tick: answer.seconds for answer in result.answers}
-    known = sorted(times)
-    rate = times[known[-1]] / known[-1] if known[-1] else _mean_tick(result)
+    known_ticks = sorted(times)
+    rate = times[known_ticks[-1]] / known_ticks[-1] if known_ticks[-1] else _mean_tick(result)
 
     def at(tick: int) -> float:
-        place = bisect_right(known, tick) - 1
-        before = known[place]
+        index = bisect_right(known_ticks, tick) - 1
+        before = known_ticks[index]
         if before == tick:
             return times[tick]
-        if place + 1 == len(known):
+        if index + 1 == len(known_ticks):
             return round(times[before] + (tick - before) * rate, 9)
-        after = known[place + 1]
+        after = known_ticks[index + 1]
         share = (tick - before) / (after - before)
         return round(times[before] + (times[after] - times[before]) * share, 9)
 
@@ -429,16 +429,20 @@ def _seconds(result: Result) -> Callable[[int], float]:
 
 
 def _length(result: Result) -> float:
-    """When the last tick ends, of a result without stretches."""
+    """The end of the last tick, for a result without intervals."""
     last = [events[-1] for events in (result.triggers, result.states, result.answers) if events]
-    known = max(last, key=lambda event: event.tick, default=None)
-    if known is None or not known.tick:
+    last_event = max(last, key=lambda event: event.tick, default=None)
+    if last_event is None or not last_event.tick:
         return round(result.ticks * _mean_tick(result), 9)
-    return round(known.seconds + (result.ticks - known.tick) * (known.seconds / known.tick), 9)
+    return round(
+        last_event.seconds
+        + (result.ticks - last_event.tick) * (last_event.seconds / last_event.tick),
+        9,
+    )
 
 
 def _mean_tick(result: Result) -> float:
-    """Seconds of a tick of which only the run is known."""
+    """The mean length of a tick in seconds, if only the length of the run is known."""
     return (audited_s(result) or 0.0) / result.ticks if result.ticks else 0.0
 
 

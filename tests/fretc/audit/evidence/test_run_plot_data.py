@@ -11,8 +11,8 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from compiler.files.records import plain
-from fretc.audit.evidence.courses import course, place
 from fretc.audit.evidence.reader import EvidenceFile, read
+from fretc.audit.evidence.run_plot_data import plot_data, position_at
 from fretc.audit.evidence.schema import MOST_POINTS, MOST_WORDS, Result, Way
 from fretc.logs.signals.samples import Recording, Samples
 from fretish.bindings.tables.reader import read_bindings
@@ -61,7 +61,7 @@ def log(x: Samples, y: Samples, **changes: Any) -> Recording:
 def way(rows: Sequence[tuple[int, float, float]], **changes: Any) -> Way | None:
     times = np.array([time for time, _, _ in rows], np.int64) * MS
     x, y = (Samples(times, np.array([row[n] for row in rows])) for n in (1, 2))
-    found = course(log(x, y, **changes), declare(BINDINGS + MAP))
+    found = plot_data(log(x, y, **changes), declare(BINDINGS + MAP))
     return found.way if found else None
 
 
@@ -111,7 +111,7 @@ def test_the_way_is_where_the_robot_was_within_its_error(
         return
     assert len(found.times_ns) <= MOST_POINTS
     for at, right, up in known_rows:
-        there = place(found, at * MS)
+        there = position_at(found, at * MS)
         if there is None:
             assert found.lines_left_out
         else:
@@ -134,7 +134,7 @@ def test_words_are_their_changes_and_unknown_where_they_are_too_old() -> None:
     times = np.array([0, 500, 900, 5000, 5500], np.int64) * MS
     mode = Samples(times, np.array([0.0, 0.0, 1.0, 1.0, 0.0]), words=("drive", "docking"))
     nothing = Samples(np.array([], np.int64), np.array([]))
-    found = course(log(nothing, nothing, samples={"mode": mode}), declare(BINDINGS + MAP))
+    found = plot_data(log(nothing, nothing, samples={"mode": mode}), declare(BINDINGS + MAP))
     assert found is not None
     assert found.way is None
     (words,) = found.words.values()
@@ -144,7 +144,7 @@ def test_words_are_their_changes_and_unknown_where_they_are_too_old() -> None:
         ("drive", "docking", None, "docking", "drive", None),
     )
     many = Samples(np.arange(900) * 100 * MS, np.arange(900) % 2.0, words=("drive", "docking"))
-    short = course(log(nothing, nothing, samples={"mode": many}), declare(BINDINGS + MAP))
+    short = plot_data(log(nothing, nothing, samples={"mode": many}), declare(BINDINGS + MAP))
     assert short is not None
     assert len(short.words["mode"].words) == MOST_WORDS
     assert short.words["mode"].changes_left_out == 901 - MOST_WORDS
@@ -194,7 +194,7 @@ def test_a_map_changes_nothing_else_of_the_evidence(fretc: Fretc) -> None:
     assert after.course.way.x == (0.0, 2.9)
     assert {**plain(after), "course": None} == {**plain(before), "course": None}
     (other,), words = audited(fretc, "c.json", RULES + drawn.replace("/at", "/early"))
-    assert "F428 warning: there is no map" in words
+    assert "F428 warning: no map can be drawn" in words
     assert plain(other) == plain(before)
     assert fretc("verify-evidence", "c.json").status == 0
     put("requirements/bindings.toml", RULES)

@@ -1,11 +1,11 @@
-"""The monitors of requirements, stepped tick by tick, with rows that may become unknown later."""
+"""The monitors of requirements, stepped tick by tick, with ticks that may become unknown later."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import partial
 
-from fretc.audit.measurements.judgement import judged
+from fretc.audit.measurements.judgement import judge
 from fretc.audit.plan import Plan
 from fretc.logs.stream import Tick, Withdrawn
 from monitors import kernel
@@ -16,73 +16,74 @@ from monitors.loading import load
 from monitors.ticking import Ledger
 
 
-class Judges:
+class RequirementMonitors:
     """One monitor for each requirement of a plan."""
 
     def __init__(self, plan: Plan, kept: int = 0) -> None:
-        """No tick yet; so many of the last ones can become unknown later, or all (0)."""
+        """Monitors before the first tick; the last `kept` ticks (0: all) can become unknown."""
         self._end = Verdict(plan.declarations.clock.end)
-        self.monitors = tuple(load(f"{each.id}_monitor", each.monitor) for each in plan.claims)
+        self.monitors = tuple(load(f"{claim.id}_monitor", claim.monitor) for claim in plan.claims)
         self.propositions = tuple(
-            dict.fromkeys(name for each in self.monitors for name in each.PROPOSITIONS)
+            dict.fromkeys(name for monitor in self.monitors for name in monitor.PROPOSITIONS)
         )
-        self.counted = frozenset(each.id for each in plan.claims if each.chance is not None)
+        self.counted = frozenset(claim.id for claim in plan.claims if claim.chance is not None)
         """Requirements with a probability: no single run shows whether they hold."""
         self.ledger = Ledger(self.monitors, kept)
 
     @property
     def count(self) -> int:
-        """How many ticks were judged."""
+        """The number of judged ticks."""
         return len(self.ledger)
 
     def step(self, tick: Tick) -> None:
-        """One more tick."""
+        """Judge one more tick."""
         self.ledger.advance(tick.time, tick.truth)
 
     def withdraw(self, late: Withdrawn) -> None:
-        """Ticks become unknown, and perhaps there is one more."""
+        """Mark ticks as unknown, and possibly insert one."""
         if late.tick is not None:
             self.ledger.insert(late.tick, self.propositions)
         self.ledger.withdraw(late.first, late.last, late.propositions)
 
     def standings(self) -> tuple[Standing, ...]:
-        """What would be said of each requirement if the trace ended here."""
+        """The state of each requirement if the trace ended here."""
         return tuple(standing for monitor in self.monitors for standing in monitor.standings())
 
     def owed(self, rows: Iterable[Mapping[str, Truth]] = ()) -> tuple[Truth, ...]:
-        """Of each requirement whether a demand is open that the robot must meet.
+        """For each requirement, whether an obligation is open.
 
         Args:
-            rows: further ticks, which the monitors forget.
+            rows: further ticks, without an effect on the monitors.
         """
         ahead = tuple(rows)
         found = (
-            each.standings_after(ahead) if ahead else each.standings() for each in self.monitors
+            monitor.standings_after(ahead) if ahead else monitor.standings()
+            for monitor in self.monitors
         )
         return tuple(standing.owed for standings in found for standing in standings)
 
     def last_triggers(self) -> tuple[int | None, ...]:
-        """Of each requirement the time of the last tick that has triggered it for certain."""
+        """For each requirement, the time of the last tick with a certain trigger."""
         marks = (monitor.must.marks()[0] for monitor in self.monitors)
-        return tuple(self.ledger.time(each.last) if each.last >= 0 else None for each in marks)
+        return tuple(self.ledger.time(mark.last) if mark.last >= 0 else None for mark in marks)
 
     def verdicts(self, cut: Mapping[str, Truth] | None, *, intact: bool) -> dict[str, str]:
-        """As an audit judges a log that ends here."""
+        """The verdicts of an audit of a log that ends here."""
         return {
-            each.REQUIREMENTS[0].id: self._verdict(each, cut, intact=intact)
-            for each in self.monitors
+            monitor.REQUIREMENTS[0].id: self._verdict(monitor, cut, intact=intact)
+            for monitor in self.monitors
         }
 
     def _verdict(self, monitor: Monitor, cut: Mapping[str, Truth] | None, *, intact: bool) -> str:
-        """As an audit judges, but that the monitor remembers all ticks before the last one."""
+        """The verdict of an audit; the monitor need not store the ticks before the last one."""
         ticks, last = min(1, self.count), self.ledger.last or {}
         columns = {name: _column(last.get(name), ticks) for name in monitor.PROPOSITIONS}
         engine = partial(_outcome, before=ticks)
-        found = judged(monitor, columns, cut, ticks, intact=intact, end=self._end, engine=engine)
-        return self.said(monitor.REQUIREMENTS[0].id, str(found.verdict))
+        judgement = judge(monitor, columns, cut, ticks, intact=intact, end=self._end, engine=engine)
+        return self.audit_verdict(monitor.REQUIREMENTS[0].id, str(judgement.verdict))
 
-    def said(self, requirement: str, verdict: str) -> str:
-        """What an audit says of a run with a verdict; one that only counts decides nothing."""
+    def audit_verdict(self, requirement: str, verdict: str) -> str:
+        """The verdict in an audit of the run; a run that alone decides nothing is inconclusive."""
         decides = requirement not in self.counted or verdict in (kernel.VACUOUS, kernel.NO_DATA)
         return verdict if decides else str(kernel.INCONCLUSIVE)
 
@@ -95,7 +96,7 @@ def _column(truth: Truth, ticks: int) -> Column:
 def _outcome(
     monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict, before: int
 ) -> tuple[Outcome, ...]:
-    """What a monitor shows that has made its steps, and perhaps one more, which it forgets."""
+    """The outcome of a monitor after its steps, and possibly one more, which it does not keep."""
     more = [{name: columns[name].at(before) for name in monitor.PROPOSITIONS}] * (ticks > before)
     (standing,) = monitor.standings_after(more)
     verdict = standing.verdict

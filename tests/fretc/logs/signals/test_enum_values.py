@@ -10,9 +10,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fretc.audit.one_log import examined
+from fretc.logs.signals.enum_values import enum_indices
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
-from fretc.logs.signals.words import words
 from fretc.logs.stream import End, Stream
 from tests.effort import examples
 from tests.fretc.logs.logs import (
@@ -94,7 +94,7 @@ def test_a_text_is_read_of_every_kind_of_log(tmp_path: Path, kind: str) -> None:
     assert times(recording, "mode") == [S + i * STEP for i in range(6)]
     (finding,) = [each for each in recording.findings if each.code.number == "F423"]
     assert finding.message == (
-        "2 of 6 samples of `mode` are none of its values, the first one `charging` at 0.3 s: "
+        "2 of 6 samples of `mode` are not among its values, the first one `charging` at 0.3 s: "
         "they are unknown"
     )
     assert column(recording, declared()) == [False, True, False, None, None, True]
@@ -141,7 +141,7 @@ def test_a_number_is_the_constant_of_its_definition(
     assert read(recording) == [{0: "DRIVE", 4: "DOCKING"}.get(each) for each in seen]
     (finding,) = [each for each in recording.findings if each.code.number == "F423"]
     assert finding.message == (
-        f"{count // 6} of {count} samples of `mode` are none of its values, the first one `7` at "
+        f"{count // 6} of {count} samples of `mode` are not among its values, the first one `7` at "
         "0.3 s: they are unknown"
     )
     assert column(recording, text)[:6] == [False, True, True, None, False, True]
@@ -155,7 +155,7 @@ def test_a_number_is_the_constant_of_its_definition(
         (
             '["fly"]',
             "has no constant `fly`",
-            "it names DRIVE, DOCKING; or write the number of each word: `values = { fly = 0 }`",
+            "it names DRIVE, DOCKING; or write the number of each value: `values = { fly = 0 }`",
         ),
     ],
 )
@@ -324,7 +324,7 @@ def test_numbers_mean_the_same_words_at_once_and_one_by_one(
 ) -> None:
     text = declared(values="{" + ", ".join(f"w{n + 9} = {n}" for n in known) + "}")
     signal = declare(text.replace("'docking'", f"'w{known[0] + 9}'")).signals["mode"]
-    places, foreign = words(signal, np.array(seen, np.float64))
+    places, foreign = enum_indices(signal, np.array(seen, np.float64))
     for number, place, is_foreign in zip(seen, places, foreign, strict=True):
         assert bool(is_foreign) is (number == number and number not in known)
         assert (known[int(place)] == number) if number in known else np.isnan(place)
@@ -389,7 +389,7 @@ def test_a_word_may_be_added_where_messages_have_its_number() -> None:
     assert [tick.truth["p"] for tick in end.ticks] == [True, False, None]
     (finding,) = stream.findings
     assert finding.message == (
-        "1 of 3 samples of `gear` are none of its values, the first one `reverse` at 0.2 s: "
+        "1 of 3 samples of `gear` are not among its values, the first one `reverse` at 0.2 s: "
         "they are unknown"
     )
     wrong = stream.add("mode", S, {"a": 1})

@@ -1,4 +1,4 @@
-"""Signals of words: from the field of a decoded message to the place of its word among `values`."""
+"""Enumeration signals: the index of a decoded message's value in `values`."""
 
 from __future__ import annotations
 
@@ -18,37 +18,37 @@ from fretish.diagnostics.rendering import visible
 
 UNKNOWN = float("nan")
 _LONGEST = 40
-"""Characters that are shown of a value."""
+"""The most characters of a value that are shown."""
 
 
 @dataclass(frozen=True, slots=True)
 class UnmappedSamples:
-    """Samples of a signal that are none of its values."""
+    """Samples of a signal that are not among its values."""
 
     count: int
     first: int
-    """The place of the first one among all samples."""
+    """The index of the first one among all samples."""
     text: str
-    """What it is, as it can be shown."""
+    """The text of the first one, escaped for display."""
 
     def followed(self, later: UnmappedSamples) -> UnmappedSamples:
-        """These and later ones."""
+        """These samples and later ones."""
         return UnmappedSamples(self.count + later.count, self.first, self.text)
 
 
-def word(signal: Signal, message: object) -> float | str:
-    """The place of the signal's word in one message.
+def enum_index(signal: Signal, message: object) -> float | str:
+    """The index of the signal's enumeration value in one message.
 
     Args:
-        signal: with `values`.
-        message: a decoded one.
+        signal: a signal with `values`.
+        message: a decoded message.
 
     Returns:
-        NaN, unknown, for a field that is left out, an index past the end, and a number that is
-        NaN. A text: how to show a value that is none of the words.
+        NaN, unknown, for a field that is left out, an index past the end, and a NaN. For a value
+        outside the signal's values, its text.
 
     Raises:
-        FieldError: the message has no such field, or neither a text nor a number is in it.
+        FieldError: the message has no such field, or the field is neither a text nor a number.
     """
     try:
         value = field_of(signal.path, message)
@@ -84,23 +84,23 @@ def _place(signal: Signal, value: object, name: str) -> float | str:
 
 @lru_cache(256)
 def _places(keys: tuple[str, ...] | tuple[int, ...]) -> Mapping[object, float]:
-    """Words, or their numbers, with their places."""
+    """The enumeration values, or their numbers, with their indices."""
     return {key: float(place) for place, key in enumerate(keys)}
 
 
-def words(signal: Signal, numbers: Values) -> tuple[Numbers, NDArray[np.bool_]]:
-    """`word` of many numbers at once: the places, and which of the numbers mean none of the words.
+def enum_indices(signal: Signal, numbers: Values) -> tuple[Numbers, NDArray[np.bool_]]:
+    """`enum_index` of many numbers: the indices, and a mask of numbers without a value.
 
     Args:
-        signal: with `numbers`.
-        numbers: of the field, shape (n,).
+        signal: a signal with `numbers`.
+        numbers: the values of the field, shape (n,).
     """
     double = numbers.astype(np.float64)
-    known = np.array(signal.numbers, np.float64)
-    order = np.argsort(known)
-    nearest = order[np.searchsorted(known[order], double).clip(max=len(known) - 1)]
-    found = known[nearest] == double
-    return np.where(found, nearest, UNKNOWN), ~found & ~np.isnan(double)
+    enum_numbers = np.array(signal.numbers, np.float64)
+    order = np.argsort(enum_numbers)
+    nearest = order[np.searchsorted(enum_numbers[order], double).clip(max=len(enum_numbers) - 1)]
+    is_value = enum_numbers[nearest] == double
+    return np.where(is_value, nearest, UNKNOWN), ~is_value & ~np.isnan(double)
 
 
 def shown(value: object) -> str:
@@ -111,13 +111,13 @@ def shown(value: object) -> str:
 
 
 def _plain(value: object) -> object:
-    """A number without a point, where it is whole."""
+    """A number without a decimal point, if it is whole."""
     if isinstance(value, np.generic):
         value = value.item()
     whole = isinstance(value, float | np.longdouble) and value.is_integer()
     return int(value) if whole else value  # type: ignore[call-overload]
 
 
-def word_at(place: float, values: Sequence[str]) -> str | None:
-    """The word at a place; None where that is unknown."""
+def enum_value(place: float, values: Sequence[str]) -> str | None:
+    """The enumeration value at an index; None: unknown."""
     return None if isnan(place) else values[int(place)]

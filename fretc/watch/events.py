@@ -1,4 +1,4 @@
-"""What a watch has to tell, each as it happens."""
+"""The events that a watch reports."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from monitors.guard import State
 
 
 @dataclass(frozen=True, slots=True)
-class Changed:
-    """Something of a requirement is otherwise than it was."""
+class StateChange:
+    """The state of a requirement has changed."""
 
     state: State
     before: State | None
@@ -21,32 +21,41 @@ class Changed:
 
 
 @dataclass(frozen=True, slots=True)
-class Late:
-    """Ticks that were judged have become unknown: messages were late for them."""
+class LateMessages:
+    """Judged ticks have become unknown, because messages were late for them."""
 
     ticks: int
-    """All of the run so far."""
+    """The number of ticks in the run so far."""
     messages: Mapping[str, int]
-    """Of each topic the messages of the run that were late."""
+    """For each topic, the late messages of the run so far."""
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """What a user should know; the watch goes on."""
+class DiagnosticEvent:
+    """A diagnostic for the user; the watch continues."""
 
     diagnostic: Diagnostic
 
 
 @dataclass(frozen=True, slots=True)
 class RunEnded:
-    """A run has ended, and perhaps another one begins."""
+    """A run has ended, and possibly another one begins."""
 
     number: int
-    """From 1 on."""
+    """Counted from 1."""
     verdicts: Mapping[str, str]
     recording: str | None
-    """The file that holds it."""
+    """The file with the recording."""
     ticks: int
 
 
-News = Changed | Late | Found | RunEnded | Opened | Interrupted | Reconnected | Missed
+WatchEvent = (
+    StateChange
+    | LateMessages
+    | DiagnosticEvent
+    | RunEnded
+    | Opened
+    | Interrupted
+    | Reconnected
+    | Missed
+)

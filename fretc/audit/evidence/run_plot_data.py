@@ -1,4 +1,4 @@
-"""The course of a run for the pictures of its report: the robot's way, and words over time."""
+"""Plot data of a run: the path of the robot, and enumeration signals over time."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from fretish.bindings.declarations import Declarations, MapCoordinates, Signal
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 _PAUSE = 10**9
-"""Nanoseconds: places farther apart in time are not joined, where no signal has an age limit."""
+"""Nanoseconds; positions farther apart in time are not joined, if no signal has an age limit."""
 _HOLD = 10**8
-"""Nanoseconds."""
+"""Nanoseconds before the first and after the last sample for which its position is used."""
 _FAR = 1e9
-"""Metres; what is farther away is no place."""
+"""Metres; a coordinate beyond is treated as unknown."""
 _DIGITS = 3
 """Decimals of a metre."""
 _EXACT = 10.0**-_DIGITS
 _MOST_LINES = MOST_POINTS // 3
 
 
-def course(recording: Recording, declarations: Declarations) -> Course | None:
-    """The course of a run; None where there is nothing to draw."""
+def plot_data(recording: Recording, declarations: Declarations) -> Course | None:
+    """The plot data of a run; None: there is nothing to draw."""
     words = {
         name: _words(signal, recording)
         for name, signal in sorted(declarations.signals.items())
@@ -39,27 +39,27 @@ def course(recording: Recording, declarations: Declarations) -> Course | None:
     return Course(way, words) if way or words else None
 
 
-def no_way(recording: Recording, declarations: Declarations) -> Iterator[Diagnostic]:
-    """F428 where the bindings declare a map, and a coordinate is never known."""
+def map_diagnostics(recording: Recording, declarations: Declarations) -> Iterator[Diagnostic]:
+    """F428 if the bindings declare a map and a coordinate is never known."""
     drawn = declarations.map
     for signal in (drawn.x, drawn.y) if drawn else ():
         samples = recording.beside.get(signal.name)
         if samples is None or not np.isfinite(samples.values.astype(np.float64)).any():
             yield Diagnostic(
                 Code.NO_WAY,
-                f"there is no map: nothing is known of `{signal.path}`",
+                f"no map can be drawn: no value is known of `{signal.path}`",
                 signal.span,
-                "name a number of a topic that a requirement reads",
+                "name a numeric field of a topic that a requirement reads",
                 Severity.WARNING,
             )
             return
 
 
-# Words -----------------------------------------------------------------------------------------
+# Enumerations ----------------------------------------------------------------------------------
 
 
 def _words(signal: Signal, recording: Recording) -> Words:
-    """The changes of a signal of words, as propositions see it."""
+    """The changes of an enumeration signal, as propositions read it."""
     history = history_of({signal.name: signal}, recording)
     values, times = history.numbers[signal.name], history.times
     places = np.where(np.isnan(values), -1, values).astype(np.int64)
@@ -74,19 +74,19 @@ def _words(signal: Signal, recording: Recording) -> Words:
     )
 
 
-# The way ---------------------------------------------------------------------------------------
+# The path --------------------------------------------------------------------------------------
 
 
 def _way(drawn: MapCoordinates, recording: Recording) -> Way | None:
-    """The way as lines; each is thinned where that moves no place by much."""
+    """The path as lines, thinned where this moves no position by much."""
     if not {drawn.x.name, drawn.y.name} <= recording.beside.keys():
         return None
     limit = min(signal.max_age or _PAUSE for signal in (drawn.x, drawn.y))
     x = recording.beside[drawn.x.name]
     times = x.times
     places = np.stack([x.base, _at(recording.beside[drawn.y.name], times, limit)], axis=1)
-    known: NDArray[np.bool_] = np.asarray((np.abs(places) < _FAR).all(axis=1))
-    lines = _lines(times, known, limit, recording.gaps)
+    is_known: NDArray[np.bool_] = np.asarray((np.abs(places) < _FAR).all(axis=1))
+    lines = _lines(times, is_known, limit, recording.gaps)
     kept = sorted(sorted(lines, key=lambda line: line[0] - line[-1])[:_MOST_LINES], key=_first)
     if not kept:
         return None
@@ -104,7 +104,7 @@ def _way(drawn: MapCoordinates, recording: Recording) -> Way | None:
 
 
 _Line = NDArray[np.intp]
-"""The samples of a line, by their numbers."""
+"""The samples of a line, by their indices."""
 
 
 def _first(line: _Line) -> int:
@@ -112,7 +112,7 @@ def _first(line: _Line) -> int:
 
 
 def _at(samples: Samples, times: Times, limit: int) -> Numbers:
-    """The values in force at some times; NaN where there is none, or it is too old."""
+    """The samples in force at some times; NaN: there is none, or it is too old."""
     if np.array_equal(samples.times, times):
         return samples.base
     last = np.searchsorted(samples.times, times, "right") - 1
@@ -124,7 +124,7 @@ def _at(samples: Samples, times: Times, limit: int) -> Numbers:
 
 
 def _lines(times: Times, known: NDArray[np.bool_], limit: int, gaps: Sequence[Gap]) -> list[_Line]:
-    """Stretches of samples that are known, with no pause between them and no loss."""
+    """Ranges of known samples, with no pause between them and no loss."""
     (samples,) = np.nonzero(known)
     if not len(samples):
         return []
@@ -139,6 +139,9 @@ def _thinned(
     times: Times, places: Numbers, lines: Sequence[_Line], most: int
 ) -> tuple[list[list[int]], float]:
     """The ends of each line, and the samples that are farthest from it, one after the other.
+
+    Returns: /     The indices of the samples of each line, and the largest distance of an omitted
+    sample from the line at its time.
 
     Returns:
         The samples of each line, and how far the farthest of the others is from where the line has
@@ -161,13 +164,13 @@ def _thinned(
 def _part(
     times: Times, places: Numbers, line: _Line, of: int, number: int
 ) -> tuple[float, int, int, int, _Line]:
-    """A part of a line for the heap, that with the largest distance first."""
+    """A part of a line for the heap, which has the part with the largest distance first."""
     distance, at = _farthest(times, places, line)
     return -distance, number, of, at, line
 
 
 def _farthest(times: Times, places: Numbers, line: _Line) -> tuple[float, int]:
-    """How far a sample is from the place between both ends at its time, and which one is."""
+    """The largest distance of a sample from the position on the line at its time, and its index."""
     if len(line) < 3:
         return 0.0, 0
     span = times[line[-1]] - times[line[0]]
@@ -179,13 +182,13 @@ def _farthest(times: Times, places: Numbers, line: _Line) -> tuple[float, int]:
 
 
 def _above(number: float) -> float:
-    """Rounded up, to two digits."""
+    """The number rounded up to two digits."""
     digits = 1 - floor(log10(number))
     return round(ceil(round(number * 10.0**digits, 6)) / 10.0**digits, digits)
 
 
-def place(way: Way, ns: int) -> tuple[float, float] | None:
-    """Where the robot was at a time, within the error of the way; None where that is unknown.
+def position_at(way: Way, ns: int) -> tuple[float, float] | None:
+    """The position of the robot at a time, within the error of the path; None: unknown.
 
     Up to `_HOLD` before the first and after the last sample it is where they are: ticks and samples
     begin and end at different times.
