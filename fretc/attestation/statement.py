@@ -23,8 +23,8 @@ from compiler.logic.claims import Proof
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.briefs import Brief, EvidenceSource
-from fretc.report.traceability.lock import Review
-from fretc.report.traceability.waivers import Waiver
+from fretc.traceability.lock import Review
+from fretc.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
 
 TYPE = "https://in-toto.io/Statement/v1"

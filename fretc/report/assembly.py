@@ -48,10 +48,10 @@ from fretc.report.sections.runs import Run, run_summaries, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.set_analysis.assembly import in_front, in_overall, set_analysis
 from fretc.report.situations import situations
-from fretc.report.traceability.acceptances import warnings
-from fretc.report.traceability.artefacts import joint_monitors, shared_products
-from fretc.report.traceability.lock import Lock, withdrawn_requirements
-from fretc.report.traceability.waivers import Waiver
+from fretc.traceability.acceptances import warnings
+from fretc.traceability.artefacts import joint_monitors, shared_products
+from fretc.traceability.lock import Lock, withdrawn_requirements
+from fretc.traceability.waivers import Waiver
 from fretc.verification.ajpf_results import merged
 from fretc.verification.reader import Proofs
 from fretish.diagnostics.diagnostic import Code, Diagnostic

@@ -9,7 +9,7 @@ from fretc.audit.evidence.verdicts import WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.sections.matrix import unknown_ids
-from fretc.report.traceability.waivers import idle_waiver
+from fretc.traceability.waivers import idle_waiver
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
 

@@ -20,9 +20,9 @@ from fretc.report.forms.json_text import json_pieces
 from fretc.report.model.views import Report
 from fretc.report.page.html import html
 from fretc.report.sections.details import Details
-from fretc.report.traceability.lock import read as read_lock
-from fretc.report.traceability.waivers import Waiver
-from fretc.report.traceability.waivers import read as read_waivers
+from fretc.traceability.lock import read as read_lock
+from fretc.traceability.waivers import Waiver
+from fretc.traceability.waivers import read as read_waivers
 from fretc.verification.ajpf_results import ajpf_proofs
 from fretc.verification.reader import read as read_proofs
 from fretish.diagnostics.diagnostic import Diagnostic

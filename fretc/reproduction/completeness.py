@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from functools import cache, partial
 
 from fretc.audit.evidence.schema import Document, Result, Selection
-from fretc.report.traceability.chain import LOG
-from fretc.report.traceability.lock import Lock, Review
 from fretc.reproduction.outcome import FILE, Recheck, differs, unknown
+from fretc.traceability.chain import LOG
+from fretc.traceability.lock import Lock, Review
 from fretish.reading.natural_order import natural
 
 Prints = Callable[[str], Collection[str]]

@@ -28,10 +28,10 @@ from fretc.audit.measurements.trials import NO_TRIALS
 from fretc.report.model.audits import ProbabilityAudit, SingleAudit
 from fretc.report.model.suspicions import AboutResults, about_estimation, since_review
 from fretc.report.model.views import Mark, verdict_mark
-from fretc.report.traceability.artefacts import Product, monitors, products
-from fretc.report.traceability.chain import chains
-from fretc.report.traceability.lock import Lock, ReviewedRequirement, standings
-from fretc.report.traceability.waivers import Waiver
+from fretc.traceability.artefacts import Product, monitors, products
+from fretc.traceability.chain import chains
+from fretc.traceability.lock import Lock, ReviewedRequirement, standings
+from fretc.traceability.waivers import Waiver
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.documents import RequirementEntry

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath, PureWindowsPath
 
 from fretc.logs.storage.log_names import path_of
-from fretc.report.traceability.chain import Node
+from fretc.traceability.chain import Node
 from fretish.bindings import amounts
 from fretish.bindings.amounts import duration as duration
 from fretish.bindings.amounts import exact_duration as exact_duration

@@ -12,9 +12,9 @@ from fretc.audit.evidence.briefs import Brief, Recorded
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.measurements.confidence_intervals import SUPPORTED
 from fretc.audit.measurements.trials import Trials
-from fretc.report.traceability.chain import outdated
-from fretc.report.traceability.changes import in_words
-from fretc.report.traceability.lock import Review, ReviewedRequirement
+from fretc.traceability.chain import outdated
+from fretc.traceability.changes import in_words
+from fretc.traceability.lock import Review, ReviewedRequirement
 from fretish import syntax
 from monitors import kernel
 

@@ -16,7 +16,7 @@ from fretc.report.model.marks import Mark as Mark
 from fretc.report.model.marks import sign_mark as sign_mark
 from fretc.report.model.marks import verdict_mark as verdict_mark
 from fretc.report.model.pictures import Histogram, Timeline
-from fretc.report.traceability.artefacts import Product
+from fretc.traceability.artefacts import Product
 from fretish.documents import named
 
 SCHEMA = "fretc-report-1"

@@ -15,7 +15,7 @@ from fretc.report.sections.matrix import orphans
 from fretc.report.sections.proofs import is_refuted
 from fretc.report.sections.runs import Run, trust
 from fretc.report.sections.signatures import BROKEN
-from fretc.report.traceability.lock import WithdrawnRequirement
+from fretc.traceability.lock import WithdrawnRequirement
 from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import has_errors
 

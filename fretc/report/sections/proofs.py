@@ -10,7 +10,7 @@ from compiler.logic.claims import ALL, PROVERS, Proof, Result
 from compiler.targets.interceptor_options import ASSUMED
 from fretc.report.model import phrases
 from fretc.report.model.views import Mark, ProofView, RequirementView, sign_mark
-from fretc.report.traceability.artefacts import Product, compiled_monitor
+from fretc.traceability.artefacts import Product, compiled_monitor
 from fretc.verification.layers.table import OF_MONITOR
 from fretc.verification.text_output import SIGNS
 

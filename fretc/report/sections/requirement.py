@@ -36,7 +36,7 @@ from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.results import reasons, result_rows
 from fretc.report.sections.reviews import review, waiver
 from fretc.report.sections.runs import Run, RunKey
-from fretc.report.traceability.artefacts import Product
+from fretc.traceability.artefacts import Product
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic

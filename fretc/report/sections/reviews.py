@@ -21,9 +21,9 @@ from fretc.report.model.changes import (
 )
 from fretc.report.model.views import ReviewView, WaiverView, sign_mark
 from fretc.report.sections.signatures import of_review, of_waiver
-from fretc.report.traceability.changes import Change as TextChange
-from fretc.report.traceability.comparison import OTHER_TEXTS, Difference, difference
-from fretc.report.traceability.lock import Review, WithdrawnRequirement
+from fretc.traceability.changes import Change as TextChange
+from fretc.traceability.comparison import OTHER_TEXTS, Difference, difference
+from fretc.traceability.lock import Review, WithdrawnRequirement
 from fretish.diagnostics import signs
 
 _ACCEPTED = sign_mark("reviewed", signs.GOOD)

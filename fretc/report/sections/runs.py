@@ -16,7 +16,7 @@ from fretc.audit.evidence.briefs import Brief, Briefs, RunFacts, audited_s
 from fretc.audit.evidence.schema import Checked, Finding, Topic
 from fretc.report.model import phrases
 from fretc.report.model.views import Remark, RunSummary, TopicView, sign_mark
-from fretc.report.traceability.acceptances import as_diagnostic
+from fretc.traceability.acceptances import as_diagnostic
 from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import Severity
 

@@ -12,8 +12,8 @@ from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import Signatures, SignatureView, Signed, sign_mark
-from fretc.report.traceability.lock import Review
-from fretc.report.traceability.waivers import Waiver
+from fretc.traceability.lock import Review
+from fretc.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
 from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from compiler.project.folder import load
-from fretc.report.traceability.artefacts import shared_products
-from fretc.report.traceability.chain import Chain
-from fretc.report.traceability.lock import unnamed_violations
+from fretc.traceability.artefacts import shared_products
+from fretc.traceability.chain import Chain
+from fretc.traceability.lock import unnamed_violations
 from tests.command import Fretc, write
 from tests.fretc.report import cases
 

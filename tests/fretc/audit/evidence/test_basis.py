@@ -25,10 +25,10 @@ from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read, source
 from fretc.audit.store.writer import write_document
 from fretc.report.make import make
-from fretc.report.traceability.chain import chains
-from fretc.report.traceability.lock import Lock, standings
-from fretc.report.traceability.lock import read as read_lock
-from fretc.report.traceability.lock import text as lock_text
+from fretc.traceability.chain import chains
+from fretc.traceability.lock import Lock, standings
+from fretc.traceability.lock import read as read_lock
+from fretc.traceability.lock import text as lock_text
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, write
 from tests.effort import FULL, some

@@ -1,7 +1,7 @@
 import pytest
 
-from fretc.report.traceability.chain import Node
-from fretc.report.traceability.lock import Lock, Review, read, text
+from fretc.traceability.chain import Node
+from fretc.traceability.lock import Lock, Review, read, text
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import write
 

@@ -10,9 +10,9 @@ from typing import Any
 from compiler.project.folder import Project
 from compiler.project.stated_numbers import drifted
 from fretc.audit.evidence.verdicts import VERDICTS, severity
-from fretc.report.traceability.chain import ANALYSIS, VERDICT, Suspect
-from fretc.report.traceability.changes import Change
-from fretc.report.traceability.lock import Lock, Review, ReviewedRequirement
+from fretc.traceability.chain import ANALYSIS, VERDICT, Suspect
+from fretc.traceability.changes import Change
+from fretc.traceability.lock import Lock, Review, ReviewedRequirement
 from fretish.diagnostics.diagnostic import Code
 from monitors import kernel
 

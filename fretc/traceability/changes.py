@@ -8,8 +8,8 @@ from typing import Any
 
 from compiler.files.records import replace
 from fretc.audit.evidence import basis
-from fretc.report.traceability import word_diff
-from fretc.report.traceability.chain import (
+from fretc.traceability import word_diff
+from fretc.traceability.chain import (
     ACCEPTANCE,
     ADDED,
     ANALYSIS,
@@ -32,9 +32,9 @@ from fretc.report.traceability.chain import (
     changed,
     upstream_of,
 )
-from fretc.report.traceability.meanings import Key, Leaf, leaves
-from fretc.report.traceability.texts import Bindings, ReviewedTexts
-from fretc.report.traceability.word_diff import Segment
+from fretc.traceability.meanings import Key, Leaf, leaves
+from fretc.traceability.texts import Bindings, ReviewedTexts
+from fretc.traceability.word_diff import Segment
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,8 +10,8 @@ from compiler.project.folder import Project
 from compiler.project.refusals import unreviewable
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.schema import Finding
-from fretc.report.traceability.checks import checks, unreviewed
-from fretc.report.traceability.lock import Lock, ReviewedRequirement
+from fretc.traceability.checks import checks, unreviewed
+from fretc.traceability.lock import Lock, ReviewedRequirement
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors
 from fretish.diagnostics.source import Source
 

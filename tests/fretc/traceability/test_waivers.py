@@ -2,7 +2,7 @@ import pytest
 
 from compiler.files.dates import today
 from fretc.audit.evidence import verdicts
-from fretc.report.traceability.waivers import VERDICTS, Waiver, read
+from fretc.traceability.waivers import VERDICTS, Waiver, read
 from fretish.diagnostics.rendering import render
 from tests.command import write
 

@@ -1,7 +1,7 @@
 """`fretc.lock`: what was reviewed, by whom, and the fingerprint of each thing at that time.
 
 Sorted TOML, a table for each requirement, so that two reviews merge like code. A lock is written
-by `fretc lock` only; waivers stand in `waivers.toml` (`fretc.report.traceability.waivers`).
+by `fretc lock` only; waivers stand in `waivers.toml` (`fretc.traceability.waivers`).
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from compiler.files.text_files import read as read_text
 from fretc.analysis.findings import Verdict
 from fretc.audit.evidence.basis import SENTENCE
 from fretc.audit.evidence.reader import VERDICTS
-from fretc.report.traceability.analyses import Answer
-from fretc.report.traceability.chain import (
+from fretc.traceability.analyses import Answer
+from fretc.traceability.chain import (
     ACCEPTANCE,
     FORMULAS,
     IN_FORCE,
@@ -32,10 +32,10 @@ from fretc.report.traceability.chain import (
     in_force,
     suspects,
 )
-from fretc.report.traceability.changes import Change, changes
-from fretc.report.traceability.meanings import agree
-from fretc.report.traceability.texts import ReviewedTexts, as_table
-from fretc.report.traceability.texts import read as read_texts
+from fretc.traceability.changes import Change, changes
+from fretc.traceability.meanings import agree
+from fretc.traceability.texts import ReviewedTexts, as_table
+from fretc.traceability.texts import read as read_texts
 from fretish.bindings.canonical import digest
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source

@@ -14,7 +14,7 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalize import formalize
 from compiler.project.hazards import Hazard
 from fretc.audit.evidence import basis
-from fretc.report.traceability.chain import (
+from fretc.traceability.chain import (
     ACCEPTANCE,
     ANALYSIS,
     ARTEFACT,
@@ -35,7 +35,7 @@ from fretc.report.traceability.chain import (
     print_of_status,
     print_of_words,
 )
-from fretc.report.traceability.texts import (
+from fretc.traceability.texts import (
     Bindings,
     ReviewedTexts,
     Table,

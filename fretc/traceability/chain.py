@@ -25,11 +25,11 @@ from fretc.audit.bases import audited_topics, bases
 from fretc.audit.evidence import basis
 from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.briefs import Brief, Briefs, Recorded
-from fretc.report.traceability import texts
-from fretc.report.traceability.analyses import Answer, answers
-from fretc.report.traceability.artefacts import Product, monitors, shared_products
-from fretc.report.traceability.artefacts import products as products_of
-from fretc.report.traceability.texts import ReviewedTexts
+from fretc.traceability import texts
+from fretc.traceability.analyses import Answer, answers
+from fretc.traceability.artefacts import Product, monitors, shared_products
+from fretc.traceability.artefacts import products as products_of
+from fretc.traceability.texts import ReviewedTexts
 from fretish.bindings.canonical import described, digest
 from fretish.documents import RequirementEntry
 

@@ -12,11 +12,11 @@ from compiler.project.folder import load_folder
 from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.store.anywhere import read as read_evidence
-from fretc.report.traceability.chain import Node, chains
-from fretc.report.traceability.comparison import Difference, differences
-from fretc.report.traceability.lock import Lock, accepted, read, standings, text
-from fretc.report.traceability.meanings import agree
-from fretc.report.traceability.texts import as_table
+from fretc.traceability.chain import Node, chains
+from fretc.traceability.comparison import Difference, differences
+from fretc.traceability.lock import Lock, accepted, read, standings, text
+from fretc.traceability.meanings import agree
+from fretc.traceability.texts import as_table
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, write
 from tests.effort import FULL, pairwise, some
@@ -427,7 +427,7 @@ def _sealed(lock: str) -> str:
             break
         import tomllib
 
-        from fretc.report.traceability.lock import _review
+        from fretc.traceability.lock import _review
 
         reviews = tomllib.loads(lock)["review"]
         for id, fields in reviews.items():
@@ -444,7 +444,7 @@ def test_a_signature_covers_the_texts(reviewed: Fretc) -> None:
     table = as_table(review.texts)
     for name in table:
         cut = {key: value for key, value in table.items() if key != name}
-        from fretc.report.traceability.texts import read as read_texts
+        from fretc.traceability.texts import read as read_texts
 
         texts = read_texts({**cut, "sentence": cut.get("sentence", "")})
         assert not isinstance(texts, str)

@@ -16,8 +16,8 @@ from compiler.logic.claims import METHODS
 from compiler.project.folder import Project
 from compiler.project.parent_graph import without_hazard
 from compiler.targets.target import Options
-from fretc.report.traceability.changes import in_words
-from fretc.report.traceability.lock import ReviewedRequirement
+from fretc.traceability.changes import in_words
+from fretc.traceability.lock import ReviewedRequirement
 from fretish.bindings.declarations import Role
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
 from fretish.diagnostics.source import Source, Span
