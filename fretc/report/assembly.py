@@ -1,6 +1,6 @@
-"""The whole report as values, assembled from values: no file is read here.
+"""Assembles the `Report` from project, evidence, proofs and reviews; reads no file.
 
-`fretc.report.make` reads the files; `fretc.report.sections` has the parts.
+`fretc.report.make` reads the files; `fretc.report.sections` builds the parts.
 """
 
 from __future__ import annotations
@@ -69,18 +69,18 @@ def report(
     book: SignatureBook = NO_SIGNATURES,
     together: AnalyzedSet | None = None,
 ) -> tuple[Report, Details, tuple[Diagnostic, ...]]:
-    """The report, what it has in rows only, and diagnostics about its files.
+    """The report, the evidence behind its rows, and diagnostics about its files.
 
     Args:
-        project: with or without errors; the report shows what could not be formalized as such.
-        evidence: None where no run has been audited.
-        path: of the evidence file, whether it is there or not.
-        lock: None where nothing has been reviewed.
-        waivers: those that count today, by the requirement.
-        proofs: None where nothing was verified.
+        project: with or without errors; the report lists unformalized requirements.
+        evidence: None if no run was audited.
+        path: path of the evidence file, which need not exist.
+        lock: None if no requirement is reviewed.
+        waivers: requirement → waiver, for waivers that are valid today.
+        proofs: None if nothing was verified.
         ajpf: the results of AJPF.
-        book: who signed what.
-        together: None where nobody has asked whether all requirements can be kept together.
+        book: the checked signatures.
+        together: the file of `fretc analyze`; None if there is none.
     """
     briefs = Briefs.of(evidence) if evidence else None
     runs_by_key = runs(briefs)
@@ -196,7 +196,7 @@ def _checks(
     lock: Lock | None,
     evidence: EvidenceSource | None,
 ) -> Sequence[Diagnostic]:
-    """What `fretc check` finds beside mistakes; reviews have a part of their own."""
+    """The warnings of `fretc check`, without those about reviews."""
     found = warnings(project, [each.standing for each in assessed], lock, evidence)
     return [each for each in found if each.accepted or each.code not in _OF_REVIEWS]
 
@@ -211,7 +211,7 @@ def _not_shown(view: RequirementView) -> NotShown:
 def _longest_waits(
     assessed: Sequence[Assessment], sections: Sequence[RequirementView], details: Details
 ) -> Mapping[str, ResultView]:
-    """The result with the longest wait of each requirement that is shown and sets no bound."""
+    """Requirement → result with the longest latency, for shown requirements without a bound."""
     rows = [
         max(waiting, key=lambda row: row.latency_max_s or 0)
         for assessment, view in zip(assessed, sections, strict=True)
@@ -273,11 +273,11 @@ _ALWAYS = (
     NOT_EXERCISED,
     kernel.SATISFIED,
 )
-"""Verdicts that have a row in the table of counts even where their count is 0."""
+"""Verdicts that have a row in the table of counts even if their count is 0."""
 
 
 def _assumptions(project: Project, runs: Sequence[Run]) -> tuple[str, ...]:
-    """The declared assumptions, then those of the audit that are no longer declared."""
+    """The declared assumptions, then assumptions of the audit that are no longer declared."""
     declared = project.declarations.assumptions if project.declarations else ()
     now = dict.fromkeys(declared)
     audited = (text for run in runs for text in run.facts.assumptions)

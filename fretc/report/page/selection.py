@@ -154,7 +154,7 @@ def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
             f"With more than {_WHOLE} requirements, their formulas, propositions and artefacts are "
             "left out as well."
         )
-    yield "`fretc report --json` and `--csv` write all of it; the evidence file has every event."
+    yield "`fretc report --json` and `--csv` write all content; the evidence file has every event."
 
 
 # The results of a requirement ------------------------------------------------------------------
@@ -268,8 +268,8 @@ def _left_out(
         )
     if open_bad < bad:
         yield (
-            f"Details below: of {phrases.whole(open_bad)} of {phrases.times(bad, 'run')} that "
-            "are not satisfied. Those of the others are in the evidence file and in `--json`."
+            f"Details below: {phrases.whole(open_bad)} of {phrases.times(bad, 'run')} that are "
+            "not satisfied. Details of the others are in the evidence file and in `--json`."
         )
     if open_good < good:
         yield "Details of satisfied runs are in the evidence file and in `--json`."

@@ -232,7 +232,7 @@ def _piece(group: Sequence[Placement], number: int, count: int) -> Piece:
         shapes.append(_shape(each, y, above))
         y += _height(each)
     part = f", part {number} of {count}" if count > 1 else ""
-    text = f"{len(group)} elements, from “{group[0].text}”; the list below says them all."
+    text = f"{len(group)} elements, from “{group[0].text}”; the list below has them all."
     return Piece(f"argument-{number}", f"Assurance argument{part}", text, _WIDTH, y, tuple(shapes))
 
 

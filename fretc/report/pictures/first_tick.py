@@ -31,7 +31,7 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
     if value is None or age is None or limit is None or round(age, 9) <= limit:
         return text
     old, most = phrases.duration(round(age, 9), [limit]), phrases.exact_duration(limit)
-    return f"unknown: {text} is {old} old, and counts for {most}"
+    return f"unknown: {text} is {old} old, and valid for {most}"
 
 
 def _bounds(signal: str, result: Result) -> list[float]:

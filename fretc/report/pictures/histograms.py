@@ -40,7 +40,10 @@ def exercise(assessment: Assessment) -> str:
     if not assessment.audits:
         return ""
     if not results:
-        return f"none of {phrases.times(len(assessment.audits), 'run')} counts: all are suspect"
+        return (
+            f"none of {phrases.times(len(assessment.audits), 'run')} counts, because all "
+            "are suspect"
+        )
     triggers = sum(result.triggers for result in results)
     answers = sum(result.answers for result in results)
     waiting = sum(result.open for result in results)
@@ -129,7 +132,9 @@ def _latency(
 def _without(unanswered: int, waiting: int) -> str:
     """The triggers that have no answer, in words."""
     parts = [
-        f"{phrases.times(unanswered, 'trigger')} whose time or scope ran out" if unanswered else "",
+        f"{phrases.times(unanswered, 'trigger')} whose deadline or scope ended"
+        if unanswered
+        else "",
         f"{phrases.times(waiting, 'trigger')} open at the end of a run" if waiting else "",
     ]
     triggers = phrases.joined(list(filter(None, parts)))

@@ -127,9 +127,9 @@ def _missing(violation: Violation) -> str:
     when = f"at {seconds(start)}" if start == end else f"from {seconds(start)} to {seconds(end)}"
     missing = violation.missing or "the response"
     if violation.deadline is not None:
-        what = f"`{missing}` did not come by {seconds(violation.deadline.seconds)}"
+        what = f"`{missing}` was not true by {seconds(violation.deadline.seconds)}"
     else:
-        what = f"`{missing}` did not hold {when}"
+        what = f"`{missing}` was false {when}"
     if violation.trigger is not None:
         what += f", triggered at {seconds(violation.trigger.seconds)}"
     return what
@@ -265,8 +265,8 @@ _WORDS = {
     "trigger": ("tick with a trigger", "ticks with a trigger"),
     "waiting": ("trigger waiting for its response", "triggers waiting for their response"),
     "violated": ("violation", "violations"),
-    "unknown": ("stretch of unknown ticks", "stretches of unknown ticks"),
-    "open": ("demand open at the end", "demands open at the end"),
+    "unknown": ("interval of unknown ticks", "intervals of unknown ticks"),
+    "open": ("obligation open at the end", "obligations open at the end"),
 }
 _NAMED = 3
 """The most stretches of a lane that the text names."""

@@ -55,18 +55,18 @@ class Element:
 
 _SUBJECTS: Mapping[str, str] = MappingProxyType(
     {
-        Layer.MONITOR: "The monitor of {id} decides it as its sentence means",
-        Layer.LOOP: "Monitor and interceptor keep {id} in the modelled loop",
-        Layer.BOUNDS: "What is claimed of {id} at other bounds and latencies holds in the loop",
-        Layer.INTERCEPTOR: "The interceptor of {id} keeps its contracts",
-        Layer.AGENT: "The agent keeps {id} in its model",
-        Layer.AJPF: "The agent keeps {id} by the verdict of AJPF",
+        Layer.MONITOR: "The monitor of {id} gives the verdicts that the sentence demands",
+        Layer.LOOP: "Monitor and interceptor satisfy {id} in the modelled loop",
+        Layer.BOUNDS: "The claims about {id} at other bounds and latencies hold in the loop",
+        Layer.INTERCEPTOR: "The interceptor of {id} fulfils its contracts",
+        Layer.AGENT: "The agent satisfies {id} in its model",
+        Layer.AJPF: "The agent satisfies {id}, according to AJPF",
     }
 )
 """The goal that the proofs of each layer support."""
 _SHARED_SUBJECTS: Mapping[str, str] = MappingProxyType(
     {
-        "interceptor": "The interceptor keeps its contracts",
+        "interceptor": "The interceptor fulfils its contracts",
         "agent": "The agent has the properties of its property file in its model",
     }
 )
@@ -103,7 +103,7 @@ class _Argument:
         )
         assumed = [f"A_{number}" for number, _ in enumerate(report.assumptions, 1)]
         context = ("C_project", *assumed)
-        text = f"{name} keeps its safety requirements"
+        text = f"{name} satisfies its safety requirements"
         yield Element("G_top", Kind.GOAL, text, below, context, undeveloped=not below)
         yield Element(
             "C_project", Kind.CONTEXT, f"Requirements in {report.project}; {report.claims}"
@@ -118,7 +118,7 @@ class _Argument:
                 yield from self._hazard(hazard.id, hazard.title, anchors)
         if untraced:
             goals = tuple(_id("G", anchor) for anchor in dict.fromkeys(untraced))
-            words = "Argument over the requirements that trace to no hazard"
+            words = "Argument over the requirements that are not traced to a hazard"
             yield Element("S_others", Kind.STRATEGY, words, goals)
             yield from self._requirements(untraced)
         for name, proofs in self._shared.items():

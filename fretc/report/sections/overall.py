@@ -82,16 +82,16 @@ def overall(
     if forged:
         return Overall(BROKEN, forged, sentences)
     if not good:
-        return Overall(_NONE, _with("Nothing that was claimed is shown", stale), sentences)
+        return Overall(_NONE, _with("None of the claimed requirements is shown", stale), sentences)
     if len(good) < len(active) or has_flaws or withdrawn:
-        return Overall(_PART, _with("Not everything that was claimed is shown", stale), sentences)
+        return Overall(_PART, _with("Not all claimed requirements are shown", stale), sentences)
     if refuted:
-        headline = "What was audited held; verification found counterexamples."
+        headline = "All audited requirements held, but verification found counterexamples."
         return Overall(_PART, headline, sentences)
     if missing:
-        headline = "What was audited held; not all that was planned is shown."
+        headline = "All audited requirements held, but some planned methods have no result."
         return Overall(_PART, headline, sentences)
-    return Overall(_ALL, "Everything that was claimed is shown.", sentences)
+    return Overall(_ALL, "All claimed requirements are shown.", sentences)
 
 
 def _with(headline: str, stale: str) -> str:
@@ -112,14 +112,14 @@ def _held(active: Sequence[Assessment], good: Sequence[Assessment], runs: int) -
         count = sum(one.is_shown for one in probable)
         yield (
             f"{count} of {phrases.times(len(probable), 'probability', 'probabilities')} "
-            f"{'is' if len(probable) == 1 else 'are'} supported, on the average over the triggers "
+            f"{'is' if len(probable) == 1 else 'are'} supported, as an average over the triggers "
             f"of {phrases.times(runs, 'run')}."
         )
 
 
 def _held_in_runs(active: Sequence[Assessment], good: Sequence[Assessment], runs: int) -> str:
     if not active:
-        return "There is no requirement to show."
+        return "There is no requirement in force."
     if not runs:
         return "No run has been audited."
     if len(active) == 1:
@@ -139,7 +139,7 @@ def _where(runs: int) -> str:
 def _refuted(ids: Sequence[str]) -> str:
     if not ids:
         return ""
-    return f"Verification found a counterexample to {phrases.some(ids)}; part 4 has the claim."
+    return f"Verification found a counterexample to {phrases.some(ids)}; part 4 lists the claims."
 
 
 def _waived(active: Sequence[Assessment]) -> str:
@@ -155,7 +155,7 @@ def _unsigned(sections: Sequence[RequirementView]) -> str:
     """A waiver lets a requirement pass, no matter who has written it."""
     waived = [view for view in sections if view.waiver and view.mark.word == WAIVED]
     names = [view.name for view in waived if view.waiver and not view.waiver.signature.is_good]
-    return f"Nobody is known to have signed the waiver of {phrases.some(names)}." if names else ""
+    return f"There is no valid signature for the waiver of {phrases.some(names)}." if names else ""
 
 
 def _forged(signatures: Signatures) -> str:
@@ -171,7 +171,7 @@ def _unplanned(missing: Sequence[Planned], names: Mapping[str, str]) -> str:
     if not missing:
         return ""
     methods = phrases.some([f"{plan.method} for {names[plan.requirement]}" for plan in missing])
-    return f"No result is known of {phrases.times(len(missing), 'planned method')}: {methods}."
+    return f"No result is recorded for {phrases.times(len(missing), 'planned method')}: {methods}."
 
 
 def _uncovered(project: Project, assessments: Sequence[Assessment]) -> str:
@@ -180,11 +180,11 @@ def _uncovered(project: Project, assessments: Sequence[Assessment]) -> str:
     return f"{phrases.times(count, 'hazard')} {verb} no requirement in force." if count else ""
 
 
-_FLAWED = "The requirements or what stands beside them have errors: this report is not complete."
+_FLAWED = "The requirements, bindings or hazards have errors: this report is not complete."
 
 
 def _few(reservations: Sequence[str]) -> Sequence[str]:
     """The reservations themselves, or a sentence with their number where there are many."""
     if len(reservations) <= 3:
         return reservations
-    return (f"There are {len(reservations)} reservations about what is shown; part 2 lists them.",)
+    return (f"There are {len(reservations)} reservations; part 2 lists them.",)

@@ -47,7 +47,7 @@ def _audit(assessment: Assessment) -> Planned:
     if current:
         text = f"{phrases.times(len(current), 'run')} audited: {assessment.mark.text}"
         return Planned(assessment.id, assessment.anchor, _AUDIT, True, text)
-    suspect = f"all its evidence is suspect; it said {assessment.unwaived}"
+    suspect = f"all its evidence is suspect; its verdict was {assessment.unwaived}"
     text = suspect if assessment.audits else "no run has been audited"
     return Planned(assessment.id, assessment.anchor, _AUDIT, False, text)
 
@@ -59,7 +59,7 @@ def _other(assessment: Assessment, method: str) -> Planned:
         assessment.anchor,
         method,
         False,
-        f"no result is known{_at_hand(assessment, method)}",
+        f"no result is recorded{_at_hand(assessment, method)}",
     )
 
 
@@ -68,7 +68,7 @@ def _at_hand(assessment: Assessment, method: str) -> str:
     if target is None:
         return ""
     if assessment.requirement is None:
-        return f", and none can be: the requirement is {UNFORMALIZED}"
+        return f", and none is possible: the requirement is {UNFORMALIZED}"
     if target.refuse(assessment.requirement) is not None:
-        return f", and none can be: {method} cannot express the requirement"
-    return "; the file for it can be made, and whether it was checked is not recorded"
+        return f", and none is possible: {method} cannot express the requirement"
+    return "; its file can be generated, but no check of it is recorded"

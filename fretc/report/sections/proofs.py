@@ -69,11 +69,11 @@ def _suspicions(
     """Why a proof is about other texts than those of now; only texts that fretc makes count."""
     for name, examined in proof.artefacts.items():
         if name in now and now[name] != examined:
-            what = "is not what it was" if name == ASSUMED else "is not made like that any more"
+            what = "has changed" if name == ASSUMED else "would be generated differently now"
             yield f"{name} {what}"
     is_joint = any(examined in joint for examined in proof.artefacts.values())
     if proof.layer in OF_MONITOR and not (is_joint or _is_of_monitor(proof, now, requirement)):
-        yield "it is about another monitor than the one that is made now"
+        yield "it is about another monitor than the one generated now"
 
 
 def _is_of_monitor(

@@ -57,10 +57,10 @@ def commands(
 
     return (
         Command("Check the version of the tool", f"fretc --version   # fretc {__version__}"),
-        *_command("Check that the runs are those that were audited", lambda: _check(runs)),
+        *_command("Check that the logs are the audited ones", lambda: _check(runs)),
         *_command("Audit the runs", audit),
         *_emissions(sections),
-        *_command("Write this report", report),
+        *_command("Generate this report", report),
     )
 
 
@@ -133,7 +133,7 @@ def _emissions(sections: Sequence[RequirementView]) -> Iterable[Command]:
     for kinds, files in groups.items():
         if kinds:
             emits = " ".join(f"--emit {kind}" for kind in kinds)
-            yield from _command("Make the artefacts", partial(_emission, files, emits))
+            yield from _command("Generate the artefacts", partial(_emission, files, emits))
 
 
 def _emission(files: Sequence[str], emits: str) -> str:

@@ -165,11 +165,13 @@ def _formulas(requirement: FormalizedRequirement) -> tuple[Formula, ...]:
         Formula("Future time", "infinite traces", printing.readable(requirement.ft_infinite)),
         Formula(
             "Future time, finite",
-            "finite traces, read at the first tick; LAST holds at the last one",
+            "finite traces, evaluated at the first tick; LAST holds at the last tick",
             printing.readable(requirement.ft_finite),
         ),
         Formula(
-            "Past time", "finite traces, read at the last tick", printing.readable(requirement.pt)
+            "Past time",
+            "finite traces, evaluated at the last tick",
+            printing.readable(requirement.pt),
         ),
     )
 
@@ -236,7 +238,7 @@ def _written(bindings: str) -> Mapping[str, Any]:
 def _properties(bound: Proposition) -> str:
     unknown = "unknown" if bound.on_unknown is None else str(bound.on_unknown).lower()
     parts = [str(bound.role), *([bound.kind] if bound.kind else [])]
-    return f"{', '.join(parts)}; of a tick counts: {bound.aggregate}; where unknown: {unknown}"
+    return f"{', '.join(parts)}; value of a tick: {bound.aggregate}; if unknown: {unknown}"
 
 
 def _signal(signal: Signal) -> SignalView:

@@ -193,11 +193,8 @@ def _bound(requirement: FormalizedRequirement | None) -> str:
     if not syntax.is_eventual(requirement.sentence.timing):
         return ""
     word = syntax.timing_key(requirement.sentence)
-    how = "gives no timing, which means `eventually`" if word == "null" else f"says `{word}`"
-    return (
-        f"No bound was required: the sentence {how}, so a response satisfies it however late it "
-        "comes."
-    )
+    how = "has no timing, which means `eventually`" if word == "null" else f"says `{word}`"
+    return f"No bound was required: the sentence {how}, so a response at any time satisfies it."
 
 
 def _waits(result: Result) -> tuple[str, ...]:
@@ -288,7 +285,7 @@ def _perhaps(count: int, of: int) -> str:
     if not count:
         return ""
     some = "" if of == 1 else "all of them " if count == of else f"{count} of them "
-    return f", {some}uncertain for propositions are unknown"
+    return f", {some}uncertain because propositions are unknown"
 
 
 def _unknown(result: Result) -> Listing:

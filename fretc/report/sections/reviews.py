@@ -66,7 +66,9 @@ def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
         return "No requirement has been reviewed."
     suspect = sum(standing.is_suspect for standing in standings)
     verb = "stands" if suspect == 1 else "stand"
-    stands = f"; {suspect} of these reviews no longer {verb}" if suspect else ", and all stand"
+    stands = (
+        f"; {suspect} of these reviews no longer {verb}" if suspect else ", all reviews are current"
+    )
     reviews = [standing.review for standing in standings if standing.review is not None]
     unsigned = sum(not of_review(book, each).is_good for each in reviews)
     verb = "is" if unsigned == 1 else "are"

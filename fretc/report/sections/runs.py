@@ -170,17 +170,17 @@ def _checked(checked: Checked | None, *, hashed: bool) -> str:
     if checked is None:
         return "not known"
     if not checked.chunks:
-        return "every record was read" if not checked.by_index else "nothing: it has no chunks"
+        return "every record was read" if not checked.by_index else "nothing: the log has no chunks"
     parts = [
         f"{count} of {checked.chunks} chunks {what}"
         for count, what in (
-            (checked.crc_checked, "have the CRC that they state"),
+            (checked.crc_checked, "match their CRC"),
             (
                 checked.crc_unchecked,
-                "have a CRC that was not checked: only their beginning was read",
+                "have a CRC that was not checked, because only their beginning was read",
             ),
-            (checked.without_crc, "state no CRC"),
-            (checked.skipped, "hold nothing that is bound and were not read"),
+            (checked.without_crc, "have no CRC"),
+            (checked.skipped, "contain no bound topic and were not read"),
         )
         if count
     ]

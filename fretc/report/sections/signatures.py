@@ -70,7 +70,7 @@ def _broken(book: SignatureBook) -> Iterator[Signed]:
         for signer in one.broken:
             place = one.envelope.place
             where = f"{phrases.place(place.source.name)}:{place.line}"
-            text = f"it is not by {signer.name}, or not about this"
+            text = f"the signature is not by {signer.name}, or not about this item"
             yield Signed("signature", where, "", SignatureView(BROKEN, text, False))
 
 
@@ -121,7 +121,7 @@ def _idle(what: str, signing: Signing) -> Iterator[Diagnostic]:
         yield Diagnostic(
             Code.IDLE_SIGNATURE,
             f"{what} is unauthenticated: {signing.text}",
-            help="have its reviewer sign it: `fretc sign FILE --key KEY`; `allowed_signers` names "
-            "whose keys count",
+            help="ask the reviewer to sign: `fretc sign FILE --key KEY`; `allowed_signers` "
+            "lists the valid keys",
             severity=Severity.WARNING,
         )

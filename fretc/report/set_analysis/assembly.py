@@ -50,7 +50,7 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
     assumed, mistakes = assumptions(requirements, project.declarations)
     old = [
         *suspicions(known.document, requirements, assumed),
-        *(f"an assumption has a mistake: {each.message}" for each in mistakes if each.is_error),
+        *(f"an assumption has an error: {each.message}" for each in mistakes if each.is_error),
     ]
     analysis = known.document.analysis
     view = _Views(known.document, anchors)
@@ -152,7 +152,7 @@ def sentence(found: SetAnalysis) -> str:
         parts.append(f"The analysis of all requirements together is suspect: {why}.")
     if found.left_out:
         names = phrases.some(found.left_out)
-        parts.append(f"Nobody has asked whether {names} can be kept with the others.")
+        parts.append(f"Not analyzed: whether {names} can be kept together with the others.")
     return " ".join(parts)
 
 

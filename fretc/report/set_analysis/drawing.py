@@ -125,6 +125,6 @@ def _middle(place: int, left: float, column: float) -> float:
 
 def _in_words(play: Play, *, breaks: bool) -> str:
     """What the picture shows, for who does not see it."""
-    end = "a requirement is broken at the last one" if breaks else "no requirement is broken"
-    end = end if play.loop is None else "the marked ones come again for ever"
+    end = "a requirement is violated at the last tick" if breaks else "no requirement is violated"
+    end = end if play.loop is None else "the marked ticks repeat for ever"
     return f"Ticks {play.ticks[0]} to {play.ticks[-1]}; {end}. The table below has all values."

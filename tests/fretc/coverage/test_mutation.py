@@ -170,7 +170,7 @@ def test_what_no_run_notices_is_printed_with_its_sentence() -> None:
     short = [text for text, _ in lines(found, {}, every=False)]
     (of,) = found.suspects
     survivors = of.mutants[2:]
-    assert short[0] == f"○ R1: 2 of {len(of.mutants)} wrong sentences noticed"
+    assert short[0] == f"○ R1: 2 of {len(of.mutants)} mutants noticed"
     for mutant in survivors:
         assert f"    ○ {mutant.words}" in short
         assert f"      {mutation_record.written(mutant)}" in short
