@@ -45,7 +45,7 @@ def verify(
         Refusal: a requirement has an error, or no monitor can express it.
     """
     if has_errors(project.diagnostics):
-        raise Refusal(each for each in project.diagnostics if each.is_error)
+        raise Refusal(diagnostic for diagnostic in project.diagnostics if diagnostic.is_error)
     every = tuple(map(str, Layer))
     demanded = () if layers is None else _named("layer", layers, every)
     chosen_layers = demanded if layers is not None else every

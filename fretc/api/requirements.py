@@ -61,7 +61,7 @@ def formalize(sentence: str, bindings: Path | None = None, id: str = "R1") -> Fo
     declarations = _declarations(bindings) if bindings is not None else None
     requirement, remarks = formalized(entry, declarations)
     if requirement is None or has_errors(remarks):
-        raise Refusal([each for each in remarks if each.is_error] or remarks)
+        raise Refusal([remark for remark in remarks if remark.is_error] or remarks)
     return requirement
 
 
@@ -72,7 +72,7 @@ def _path(path: Path | None) -> str | None:
 def _declarations(path: Path) -> Declarations:
     declarations, remarks = read_bindings(accepted(read(os.fspath(path))))
     if declarations is None or has_errors(remarks):
-        raise Refusal(each for each in remarks if each.is_error)
+        raise Refusal(remark for remark in remarks if remark.is_error)
     return declarations
 
 

@@ -140,4 +140,8 @@ def _licences(one: Distribution) -> list[str]:
         if text and text != "UNKNOWN" and len(text) <= _SHORT and "\n" not in text:
             return [text]
     classifiers = one.metadata.get_all("Classifier", [])
-    return [each.rpartition(" :: ")[2] for each in classifiers if each.startswith("License :: ")]
+    return [
+        classifier.rpartition(" :: ")[2]
+        for classifier in classifiers
+        if classifier.startswith("License :: ")
+    ]

@@ -242,7 +242,7 @@ NO_SIGNATURES = SignatureBook(None)
 
 
 def _has(one: _CheckedEnvelope, kind: str, sha256: str) -> bool:
-    return any((each.kind, each.sha256) == (kind, sha256) for each in one.subjects)
+    return any((subject.kind, subject.sha256) == (kind, sha256) for subject in one.subjects)
 
 
 def _has_another(one: _CheckedEnvelope, subject: Subject) -> bool:
@@ -302,7 +302,7 @@ def book(files: Sequence[str], signers: Signers | None) -> SignatureBook | Diagn
 
 
 def _checked(envelope: Envelope, signers: Sequence[Signer]) -> _CheckedEnvelope:
-    named = [one for one in signers if one.key.fingerprint in envelope.dsse.key_ids]
+    named = [signer for signer in signers if signer.key.fingerprint in envelope.dsse.key_ids]
     good = tuple(one for one in named if envelope.dsse.is_signed_by(one.key))
     bad = tuple(one for one in named if one not in good)
     return _CheckedEnvelope(envelope, frozenset(envelope.statement.subjects), good, bad)

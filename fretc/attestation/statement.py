@@ -150,7 +150,9 @@ def evidence(file: EvidenceSource, proofs: Proofs | None) -> Statement:
         {
             "fretc": file.fretc,
             "requirements": _requirements(briefs),
-            "probabilities": [[one.requirement, one.answer] for one in file.probabilities],
+            "probabilities": [
+                [probability.requirement, probability.answer] for probability in file.probabilities
+            ],
             "proofs": _proved(proofs.proofs) if proofs else [],
         },
     )
@@ -179,8 +181,8 @@ def analysis(file: AnalyzedSet) -> Statement:
     says = {
         "requirements": {id: each.sha256 for id, each in file.document.requirements.items()},
         "verdict": found.verdict,
-        "conflicts": [list(each.requirements) for each in found.conflicts],
-        "assumptions": {each.id: each.sentence for each in found.assumptions},
+        "conflicts": [list(conflict.requirements) for conflict in found.conflicts],
+        "assumptions": {assumption.id: assumption.sentence for assumption in found.assumptions},
     }
     return Statement(ANALYSIS, (Subject(ANALYSIS, Path(file.file).name, file.sha256),), says)
 

@@ -59,7 +59,7 @@ class RequirementCoverage:
 
     def of(self, standing: CoverageStatus) -> tuple[RecordedSituation, ...]:
         """The situations with this status."""
-        return tuple(each for each in self.situations if each.standing is standing)
+        return tuple(situation for situation in self.situations if situation.standing is standing)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,13 +111,13 @@ def of_requirements(
         source: the evidence.
         places: requirement → index of each counted result → index of its run.
     """
-    ledgers = {each.id: _Ledger(each) for each in source.requirements}
+    ledgers = {requirement.id: _Ledger(requirement) for requirement in source.requirements}
     of_place = {place: id for id, some in places.items() for place in some}
     for place, shown in source.situations(ledgers.keys()):
         id = of_place.get(place)
         if id in ledgers:
             ledgers[id].add(places[id][place], shown)
-    return tuple(each.coverage() for each in ledgers.values())
+    return tuple(ledger.coverage() for ledger in ledgers.values())
 
 
 class _Ledger:
@@ -126,8 +126,12 @@ class _Ledger:
     def __init__(self, requirement: Requirement) -> None:
         self._id, self._fingerprint = requirement.id, requirement.sha256
         self._situations = requirement.situations or ()
-        self._seen: dict[str, dict[int, Moment]] = {each.key: {} for each in self._situations}
-        self._perhaps: dict[str, dict[int, Moment]] = {each.key: {} for each in self._situations}
+        self._seen: dict[str, dict[int, Moment]] = {
+            situation.key: {} for situation in self._situations
+        }
+        self._perhaps: dict[str, dict[int, Moment]] = {
+            situation.key: {} for situation in self._situations
+        }
         self._measured: dict[int, None] = {}
         self._unmeasured: dict[int, None] = {}
 
@@ -160,4 +164,6 @@ class _Ledger:
 
 def counts(requirements: Iterable[RequirementCoverage]) -> Counter[CoverageStatus]:
     """The number of situations of all requirements by status."""
-    return Counter(each.standing for one in requirements for each in one.situations)
+    return Counter(
+        situation.standing for requirement in requirements for situation in requirement.situations
+    )

@@ -49,15 +49,17 @@ def directions(suite: Suite, fingerprints: Mapping[str, str]) -> Directions:
         fingerprints: requirement → SHA-256 of its sentence; tests of other sentences are ignored.
     """
     current = {
-        each.id: each.sentence
-        for each in suite.requirements
-        if fingerprints.get(each.id) == each.fingerprint
+        requirement.id: requirement.sentence
+        for requirement in suite.requirements
+        if fingerprints.get(requirement.id) == requirement.fingerprint
     }
     tests = {test.name: test for test in suite.tests}
     groups: dict[tuple[str, str], dict[Polarity, Obligation]] = {}
-    for one in suite.obligations:
-        if one.requirement in current:
-            groups.setdefault((one.requirement, one.situation), {})[one.polarity] = one
+    for obligation in suite.obligations:
+        if obligation.requirement in current:
+            groups.setdefault((obligation.requirement, obligation.situation), {})[
+                obligation.polarity
+            ] = obligation
     found = {
         key: _direction(both, tests, current[key[0]], nanoseconds(suite.clock))
         for key, both in groups.items()
@@ -127,16 +129,18 @@ def unseen(covered: Coverage, known: Directions) -> Iterator[tuple[str, str]]:
 
     Situations that provably no run can show without violating a requirement are left out.
     """
-    for one in covered.requirements:
-        for situation in one.situations:
-            direction = known.get((one.id, situation.key))
+    for requirement in covered.requirements:
+        for situation in requirement.situations:
+            direction = known.get((requirement.id, situation.key))
             if situation.standing is not CoverageStatus.SEEN and (
                 direction is None or direction.way is Way.KEPT
             ):
-                yield one.id, situation.key
+                yield requirement.id, situation.key
 
 
 def is_complete(covered: Coverage, known: Directions) -> bool:
     """Whether every situation that a run can show has been seen."""
-    measured = all(one.situations and one.measured for one in covered.requirements)
+    measured = all(
+        requirement.situations and requirement.measured for requirement in covered.requirements
+    )
     return measured and next(unseen(covered, known), None) is None

@@ -154,14 +154,14 @@ def of_run(asked: MutationJob, log: str) -> RunSurvey | Diagnostic:
     end = Verdict(declarations.clock.end)
     known: set[str] = set()
     noticed: dict[tuple[str, str], Difference] = {}
-    for one in asked.suspects:
-        own, *others = judgements(one.monitor, truths, end, intact=recording.intact)
+    for suspect in asked.suspects:
+        own, *others = judgements(suspect.monitor, truths, end, intact=recording.intact)
         if own.verdict != kernel.NO_DATA:
-            known.add(one.id)
-        for mutant, other in zip(one.mutants, others, strict=True):
+            known.add(suspect.id)
+        for mutant, other in zip(suspect.mutants, others, strict=True):
             found = difference(own, other)
             if found is not None:
-                noticed[one.id, mutant.key] = found
+                noticed[suspect.id, mutant.key] = found
     return RunSurvey(frozenset(known), noticed)
 
 
@@ -231,7 +231,7 @@ class MutationResult:
     @property
     def count(self) -> int:
         """The number of mutants, without those that are proved equivalent."""
-        return sum(len(each.mutants) + len(each.refused) for each in self.suspects) - len(
+        return sum(len(suspect.mutants) + len(suspect.refused) for suspect in self.suspects) - len(
             self.equivalent
         )
 
@@ -242,13 +242,15 @@ class MutationResult:
 
     def with_proofs(self, suite: Suite) -> MutationResult:
         """The result with the equivalent mutants of a test suite, for unchanged sentences."""
-        known = {each.id: each.fingerprint for each in suite.requirements}
-        current = {each.id for each in self.suspects if known.get(each.id) == each.fingerprint}
-        keys = {(each.id, one.key) for each in self.suspects for one in _all(each)}
+        known = {requirement.id: requirement.fingerprint for requirement in suite.requirements}
+        current = {
+            suspect.id for suspect in self.suspects if known.get(suspect.id) == suspect.fingerprint
+        }
+        keys = {(suspect.id, one.key) for suspect in self.suspects for one in _all(suspect)}
         proved = {
-            (each.requirement, each.key)
-            for each in suite.mutants
-            if each.outcome is Fate.EQUIVALENT and each.requirement in current
+            (mutant.requirement, mutant.key)
+            for mutant in suite.mutants
+            if mutant.outcome is Fate.EQUIVALENT and mutant.requirement in current
         }
         return replace(self, equivalent=frozenset(proved & keys - self.noticed.keys()))
 

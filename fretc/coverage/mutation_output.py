@@ -20,8 +20,8 @@ def lines(survey: MutationResult, titles: Mapping[str, str], *, every: bool) -> 
         titles: requirement id → title.
         every: also list the noticed mutants.
     """
-    for each in survey.suspects:
-        yield from _requirement(each, titles.get(each.id, each.id), survey, every=every)
+    for suspect in survey.suspects:
+        yield from _requirement(suspect, titles.get(suspect.id, suspect.id), survey, every=every)
     yield "", None
     yield _totals(survey)
 
@@ -63,7 +63,7 @@ def _how(found: tuple[int, Difference], runs: tuple[str, ...]) -> str:
 def _totals(survey: MutationResult) -> Line:
     """`1 run x 15 requirements: 120 of 259 mutants noticed`."""
     same = len(survey.equivalent)
-    refused = sum(len(each.refused) for each in survey.suspects)
+    refused = sum(len(suspect.refused) for suspect in survey.suspects)
     runs, requirements = len(survey.runs), len(survey.suspects)
     sign = signs.GOOD if survey.is_complete else signs.UNUSED
     text = (

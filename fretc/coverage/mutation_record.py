@@ -76,8 +76,8 @@ def document(survey: MutationResult) -> Document:
         fretc=__version__,
         runs=survey.runs,
         requirements=tuple(
-            Requirement(each.id, each.id in survey.known, tuple(_mutants(each, survey)))
-            for each in survey.suspects
+            Requirement(suspect.id, suspect.id in survey.known, tuple(_mutants(suspect, survey)))
+            for suspect in survey.suspects
         ),
     )
 

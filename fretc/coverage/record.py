@@ -89,12 +89,15 @@ def document(covered: c.Coverage, known: Directions) -> Document:
         runs=covered.runs,
         requirements=tuple(
             Requirement(
-                each.id,
-                tuple(_situation(each.id, one, known) for one in each.situations),
-                each.measured,
-                each.unmeasured,
+                requirement.id,
+                tuple(
+                    _situation(requirement.id, situation, known)
+                    for situation in requirement.situations
+                ),
+                requirement.measured,
+                requirement.unmeasured,
             )
-            for each in covered.requirements
+            for requirement in covered.requirements
         ),
         least_runs=covered.least.runs,
         least_is_exact=covered.least.is_exact,

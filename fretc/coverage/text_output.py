@@ -41,9 +41,9 @@ def lines(
         directions: known directions to unseen situations.
         every: also list the seen situations.
     """
-    for each in covered.requirements:
-        title = titles.get(each.id, each.id)
-        yield from _requirement(each, title, covered.runs, directions, every=every)
+    for requirement in covered.requirements:
+        title = titles.get(requirement.id, requirement.id)
+        yield from _requirement(requirement, title, covered.runs, directions, every=every)
     yield "", None
     yield from _runs(covered, every=every)
     yield from _least(covered)
@@ -162,7 +162,7 @@ def in_counts(requirements: Sequence[RequirementCoverage]) -> str:
     """`84 of 190 situations seen, 12 perhaps, 94 never`."""
     found = counts(requirements)
     rest = [f"{found[each]:,} {each}" for each in [*CoverageStatus][1:] if found[each]]
-    blank = sum(not each.situations for each in requirements)
+    blank = sum(not requirement.situations for requirement in requirements)
     rest += [f"{_times(blank, 'requirement')} not measured"] if blank else []
     seen = f"{found[CoverageStatus.SEEN]:,} of {found.total():,} situations seen"
     return ", ".join([seen, *rest])

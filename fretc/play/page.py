@@ -75,7 +75,7 @@ def inset(
     """
     made, before = body(*requirements), before or {}
     now = [requirement for requirement in requirements if requirement.id not in before.values()]
-    known = [each for each in starts if 0 < each.ticks <= MOST]
+    known = [start for start in starts if 0 < start.ticks <= MOST]
     names = ", ".join(("REQUIREMENTS", "PROPOSITIONS", "VARIABLES", "init", "truths", "judge"))
     code = "\n".join(line for line in made.text.splitlines() if not line.lstrip().startswith("//"))
     monitor = f'"use strict";\nconst monitor = (() => {{\n{code}\nreturn {{ {names} }};\n}})();\n'
@@ -224,7 +224,7 @@ def _tree(formula: f.Formula, propositions: Sequence[str]) -> list[Any]:
 
 
 def _variable(name: str, front: InputAdapter) -> dict[str, Any]:
-    own = [each for each in front.comparisons.values() if name in each.inputs]
+    own = [comparison for comparison in front.comparisons.values() if name in comparison.inputs]
     found = front.inputs.get(name)
     unit = next((each.units[name][0] for each in own if name in each.units), "")
     candidates: list[Any] = []
@@ -232,7 +232,7 @@ def _variable(name: str, front: InputAdapter) -> dict[str, Any]:
         candidates = [*found.words]
     elif found is not None and found.kind == NUMBER:
         limits = [each[1] for one in own if (each := threshold(one)) and each[0] == name]
-        candidates = _candidates(limits or [each for one in own for each in numbers(one)])
+        candidates = _candidates(limits or [number for one in own for number in numbers(one)])
     return {
         "label": visible(name),
         "note": f"in {unit}" if unit else "",

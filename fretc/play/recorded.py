@@ -134,7 +134,7 @@ class Run:
         self._ticks = len(timeline.times)
         (self._outcome,) = evaluate(self._monitor, columns, self._ticks)
         self._whole = self._signals(columns, self._ticks)
-        self._windows = [self._window(*each) for each in self._outcome.violations[:SHOWN]]
+        self._windows = [self._window(*violation) for violation in self._outcome.violations[:SHOWN]]
 
     @property
     def violations(self) -> int:

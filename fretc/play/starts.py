@@ -60,7 +60,11 @@ def of_examples(requirements: Sequence[FormalizedRequirement]) -> Iterator[Start
 def of_suite(suite: Suite, requirements: Sequence[FormalizedRequirement]) -> Iterator[Start]:
     """The tests of requirements whose sentences have not changed."""
     fingerprints = {requirement.id: requirement.fingerprint for requirement in requirements}
-    same = {each.id for each in suite.requirements if fingerprints.get(each.id) == each.fingerprint}
+    same = {
+        requirement.id
+        for requirement in suite.requirements
+        if fingerprints.get(requirement.id) == requirement.fingerprint
+    }
     for test in suite.tests:
         if test.requirement in same:
             rows = tuple((row.count, dict(row.values)) for row in test.rows)
@@ -73,9 +77,9 @@ def changed(suite: Suite, requirements: Sequence[FormalizedRequirement]) -> tupl
     """The requirements that have changed since the tests were generated."""
     fingerprints = {requirement.id: requirement.fingerprint for requirement in requirements}
     return tuple(
-        each.id
-        for each in suite.requirements
-        if fingerprints.get(each.id, each.fingerprint) != each.fingerprint
+        requirement.id
+        for requirement in suite.requirements
+        if fingerprints.get(requirement.id, requirement.fingerprint) != requirement.fingerprint
     )
 
 

@@ -29,7 +29,11 @@ def situations(
         for one in assessed
         if one.audits and one.verdict != RETIRED
     }
-    found = (each for each in of_requirements(evidence, places) if each.id in places)
+    found = (
+        of_requirement
+        for of_requirement in of_requirements(evidence, places)
+        if of_requirement.id in places
+    )
     return {each.id: _view(each) for each in found}
 
 

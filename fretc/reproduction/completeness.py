@@ -53,7 +53,7 @@ def incomplete(
 
 
 def _requirements(document: Document, scope: Scope) -> Iterator[Recheck]:
-    named = Counter(each.id for each in document.requirements)
+    named = Counter(requirement.id for requirement in document.requirements)
     for id in scope.claimed:
         if not named[id]:
             yield differs(FILE, id, f"{id} is claimed, but the evidence does not name it")
@@ -65,7 +65,7 @@ def _requirements(document: Document, scope: Scope) -> Iterator[Recheck]:
 def _results(document: Document, scope: Scope) -> Iterator[Recheck]:
     """Check that each run has exactly one result for each requirement."""
     counts = Counter((result.run, result.requirement) for result in document.results)
-    named = {each.id for each in document.requirements}
+    named = {requirement.id for requirement in document.requirements}
     for run in dict.fromkeys(run for run, _ in counts):
         here = {id for other, id in counts if other == run}
         for id in sorted(named | here | {*scope.claimed}, key=natural):

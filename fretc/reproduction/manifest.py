@@ -45,8 +45,8 @@ def read(path: str) -> Manifest | tuple[Diagnostic, ...]:
     if isinstance(source, Diagnostic):
         return (source,)
     entries = list(_lines(source))
-    errors = [one for one in entries if isinstance(one, Diagnostic)]
-    logs = [one for one in entries if not isinstance(one, Diagnostic)]
+    errors = [entry for entry in entries if isinstance(entry, Diagnostic)]
+    logs = [entry for entry in entries if not isinstance(entry, Diagnostic)]
     if not entries:
         errors.append(_wrong(source, 0, 0, f"`{path}` names no log"))
     return tuple(errors) if has_errors(errors) else Manifest(path, dict(logs))

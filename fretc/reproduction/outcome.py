@@ -55,5 +55,5 @@ def unknown(run: str, requirement: str, *reasons: str, claim: str = "") -> Reche
 
 def counts(rechecks: Iterable[Recheck]) -> Mapping[Finding, int]:
     """The number of items by finding."""
-    number = Counter(one.finding for one in rechecks)
+    number = Counter(recheck.finding for recheck in rechecks)
     return {finding: number[finding] for finding in Finding}

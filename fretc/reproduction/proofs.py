@@ -41,7 +41,7 @@ def prove_again(
         claimed: the selected requirements.
         progress: called before each slow claim.
     """
-    records = [one for one in proofs.proofs if _is_asked_for(one, project, claimed)]
+    records = [proof for proof in proofs.proofs if _is_asked_for(proof, project, claimed)]
     proofs_now = _prove(project, records, limits, progress)
     if isinstance(proofs_now, Diagnostic):
         return proofs_now
@@ -60,7 +60,7 @@ def unproved_plans(
     for requirement in project.requirements:
         for method in dict.fromkeys(requirement.verify):
             repeatable = method in METHODS and method != Layer.AJPF
-            own = [one for one in proofs if one.requirement in (requirement.id, *_SHARED)]
+            own = [proof for proof in proofs if proof.requirement in (requirement.id, *_SHARED)]
             if (
                 requirement.id in claimed
                 and repeatable
@@ -110,7 +110,9 @@ def _prove(
     ]
     monitor_text, header = remade(own, project.formalized)
     plans_agent = {
-        each.id for each in project.requirements if {Layer.AGENT, Layer.AJPF} & {*each.verify}
+        requirement.id
+        for requirement in project.requirements
+        if {Layer.AGENT, Layer.AJPF} & {*requirement.verify}
     }
     of_agent = {record.requirement for record in own if record.layer is Layer.AGENT}
     request = Request(

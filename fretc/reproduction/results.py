@@ -103,7 +103,7 @@ def recheck(
         *_beginning(document, plan, part=scope.part),
         *(_result(result, now) for result in document.results),
         *incomplete(document, scope, places, partial(_prints, plan)),
-        *(one for match in listed for one in match.differences),
+        *(difference for match in listed for difference in match.differences),
         *_log_findings(document, now),
         *_estimates_again(document, now, scope.claimed),
     )
@@ -114,9 +114,15 @@ def _part(document: Document, scope: Scope) -> Document:
     ids = {*scope.claimed}
     return replace(
         document,
-        requirements=tuple(each for each in document.requirements if each.id in ids),
-        results=tuple(each for each in document.results if each.requirement in ids),
-        probabilities=tuple(each for each in _probabilities(document) if each.requirement in ids),
+        requirements=tuple(
+            requirement for requirement in document.requirements if requirement.id in ids
+        ),
+        results=tuple(result for result in document.results if result.requirement in ids),
+        probabilities=tuple(
+            probability
+            for probability in _probabilities(document)
+            if probability.requirement in ids
+        ),
     )
 
 
@@ -138,7 +144,7 @@ def _results_now(
         audit = audit_logs(changed(plan, integrity=integrity), logs, engine)
         if isinstance(audit, Diagnostic):
             return audit
-        results_of_audit = {(one.run, one.requirement): one for one in audit.results}
+        results_of_audit = {(result.run, result.requirement): result for result in audit.results}
         results |= {
             (run, claim.id): results_of_audit[name_of(places[run]), claim.id]
             for run in runs
@@ -160,7 +166,7 @@ def _prints(plan: Plan, place: str) -> frozenset[str]:
     signals = tuple(plan.declarations.signals)
     levels = (Integrity.INDEX, Integrity.HASH)
     recordings = [read(place, plan.declarations, signals, level) for level in levels]
-    hashes = [one.sha256 for one in recordings if not isinstance(one, Diagnostic)]
+    hashes = [recording.sha256 for recording in recordings if not isinstance(recording, Diagnostic)]
     return frozenset(filter(None, (*hashes, file_sha256(place))))
 
 
@@ -206,9 +212,11 @@ def _wording(sentence: str) -> str:
 
 def _estimates_again(document: Document, now: _Now, ids: Collection[str]) -> Iterator[Recheck]:
     """Compute the estimate of each requirement with a probability again, from the same runs."""
-    estimates_before = {one.requirement: one for one in _probabilities(document)}
-    count = Counter(one.requirement for one in _probabilities(document))
-    named = {*ids, *(one.id for one in document.requirements)}
+    estimates_before = {
+        probability.requirement: probability for probability in _probabilities(document)
+    }
+    count = Counter(probability.requirement for probability in _probabilities(document))
+    named = {*ids, *(requirement.id for requirement in document.requirements)}
     runs = dict.fromkeys(result.run for result in document.results)
     for claim in now.plan.claims:
         if claim.chance is None or claim.id not in {*estimates_before, *named}:

@@ -35,10 +35,10 @@ def compared(document: Document, now: Analysis) -> Iterator[Recheck]:
         )
     if {document.fretc, before.fretc} != {__version__}:
         yield differs(TOGETHER, "", f"the installed fretc is {__version__}")
-    known = {each.requirements: each for each in now.components}
-    for each in before.components:
-        yield _component(each, known.get(each.requirements))
-    then = {each.requirements for each in before.components}
+    known = {component.requirements: component for component in now.components}
+    for component in before.components:
+        yield _component(component, known.get(component.requirements))
+    then = {component.requirements for component in before.components}
     for ids in (each for each in known if each not in then):
         yield differs(TOGETHER, "", "it is missing from the file", claim=", ".join(ids))
     if len(then) != len(before.components):
@@ -100,4 +100,4 @@ def _conflicts(before: Analysis, now: Analysis) -> Iterator[Recheck]:
 
 
 def _by_members(analysis: Analysis) -> dict[tuple[str, ...], Conflict]:
-    return {each.requirements: each for each in analysis.conflicts}
+    return {conflict.requirements: conflict for conflict in analysis.conflicts}

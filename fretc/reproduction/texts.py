@@ -27,7 +27,7 @@ def remade(records: Sequence[Proof], requirements: Sequence[FormalizedRequiremen
     Both are None if no generated text has these hashes, if several have them, or if the compiler is
     not installed.
     """
-    hashes = {name: value for each in records for name, value in _texts(each).items()}
+    hashes = {name: value for record in records for name, value in _texts(record).items()}
     of_monitor = [record for record in records if record.layer is Layer.MONITOR]
     found = {name: row for name in hashes if (row := language_of(name))}
     if len(found) != 1 or len(of_monitor) != len(records):
@@ -65,4 +65,4 @@ def _written(
         *(([requirement], False) for requirement in named),
     ):
         files = target.emit(group, Options(one_file=one_file))
-        yield {each.path.name: each.text for each in reversed(files)}  # The first `lib.rs` wins.
+        yield {file.path.name: file.text for file in reversed(files)}  # The first `lib.rs` wins.

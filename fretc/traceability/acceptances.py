@@ -68,8 +68,8 @@ def as_diagnostic(finding: Finding) -> Diagnostic:
 
 def _of_logs(evidence: EvidenceSource) -> Iterator[Diagnostic]:
     """The findings of all runs, without duplicates."""
-    findings = (each for run in evidence.runs() for each in run.health.findings)
-    yield from dict.fromkeys(as_diagnostic(each) for each in findings)
+    findings = (finding for run in evidence.runs() for finding in run.health.findings)
+    yield from dict.fromkeys(as_diagnostic(finding) for finding in findings)
 
 
 def _recorded(evidence: EvidenceSource) -> set[str]:

@@ -65,15 +65,15 @@ def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Answ
 
 
 def _answer(analysis: Analysis, id: str, differing: tuple[str, ...], as_fret: bool) -> Answer:
-    own = [each for each in analysis.components if id in each.requirements]
+    own = [component for component in analysis.components if id in component.requirements]
     verdict = own[0].verdict if own else Verdict.NOT_CHECKED
     return Answer(verdict, tuple(_findings(analysis, id, as_fret)), differing)
 
 
 def _findings(analysis: Analysis, id: str, as_fret: bool) -> Iterator[str]:
-    for each in analysis.conflicts:
-        if id in each.requirements:
-            yield f"conflict of {', '.join(each.requirements)}"
+    for conflict in analysis.conflicts:
+        if id in conflict.requirements:
+            yield f"conflict of {', '.join(conflict.requirements)}"
     for assumption in analysis.assumptions:
         yield f"assumed {assumption.id}: {assumption.sentence}"
     if as_fret:
@@ -81,7 +81,9 @@ def _findings(analysis: Analysis, id: str, as_fret: bool) -> Iterator[str]:
 
 
 def _component(analysis: Analysis, id: str) -> tuple[str, ...]:
-    own = (each.requirements for each in analysis.components if id in each.requirements)
+    own = (
+        component.requirements for component in analysis.components if id in component.requirements
+    )
     return tuple(chain.from_iterable(own))
 
 

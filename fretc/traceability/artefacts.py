@@ -101,14 +101,14 @@ def joint_monitors(
             tuple(requirement.id for requirement in some): some
             for some in (requirements, in_order, named)
         }
-        found.update(_of_joint(file, some) for some in orders.values())
+        found.update(_of_joint(file, order) for order in orders.values())
     return frozenset(found - {""})
 
 
 def _of_joint(file: str, requirements: Sequence[FormalizedRequirement]) -> str:
     """SHA-256 of one monitor for all requirements, or "" if the target refuses all of them."""
     target = TARGETS[_JOINT[file]]
-    accepted = [each for each in requirements if target.refuse(each) is None]
+    accepted = [requirement for requirement in requirements if target.refuse(requirement) is None]
     made = target.emit(accepted, Options(one_file=True)) if accepted else ()
     return next((sha256(each.text) for each in made if each.path.name == file), "")
 

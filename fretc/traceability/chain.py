@@ -121,7 +121,9 @@ class Chain:
         """Each outdated verdict, proof or analysis → the nodes that differ."""
         if not self.differences:
             return self.outdated_proofs
-        pairs = ((_verdict(each), self.differences.get(each.rests_on)) for each in self.results)
+        pairs = (
+            (_verdict(result), self.differences.get(result.rests_on)) for result in self.results
+        )
         return {node: nodes for node, nodes in pairs if nodes} | {**self.outdated_proofs}
 
     @property
@@ -217,8 +219,10 @@ def _by_requirement(
     acceptances: Iterable[Acceptance],
 ) -> Mapping[int | None, Sequence[Acceptance]]:
     found: dict[int | None, list[Acceptance]] = {}
-    for each in acceptances:
-        found.setdefault(id(each.requirement) if each.requirement else None, []).append(each)
+    for acceptance in acceptances:
+        found.setdefault(id(acceptance.requirement) if acceptance.requirement else None, []).append(
+            acceptance
+        )
     return found
 
 
@@ -303,7 +307,7 @@ class _ChainBuilder:
             above=self._above,
             bindings=texts.bindings(requirement, declarations, written) if declarations else None,
             topics=tuple(sorted(self._common.topics)) if audited and declarations else None,
-            proofs={_claim(each): (each.result, *each.assumptions) for each in proofs}
+            proofs={_claim(proof): (proof.result, *proof.assumptions) for proof in proofs}
             if requirement
             else {},
             loop=texts.loop(written) if proofs and declarations else {},

@@ -139,8 +139,8 @@ def changes(
 
 def in_words(changes: Sequence[Change]) -> str:
     """One sentence with the first changes, changes of requirements before changes of evidence."""
-    own = [each.brief for each in changes if not each.is_of_evidence]
-    named = own or [each.brief for each in changes]
+    own = [change.brief for change in changes if not change.is_of_evidence]
+    named = own or [change.brief for change in changes]
     left = len(named) - _IN_A_SENTENCE
     more = [f"and {left} more"] if left > 0 else []
     return "; ".join([*named[:_IN_A_SENTENCE], *more])

@@ -176,8 +176,12 @@ def contradictions(standing: ReviewedRequirement, project: Project) -> tuple[str
     found = [_statement(names, words, same) for (words, same), names in fields.items()]
     for failed in project.failed:
         if failed.requirement.id == id:
-            drifts = (each for each in failed.diagnostics if each.code is Code.NUMBER_DRIFT)
-            found.extend(each.message for each in drifts)
+            drifts = (
+                diagnostic
+                for diagnostic in failed.diagnostics
+                if diagnostic.code is Code.NUMBER_DRIFT
+            )
+            found.extend(drift.message for drift in drifts)
     return tuple(dict.fromkeys(found))
 
 

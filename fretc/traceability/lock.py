@@ -199,14 +199,18 @@ class Acceptance:
         ]
         good = [id for id, runs in verdicts.items() if {*runs.values()} == {kernel.SATISFIED}]
         unshown = [id for id in verdicts if id not in violated and id not in good]
-        answers = {each.requirement: each.answer for each in subjects if each.answer is not None}
+        answers = {
+            subject.requirement: subject.answer
+            for subject in subjects
+            if subject.answer is not None
+        }
         return cls(verdicts, tuple(violated), tuple(unshown), answers)
 
     @property
     def text(self) -> str:
         """One line, with the number of each kind."""
         count = len(self.verdicts)
-        together = Counter(each.verdict for each in self.answers.values())
+        together = Counter(answer.verdict for answer in self.answers.values())
         with_others = (
             f", {together[word]} {word} with the others"
             for word in (Verdict.UNREALIZABLE, Verdict.NOT_CHECKED)
@@ -419,7 +423,7 @@ class ReviewedRequirement:
     @property
     def causes(self) -> tuple[Node, ...]:
         """The changes that make links suspect, without duplicates."""
-        return tuple(dict.fromkeys(cause for each in self.suspects for cause in each.causes))
+        return tuple(dict.fromkeys(cause for suspect in self.suspects for cause in suspect.causes))
 
 
 def standings(chains: Sequence[Chain], lock: Lock | None) -> tuple[ReviewedRequirement, ...]:

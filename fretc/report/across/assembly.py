@@ -134,8 +134,8 @@ def _maps(
     ranked = [run for run in tallies if run in judged]
     ranked.sort(key=lambda run: worst_first(tallies[run]))
     results: dict[str, list[RunStretches]] = {run: [] for run in ranked[:MOST_MAPS]}
-    for one in _of_runs(active, details, results):
-        results[one.run].append(one)
+    for of_run in _of_runs(active, details, results):
+        results[of_run.run].append(of_run)
     courses = _courses(details)
     drawn = [_map(of, courses[run], details) for run, of in results.items()]
     maps = tuple(each for each in drawn if each is not None)
@@ -172,7 +172,7 @@ def _of_runs(
 ) -> list[RunStretches]:
     """The results of some runs, by their anchors, in the order of all runs."""
     places = {run.anchor: run.number for run in details.runs.values()}
-    found = [one for each in active for one in _results(each, details, runs)]
+    found = [result for each in active for result in _results(each, details, runs)]
     return sorted(found, key=lambda one: places[one.run])
 
 

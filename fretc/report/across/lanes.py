@@ -92,7 +92,7 @@ class _Lane:
     @property
     def mark(self) -> Mark:
         """The worst verdict of the results."""
-        return min((each.mark for each in self.results), key=lambda mark: mark.severity)
+        return min((result.mark for result in self.results), key=lambda mark: mark.severity)
 
     @property
     def length(self) -> float:
@@ -101,7 +101,7 @@ class _Lane:
     @property
     def places(self) -> Iterator[int]:
         """Indices of the results to read: those with marks or words, and one with ticks."""
-        judged = [each for each in self.results if each.is_judged]
+        judged = [result for result in self.results if result.is_judged]
         yield from (each.place for each in (*judged[:1], *with_marks(self.results)))
         if self.course is not None:
             yield self.course
@@ -113,7 +113,7 @@ class _Lane:
     @property
     def count(self) -> tuple[int, int, int]:
         """Numbers of violations, unknown intervals and open obligations."""
-        violations, unknown, waiting = zip(*(each.count for each in self.results), strict=True)
+        violations, unknown, waiting = zip(*(result.count for result in self.results), strict=True)
         return sum(violations), sum(unknown), sum(waiting)
 
 
@@ -180,8 +180,8 @@ def plan(
         ranked: whether to sort by verdict even if all runs get a lane.
     """
     grouped: dict[str, list[RunStretches]] = {}
-    for each in results:
-        grouped.setdefault(each.run, []).append(each)
+    for result in results:
+        grouped.setdefault(result.run, []).append(result)
     every = [_Lane(tuple(of), courses.get(run)) for run, of in grouped.items()]
     sort = ranked or len(every) > most
     ordered = sorted(every, key=worst_first) if sort else every
@@ -190,7 +190,7 @@ def plan(
 
 def with_marks(results: Sequence[RunStretches]) -> list[RunStretches]:
     """The results that have marks."""
-    return [each for each in results if any(each.count)]
+    return [result for result in results if any(result.count)]
 
 
 def worst_first(lane: Tally | _Lane) -> tuple[tuple[int, bool], tuple[int, ...]]:
@@ -212,8 +212,8 @@ def _lane(lane: _Lane, nearest: float) -> RunLane:
     of = sorted(
         (
             mark
-            for each in with_marks(lane.results)
-            for mark in _marks(each, lane.known[each.place][0])
+            for with_mark in with_marks(lane.results)
+            for mark in _marks(with_mark, lane.known[with_mark.place][0])
         ),
         key=lambda mark: (mark.start, mark.end),
     )

@@ -372,7 +372,7 @@ def _places(
 def _link(mark: PlaceMark | LaneMark, anchors: Collection[str]) -> str:
     """The link of a mark: to a picture, else to a result, else to a requirement."""
     links = [f"picture-{mark.anchor}.{mark.number}" if mark.number else "", mark.anchor]
-    return next((one for one in links if one in anchors), mark.section)
+    return next((link for link in links if link in anchors), mark.section)
 
 
 def _line(

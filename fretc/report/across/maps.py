@@ -42,11 +42,11 @@ def run_map(way: Way, results: Sequence[RunResult]) -> RunMap | None:
     points = [point for line in lines for point in line]
     if not points:
         return None
-    placed = [mark for one in results for mark in _marks(one, way)]
-    total = sum(one.of.count[0] for one in results)
+    placed = [mark for result in results for mark in _marks(result, way)]
+    total = sum(result.of.count[0] for result in results)
     marks = tuple(_worded(mark) for mark in _merged(placed, _NEAR * extent(points)))
     first = results[0].of
-    worst = min((one.of.mark for one in results), key=lambda mark: mark.severity)
+    worst = min((result.of.mark for result in results), key=lambda mark: mark.severity)
     unplaced = total - len(placed)
     text = _text(lines, way, total, unplaced)
     return RunMap(first.run, first.label, first.file, worst, lines, marks, unplaced, text)

@@ -101,8 +101,8 @@ def _grouped(runs: Sequence[RunNumbers]) -> dict[_Key, list[tuple[RunNumbers, Th
     """The thresholds of all runs, grouped by comparison."""
     grouped: dict[_Key, list[tuple[RunNumbers, Threshold]]] = {}
     for run in runs:
-        for each in run.thresholds:
-            grouped.setdefault(_key(each), []).append((run, each))
+        for threshold in run.thresholds:
+            grouped.setdefault(_key(threshold), []).append((run, threshold))
     return grouped
 
 
@@ -152,10 +152,10 @@ def _row(
 ) -> UseRow:
     """The row of a run; texts only if `worded`, because most rows are not shown."""
     found = list(_of_latency(run, allowed, letters))
-    for each in run.thresholds:
-        key = _key(each)
-        if key in bounds and key in letters and each.comparison is not None:
-            found.append(_of_threshold(each, bounds[key], letters[key], worded=worded))
+    for threshold in run.thresholds:
+        key = _key(threshold)
+        if key in bounds and key in letters and threshold.comparison is not None:
+            found.append(_of_threshold(threshold, bounds[key], letters[key], worded=worded))
     found.sort(key=_most_used)
     return UseRow(run.label, run.file, run.mark, run.anchor, run.section, tuple(found))
 

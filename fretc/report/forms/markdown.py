@@ -98,7 +98,9 @@ def _worst(details: Details, view: RequirementView) -> tuple[str, str]:
     """The worst run with its cause, and the number of further runs; or the reason without a run."""
     open_ones = [result for result in view.results if not result.mark.shows]
     if view.mark.word not in BROKEN and is_refuted(view):
-        counterexamples = (f"{one.layer}: {one.claim}" for one in refutations(view))
+        counterexamples = (
+            f"{refutation.layer}: {refutation.claim}" for refutation in refutations(view)
+        )
         plans = (f"{one.method}: {one.result}" for one in view.planned if one.refuted)
         return " but for a counterexample", next(chain(counterexamples, plans))
     if not open_ones or view.probability is not None:
@@ -164,9 +166,9 @@ def _change(name: str, texts: Sequence[str]) -> str:
 def _accepted(report: Report) -> Iterator[str]:
     """The accepted warnings with their reasons."""
     accepted = [
-        f"**{one.code}** {_plain(one.message)} ({_plain(one.accepted)})"
-        for one in report.remarks
-        if one.accepted
+        f"**{remark.code}** {_plain(remark.message)} ({_plain(remark.accepted)})"
+        for remark in report.remarks
+        if remark.accepted
     ]
     if accepted:
         yield f"Accepted warnings: {len(accepted)}: {_some(accepted)}"

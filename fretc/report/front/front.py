@@ -204,7 +204,7 @@ def _trust(runs: Sequence[RunSummary], names: Mapping[str, str]) -> Iterator[str
     found = [
         names[run.anchor]
         for run in runs
-        if run.intact and not _errors(run) and not all(each.accepted for each in run.findings)
+        if run.intact and not _errors(run) and not all(finding.accepted for finding in run.findings)
     ]
     more = f"other findings in {phrases.some(found, 4)}" if found else "no other findings"
     yield f"{hashes}; {more}."
@@ -216,5 +216,5 @@ def _wrong(run: RunSummary, names: Mapping[str, str]) -> str:
 
 def _errors(run: RunSummary) -> list[str]:
     """The codes of the errors of a run, without duplicates."""
-    errors = (each.code for each in run.findings if each.severity == Severity.ERROR.value)
+    errors = (finding.code for finding in run.findings if finding.severity == Severity.ERROR.value)
     return list(dict.fromkeys(errors))

@@ -231,7 +231,7 @@ def _probability(
         reasons = dict.fromkeys((*stale, "the sentence has no probability now"))
         return ProbabilityAudit(estimation, tuple(reasons))
     results = [audit.result for audit in audits]
-    runs = [(each.content, each.intact, each.trials or NO_TRIALS) for each in results]
+    runs = [(result.content, result.intact, result.trials or NO_TRIALS) for result in results]
     doubts = about_estimation(estimation, requirement.sentence.probability, runs)
     return ProbabilityAudit(estimation, tuple(dict.fromkeys((*stale, *doubts))))
 

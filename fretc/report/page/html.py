@@ -75,7 +75,9 @@ def html(
         argument=visible_texts(_argument(report)),
         plays=visible_texts(_plays(report)),
         across=visible_texts(_across(report, choice, _links(choice))),
-        changes=visible_texts({each.anchor: asdict(each) for each in page.changes if each.anchor}),
+        changes=visible_texts(
+            {change.anchor: asdict(change) for change in page.changes if change.anchor}
+        ),
         consequences=visible_texts(_consequences(page.changes)),
         most=_MOST_CHANGES,
         most_runs=_MOST_RUNS,
@@ -88,9 +90,9 @@ def html(
 def _consequences(changes: Sequence[Change]) -> list[dict[str, Any]]:
     """The requirements of which something follows, those with the most violations first."""
     found = [
-        {**asdict(each), "new_violations": new_violations(each), "follows": follows(each)}
-        for each in changes
-        if follows(each)
+        {**asdict(change), "new_violations": new_violations(change), "follows": follows(change)}
+        for change in changes
+        if follows(change)
     ]
     return sorted(found, key=lambda each: -int(each["new_violations"]))
 
@@ -131,7 +133,7 @@ def _plays(report: Report) -> dict[str, list[dict[str, Any] | None]]:
 
 
 def _play(conflict: SetConflict, id: str, *, breaks: bool) -> DrawnPlay | None:
-    names = joined([each.requirement for each in conflict.members])
+    names = joined([member.requirement for member in conflict.members])
     return play_drawing(conflict.play, id, f"A run with {names}", breaks=breaks)
 
 
@@ -155,13 +157,14 @@ def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[st
         ],
         "maps_left_out": report.across.maps_left_out,
         "requirements": {
-            each.anchor: {
-                "lanes": each.lanes
-                and asdict(drawn_lanes(each.lanes, f"lanes-{each.anchor}", links)),
-                "uses": each.uses and asdict(drawn_uses(each.uses, f"uses-{each.anchor}", links)),
+            requirement.anchor: {
+                "lanes": requirement.lanes
+                and asdict(drawn_lanes(requirement.lanes, f"lanes-{requirement.anchor}", links)),
+                "uses": requirement.uses
+                and asdict(drawn_uses(requirement.uses, f"uses-{requirement.anchor}", links)),
             }
-            for each in report.across.requirements
-            if not choice.by_anchor[each.anchor].is_short
+            for requirement in report.across.requirements
+            if not choice.by_anchor[requirement.anchor].is_short
         },
     }
 

@@ -37,11 +37,11 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
 def _bounds(signal: str, result: Result) -> list[float]:
     """The constants that thresholds compare the signal or its absolute value with."""
     unit, bounds = result.units.get(signal), list[float]()
-    for each in result.thresholds:
-        if each.unit == unit and each.signal == signal:
-            bounds.append(each.bound)
-        elif each.unit == unit and each.signal == f"abs({signal})":
-            bounds.extend((each.bound, -each.bound))
+    for threshold in result.thresholds:
+        if threshold.unit == unit and threshold.signal == signal:
+            bounds.append(threshold.bound)
+        elif threshold.unit == unit and threshold.signal == f"abs({signal})":
+            bounds.extend((threshold.bound, -threshold.bound))
     return bounds
 
 

@@ -164,9 +164,15 @@ def _margins(runs: Iterable[Sequence[Threshold]]) -> Iterator[Histogram]:
     """One for each threshold with a margin in at least two runs, in the order of propositions."""
     grouped: dict[tuple[str, str, str, float, str], list[Threshold]] = defaultdict(list)
     for thresholds in runs:
-        for each in thresholds:
-            name = (each.proposition, each.signal, each.operator, each.bound, each.unit)
-            grouped[name].append(each)
+        for threshold in thresholds:
+            name = (
+                threshold.proposition,
+                threshold.signal,
+                threshold.operator,
+                threshold.bound,
+                threshold.unit,
+            )
+            grouped[name].append(threshold)
     for (proposition, signal, operator, bound, unit), same in grouped.items():
         margins = [each.margin for each in same if each.margin is not None]
         if len(margins) < 2:

@@ -91,20 +91,20 @@ def _bounds(signal: str, result: Result) -> tuple[Threshold, ...]:
     """Thresholds on the signal itself, or on its absolute value, in its own unit."""
     unit = result.units.get(signal, "")
     return tuple(
-        each
-        for each in result.thresholds
-        if each.signal in (signal, f"abs({signal})") and each.unit == unit
+        threshold
+        for threshold in result.thresholds
+        if threshold.signal in (signal, f"abs({signal})") and threshold.unit == unit
     )
 
 
 def _levels(signal: str, bounds: Sequence[Threshold]) -> Iterator[Level]:
-    for each in bounds:
-        label = f"{each.operator} {exact(each.bound, each.unit)}"
-        if each.signal == signal:
-            yield Level(each.bound, label)
+    for bound in bounds:
+        label = f"{bound.operator} {exact(bound.bound, bound.unit)}"
+        if bound.signal == signal:
+            yield Level(bound.bound, label)
         else:
-            yield Level(each.bound, f"|{signal}| {label}")
-            yield Level(-each.bound, "")
+            yield Level(bound.bound, f"|{signal}| {label}")
+            yield Level(-bound.bound, "")
 
 
 # What is known when ----------------------------------------------------------------------------

@@ -157,7 +157,7 @@ class _Argument:
             (*evidence, *subjects),
             (*([context] if view.meaning else []), *([waived] if view.waiver else [])),
             undeveloped=not (evidence or subjects),
-            defeated=any(each.is_current for each in counters),
+            defeated=any(counter.is_current for counter in counters),
             name=f"{view.id} holds",
         )
         if view.meaning:
@@ -167,8 +167,8 @@ class _Argument:
             by = f"{view.waiver.by}{note}"
             words = f"Waived until {view.waiver.until} by {by}: {view.waiver.reason}"
             yield Element(waived, Kind.JUSTIFICATION, words)
-        for each in counters:
-            yield Element(each.id, Kind.COUNTER_SOLUTION, each.text, challenges=goal)
+        for counter in counters:
+            yield Element(counter.id, Kind.COUNTER_SOLUTION, counter.text, challenges=goal)
         if is_shown:
             yield Element(solution, Kind.SOLUTION, _support(view))
         elif subjects:

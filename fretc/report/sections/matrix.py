@@ -131,7 +131,11 @@ def orphans(project: Project, assessments: Sequence[Assessment], briefs: Briefs 
     return Orphans(
         hazards=tuple(_uncovered(project, assessments)),
         requirements=(
-            *(f"{each.id} names no parent" for each in assessments if not each.entry.parents),
+            *(
+                f"{assessment.id} names no parent"
+                for assessment in assessments
+                if not assessment.entry.parents
+            ),
             *_rootless(project),
         ),
         parents=tuple(_undeclared(project, assessments)),

@@ -47,7 +47,7 @@ def overall(
         signatures: all of them.
         changed: what has changed since the review, in sentences.
     """
-    active = [one for one in assessments if one.verdict != RETIRED]
+    active = [assessment for assessment in assessments if assessment.verdict != RETIRED]
     active_views = [view for view in sections if view.status != RETIRED]
     missing = [plan for view in active_views for plan in view.planned if not plan.has_result]
     refuted = [view.name for view in active_views if is_refuted(view)]

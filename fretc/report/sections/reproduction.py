@@ -111,7 +111,7 @@ def _files(project: Project) -> list[Source]:
 
 def _check(runs: Sequence[Run]) -> str:
     facts = [run.facts for run in runs if run.facts.log and _is_file(run.facts.run)]
-    return check_of((each.log, phrases.place(path_of(each.run))) for each in facts)
+    return check_of((fact.log, phrases.place(path_of(fact.run))) for fact in facts)
 
 
 def _is_file(run: str) -> bool:
@@ -143,7 +143,9 @@ def _emission(files: Sequence[str], emits: str) -> str:
 def _of_bindings(project: Project) -> str:
     """SHA-256 as in the evidence: of the bindings that requirements in force read."""
     requirements = {id(requirement.entry): requirement for requirement in project.formalized}
-    inforce = [each for each in project.requirements if each.status != "retired"]
+    inforce = [
+        requirement for requirement in project.requirements if requirement.status != "retired"
+    ]
     return of_all(
         {each.id: of_bindings(requirements.get(id(each)), project.declarations) for each in inforce}
     )

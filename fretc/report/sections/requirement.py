@@ -216,7 +216,7 @@ def _proposition(name: str, declared: Declarations | None) -> PropositionView:
         text=bound.text,
         expression=_expression(declared, bound),
         properties=_properties(bound),
-        signals=tuple(_signal(declared.signals[each]) for each in bound.signals),
+        signals=tuple(_signal(declared.signals[signal]) for signal in bound.signals),
     )
 
 

@@ -236,7 +236,7 @@ def _violation(
         values=tuple(
             (name, reading(name, violation, result, ages)) for name in sorted(violation.values)
         ),
-        causes=tuple(dict.fromkeys(each.text for each in causes(violation, result, requirement))),
+        causes=tuple(dict.fromkeys(cause.text for cause in causes(violation, result, requirement))),
     )
 
 

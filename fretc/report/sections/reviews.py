@@ -61,7 +61,9 @@ def waiver(assessment: Assessment, book: SignatureBook) -> WaiverView | None:
 
 def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
     """The number of reviews, of those that stand, and of those without a signature."""
-    standings = [each.standing for each in assessments if each.standing.review is not None]
+    standings = [
+        assessment.standing for assessment in assessments if assessment.standing.review is not None
+    ]
     if not standings:
         return "No requirement has been reviewed."
     suspect = sum(standing.is_suspect for standing in standings)
@@ -79,7 +81,7 @@ def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
 
 def changes(assessments: Sequence[Assessment], project: Project) -> tuple[Change, ...]:
     """The changes of each requirement since its review; one without changes is left out."""
-    reviewed = [each for each in assessments if each.standing.review]
+    reviewed = [assessment for assessment in assessments if assessment.standing.review]
     pairs = [(each, difference(each.standing, project)) for each in reviewed]
     return tuple(_change(each, change) for each, change in pairs if change.state != "same")
 
@@ -95,13 +97,13 @@ def change_groups(
     touched: dict[ChangeText, list[tuple[str, str]]] = {}
     links: Counter[ChangeText] = Counter()
     judged: set[ChangeText] = set()
-    for each in assessments:
-        for change in each.standing.changes:
+    for assessment in assessments:
+        for change in assessment.standing.changes:
             text = _text(change)
-            touched.setdefault(text, []).append((each.id, each.anchor))
+            touched.setdefault(text, []).append((assessment.id, assessment.anchor))
             if change.node.kind in KINDS:
                 judged.add(text)
-            links[text] += sum(map(change.makes_suspect, each.standing.suspects))
+            links[text] += sum(map(change.makes_suspect, assessment.standing.suspects))
     groups = [ChangeGroup(text, tuple(of), links[text]) for text, of in touched.items()]
 
     def worst_first(group: ChangeGroup) -> tuple[float, int]:
@@ -164,7 +166,7 @@ def _change(assessment: Assessment, difference: Difference) -> Change:
         state=difference.state,
         by=_by(difference.review) if difference.review else "",
         texts=texts,
-        lines=(*(each.text for each in texts), *other),
+        lines=(*(text.text for text in texts), *other),
         contradictions=difference.contradictions,
         consequences=difference.consequences,
         suspicion=difference.suspicion,

@@ -150,7 +150,9 @@ def _summary(run: Run, project: Project) -> RunSummary:
         health=_INTACT if health.intact else _DAMAGED if run.has_topics else _UNREAD,
         checked=_checked(health.checked, hashed=not facts.log_summary),
         gaps=_gaps(facts),
-        findings=tuple(_finding(each, project) for each in sorted(health.findings, key=_badness)),
+        findings=tuple(
+            _finding(finding, project) for finding in sorted(health.findings, key=_badness)
+        ),
     )
 
 

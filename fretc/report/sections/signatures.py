@@ -56,7 +56,7 @@ def signatures(
     signers = book.signers.signers if book.signers else ()
     return Signatures(
         file=phrases.place(book.signers.file) if book.signers else "",
-        signers=tuple(f"{', '.join(one.principals)}: {one.key.text}" for one in signers),
+        signers=tuple(f"{', '.join(signer.principals)}: {signer.key.text}" for signer in signers),
         signed=(
             *_broken(book),
             *_files(book, evidence, proofs, together),
@@ -66,9 +66,9 @@ def signatures(
 
 
 def _broken(book: SignatureBook) -> Iterator[Signed]:
-    for one in book.envelopes:
-        for signer in one.broken:
-            place = one.envelope.place
+    for envelope in book.envelopes:
+        for signer in envelope.broken:
+            place = envelope.envelope.place
             where = f"{phrases.place(place.source.name)}:{place.line}"
             text = f"the signature is not by {signer.name}, or not about this item"
             yield Signed("signature", where, "", SignatureView(BROKEN, text, False))

@@ -50,7 +50,11 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
     assumed, mistakes = assumptions(requirements, project.declarations)
     old = [
         *suspicions(known.document, requirements, assumed),
-        *(f"an assumption has an error: {each.message}" for each in mistakes if each.is_error),
+        *(
+            f"an assumption has an error: {mistake.message}"
+            for mistake in mistakes
+            if mistake.is_error
+        ),
     ]
     analysis = known.document.analysis
     view = _Views(known.document, anchors)
@@ -63,15 +67,20 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
         left_out=tuple(each.id for each in project.without_rule if each.status != RETIRED),
         components=tuple(
             SetComponent(
-                _mark(each.verdict), view.members(each.requirements), each.outputs, each.why
+                _mark(component.verdict),
+                view.members(component.requirements),
+                component.outputs,
+                component.why,
             )
-            for each in analysis.components
+            for component in analysis.components
         ),
         conflicts=tuple(
             SetConflict(
-                view.members(each.requirements), each.because, view.play(each.play, each.loop)
+                view.members(conflict.requirements),
+                conflict.because,
+                view.play(conflict.play, conflict.loop),
             )
-            for each in analysis.conflicts
+            for conflict in analysis.conflicts
         ),
         complete=analysis.complete,
         clashes=tuple(
@@ -79,7 +88,7 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
             for each in analysis.inconsistent
         ),
         remarks=tuple(text.strip() for text, _ in remarks(analysis)),
-        assumptions=tuple(each.in_words for each in analysis.assumptions),
+        assumptions=tuple(assumption.in_words for assumption in analysis.assumptions),
         inputs=_of_role(analysis, Role.INPUT),
         outputs=_of_role(analysis, Role.OUTPUT),
         terms=analysis.terms,
