@@ -77,7 +77,7 @@ def closure(root: str = TOOL) -> Mapping[str, tuple[str, ...]]:
         if one in visited:
             continue
         visited.add(one)
-        needed = [each for each in _needed(name, extras) if _is_installed(each)]
+        needed = [dependency for dependency in _needed(name, extras) if _is_installed(dependency)]
         needs.setdefault(name, set()).update(map(_name, needed))
         waiting.extend((_name(each), frozenset(each.extras)) for each in needed)
     return {name: tuple(sorted(needs[name] - {name})) for name in sorted(needs)}
@@ -86,7 +86,7 @@ def closure(root: str = TOOL) -> Mapping[str, tuple[str, ...]]:
 def _installed_extras(root: str) -> Iterator[str]:
     always = {*_needed(root, [])}
     for extra in distribution(root).metadata.get_all("Provides-Extra", []):
-        mine = [each for each in _needed(root, [extra]) if each not in always]
+        mine = [dependency for dependency in _needed(root, [extra]) if dependency not in always]
         if extra not in _OF_DEVELOPERS and all(map(_is_installed, mine)):
             yield extra
 

@@ -104,7 +104,7 @@ def appended(envelopes: Sequence[Envelope], new: Envelope, current: frozenset[Su
         new: the new envelope.
         current: all subjects that can be signed now.
     """
-    return "".join(f"{one.text}\n" for one in (*kept(envelopes, new, current), new))
+    return "".join(f"{item.text}\n" for item in (*kept(envelopes, new, current), new))
 
 
 def kept(
@@ -116,10 +116,10 @@ def kept(
     subjects the new envelope covers.
     """
     return tuple(
-        one
-        for one in envelopes
-        if (about := one.statement.main & current)
-        and not (one.dsse.key_ids == new.dsse.key_ids and about <= new.statement.main)
+        entry
+        for entry in envelopes
+        if (about := entry.statement.main & current)
+        and not (entry.dsse.key_ids == new.dsse.key_ids and about <= new.statement.main)
     )
 
 
@@ -174,22 +174,22 @@ class SignatureBook:
             subject: the item with its present content.
             name: the required signer; None: any trusted signer.
         """
-        about = [one for one in self.envelopes if subject in one.subjects]
+        about = [entry for entry in self.envelopes if subject in entry.subjects]
         return self._of(about, subject, name)
 
     def of_file(self, kind: str, sha256: str) -> Signing:
         """The signature of a file with this content, under any name."""
-        about = [one for one in self.envelopes if _has(one, kind, sha256)]
+        about = [entry for entry in self.envelopes if _has(entry, kind, sha256)]
         return self._of(about, Subject(kind, "", sha256), None)
 
     def agreed(self, evidence: EvidenceSource) -> Signing:
         """The signature of evidence, only from statements that agree with the file."""
         now = attestation.evidence(evidence, None)
-        agreeing = [one for one in self.envelopes if _agrees(one.envelope.statement, now)]
+        agreeing = [entry for entry in self.envelopes if _agrees(entry.envelope.statement, now)]
         signing = self.of_file(attestation.EVIDENCE, evidence.sha256)
         if not signing.is_good:
             return signing
-        if not any(one.by for one in agreeing):
+        if not any(entry.by for entry in agreeing):
             return Signing(
                 State.CHANGED, "the signed statement differs from what the file contains"
             )
@@ -198,7 +198,7 @@ class SignatureBook:
         )
 
     def _of(self, about: Sequence[_CheckedEnvelope], subject: Subject, name: str | None) -> Signing:
-        by = list(dict.fromkeys(signer for one in about for signer in one.by))
+        by = list(dict.fromkeys(signer for entry in about for signer in entry.by))
         good = [signer for signer in by if name is None or signer.goes_by(name)]
         if good:
             return Signing(State.SIGNED, f"signed by {_names(good)}")
@@ -207,7 +207,10 @@ class SignatureBook:
         if about:
             return Signing(State.UNKNOWN, self._unknown(about))
         before = [
-            signer for one in self.envelopes if _has_another(one, subject) for signer in one.by
+            signer
+            for entry in self.envelopes
+            if _has_another(entry, subject)
+            for signer in entry.by
         ]
         if before:
             names = _names(dict.fromkeys(before))
@@ -215,8 +218,8 @@ class SignatureBook:
         return Signing(State.NONE, "nobody signed it")
 
     def _unknown(self, about: Sequence[_CheckedEnvelope]) -> str:
-        keys = dict.fromkeys(key for one in about for key in one.envelope.dsse.key_ids)
-        names = {signer.key.fingerprint for one in about for signer in one.broken}
+        keys = dict.fromkeys(key for entry in about for key in entry.envelope.dsse.key_ids)
+        names = {signer.key.fingerprint for entry in about for signer in entry.broken}
         unknown_keys = ", ".join(key for key in keys if key not in names)
         if not unknown_keys:
             return "its signature does not verify"
@@ -227,9 +230,9 @@ class SignatureBook:
     def diagnostics(self) -> Iterator[Diagnostic]:
         """F557 for each signature that does not verify, and diagnostics about the signers."""
         yield from self.signers.remarks if self.signers else ()
-        for one in self.envelopes:
-            for signer in one.broken:
-                yield _broken(one.envelope, signer)
+        for entry in self.envelopes:
+            for signer in entry.broken:
+                yield _broken(entry.envelope, signer)
 
 
 def _agrees(signed: Statement, now: Statement) -> bool:
@@ -248,7 +251,7 @@ def _has(one: _CheckedEnvelope, kind: str, sha256: str) -> bool:
 def _has_another(one: _CheckedEnvelope, subject: Subject) -> bool:
     """Whether the envelope covers an earlier content of the subject (for a file: of its kind)."""
     return any(
-        each.kind == subject.kind and subject.name in ("", each.name) for each in one.subjects
+        item.kind == subject.kind and subject.name in ("", item.name) for item in one.subjects
     )
 
 
@@ -297,12 +300,12 @@ def book(files: Sequence[str], signers: Signers | None) -> SignatureBook | Diagn
         envelopes = read(path)
         if isinstance(envelopes, Diagnostic):
             return envelopes
-        checked.extend(_checked(one, signers.signers if signers else ()) for one in envelopes)
+        checked.extend(_checked(entry, signers.signers if signers else ()) for entry in envelopes)
     return SignatureBook(signers, tuple(checked))
 
 
 def _checked(envelope: Envelope, signers: Sequence[Signer]) -> _CheckedEnvelope:
     named = [signer for signer in signers if signer.key.fingerprint in envelope.dsse.key_ids]
-    good = tuple(one for one in named if envelope.dsse.is_signed_by(one.key))
-    bad = tuple(one for one in named if one not in good)
+    good = tuple(path for path in named if envelope.dsse.is_signed_by(path.key))
+    bad = tuple(path for path in named if path not in good)
     return _CheckedEnvelope(envelope, frozenset(envelope.statement.subjects), good, bad)

@@ -139,7 +139,7 @@ def _subject(at: Shape, about: str) -> Subject:
 def evidence(file: EvidenceSource, proofs: Proofs | None) -> Statement:
     """The statement about evidence and proofs."""
     briefs = [brief for _, brief in file.briefs()]
-    logs = dict.fromkeys(Subject(LOG, each.run, each.log) for each in briefs if each.log)
+    logs = dict.fromkeys(Subject(LOG, result.run, result.log) for result in briefs if result.log)
     return Statement(
         EVIDENCE,
         (

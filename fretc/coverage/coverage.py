@@ -82,7 +82,9 @@ def coverage(source: EvidenceSource) -> Coverage:
         StoreError: the store is damaged.
     """
     names, found = of_all_runs(source)
-    aims = [frozenset(each.seen) for one in found for each in one.of(CoverageStatus.SEEN)]
+    aims = [
+        frozenset(situation.seen) for item in found for situation in item.of(CoverageStatus.SEEN)
+    ]
     return Coverage(names, found, least_runs(aims))
 
 

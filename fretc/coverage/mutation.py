@@ -97,11 +97,11 @@ def inquiry(project: Project, plan: Plan) -> MutationJob:
     found = tuple(map(suspects, requirements.values()))
     declarations = project.declarations
     assert declarations is not None, "there is a plan"
-    for own in (mutant.requirement.declarations for one in found for mutant in one.mutants):
+    for own in (mutant.requirement.declarations for batch in found for mutant in batch.mutants):
         if own is not None:
             declarations = extended(declarations, own.propositions, own.mistakes)
     declarations = replace(declarations, signals=plan.declarations.signals)
-    names = dict.fromkeys(name for one in found for name in one.monitor.PROPOSITIONS)
+    names = dict.fromkeys(name for batch in found for name in batch.monitor.PROPOSITIONS)
     known = tuple(name for name in names if _is_told(declarations, name))
     return MutationJob(found, declarations, known, plan.integrity)
 

@@ -161,7 +161,7 @@ def totals(covered: Coverage, directions: Directions) -> Line:
 def in_counts(requirements: Sequence[RequirementCoverage]) -> str:
     """`84 of 190 situations seen, 12 perhaps, 94 never`."""
     found = counts(requirements)
-    rest = [f"{found[each]:,} {each}" for each in [*CoverageStatus][1:] if found[each]]
+    rest = [f"{found[status]:,} {status}" for status in [*CoverageStatus][1:] if found[status]]
     blank = sum(not requirement.situations for requirement in requirements)
     rest += [f"{_times(blank, 'requirement')} not measured"] if blank else []
     seen = f"{found[CoverageStatus.SEEN]:,} of {found.total():,} situations seen"

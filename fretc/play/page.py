@@ -226,13 +226,17 @@ def _tree(formula: f.Formula, propositions: Sequence[str]) -> list[Any]:
 def _variable(name: str, front: InputAdapter) -> dict[str, Any]:
     own = [comparison for comparison in front.comparisons.values() if name in comparison.inputs]
     found = front.inputs.get(name)
-    unit = next((each.units[name][0] for each in own if name in each.units), "")
+    unit = next((comparison.units[name][0] for comparison in own if name in comparison.units), "")
     candidates: list[Any] = []
     if found is not None and found.words:
         candidates = [*found.words]
     elif found is not None and found.kind == NUMBER:
-        limits = [each[1] for one in own if (each := threshold(one)) and each[0] == name]
-        candidates = _candidates(limits or [number for one in own for number in numbers(one)])
+        limits = [
+            each[1] for comparison in own if (each := threshold(comparison)) and each[0] == name
+        ]
+        candidates = _candidates(
+            limits or [number for comparison in own for number in numbers(comparison)]
+        )
     return {
         "label": visible(name),
         "note": f"in {unit}" if unit else "",
@@ -267,7 +271,7 @@ def _candidates(limits: Sequence[Fraction]) -> list[float]:
     known = sorted({each for limit in limits if (each := _finite(limit)) is not None} or {0.0})
     between = [(a + b) / 2 for a, b in pairwise(known)]
     least, most = known[0] - _step(known[0]), known[-1] + _step(known[-1])
-    return [each for each in (most, *known, *between, least) if isfinite(each)]
+    return [number for number in (most, *known, *between, least) if isfinite(number)]
 
 
 def _step(value: float) -> float:

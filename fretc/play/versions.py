@@ -104,7 +104,7 @@ def _unlike(
     then: Declarations | None,
 ) -> str:
     """The reason why the versions have different runs, or ""."""
-    clocks = [clock(each.clock) if each else None for each in (now, then)]
+    clocks = [clock(declarations.clock) if declarations else None for declarations in (now, then)]
     if clocks[0] != clocks[1]:
         return "the clock has changed"
     one, other = _meanings(new, now), _meanings(old, then)

@@ -108,7 +108,9 @@ def report(
         )
         for assessment in assessed
     )
-    details = Details(evidence, project, {each.anchor: each for each in assessed}, runs_by_key)
+    details = Details(
+        evidence, project, {assessment.anchor: assessment for assessment in assessed}, runs_by_key
+    )
     longest = _longest_waits(assessed, sections, details)
     reservations = (
         *(line for view in sections for line in _reservations(view, longest)),
@@ -166,7 +168,9 @@ def report(
         orphans=orphans(project, assessed, briefs),
         reviewed=reviews.summary(assessed, book),
         changes=all_changes,
-        withdrawn=tuple(Withdrawal(one.review.requirement, one.text) for one in withdrawn),
+        withdrawn=tuple(
+            Withdrawal(withdrawal.review.requirement, withdrawal.text) for withdrawal in withdrawn
+        ),
         waivers=tuple(view.waiver for view in sections if view.waiver),
         signatures=signature_list,
         requirements=sections,
@@ -178,7 +182,7 @@ def report(
         analysis=analysis,
     )
     diagnostics = (
-        *(each for each in checked if each.accepted),
+        *(diagnostic for diagnostic in checked if diagnostic.accepted),
         *stale_evidence(assessed, briefs, path),
         *idle_waivers(assessed),
         *book.diagnostics(),
@@ -199,8 +203,8 @@ def _checks(
     evidence: EvidenceSource | None,
 ) -> Sequence[Diagnostic]:
     """The warnings of `fretc check`, without those about reviews."""
-    found = warnings(project, [each.standing for each in assessed], lock, evidence)
-    return [each for each in found if each.accepted or each.code not in _OF_REVIEWS]
+    found = warnings(project, [assessment.standing for assessment in assessed], lock, evidence)
+    return [warning for warning in found if warning.accepted or warning.code not in _OF_REVIEWS]
 
 
 _OF_REVIEWS = (Code.CHANGED_SINCE_REVIEW, Code.NOT_REVIEWED)
@@ -243,8 +247,8 @@ def _reservations(view: RequirementView, longest: Mapping[str, ResultView]) -> S
 
 
 def _claims(assessed: Sequence[Assessment], runs: int, selection: Selection | None) -> str:
-    active = [one for one in assessed if one.verdict != RETIRED]
-    drafts = sum(one.entry.status == "draft" for one in active)
+    active = [assessment for assessment in assessed if assessment.verdict != RETIRED]
+    drafts = sum(assessment.entry.status == "draft" for assessment in active)
     retired = len(assessed) - len(active)
     parts = [
         f"{phrases.times(len(active), 'requirement')} in force",
@@ -257,9 +261,9 @@ def _claims(assessed: Sequence[Assessment], runs: int, selection: Selection | No
 
 
 def _counts(assessed: Sequence[Assessment]) -> tuple[Count, ...]:
-    active = [one for one in assessed if one.verdict != RETIRED]
-    requirements = Counter(one.mark for one in assessed)
-    audits = Counter(audit.mark for one in active for audit in one.reviewed_audits)
+    active = [assessment for assessment in assessed if assessment.verdict != RETIRED]
+    requirements = Counter(assessment.mark for assessment in assessed)
+    audits = Counter(audit.mark for assessment in active for audit in assessment.reviewed_audits)
     marks = {*map(verdict_mark, _ALWAYS), *requirements, *audits}
     return tuple(
         Count(mark, requirements[mark], audits[mark])

@@ -25,16 +25,18 @@ def situations(
     if evidence is None:
         return {}
     places = {
-        one.id: {audit.place: run for run, audit in enumerate(one.audits) if not audit.is_stale}
-        for one in assessed
-        if one.audits and one.verdict != RETIRED
+        assessment.id: {
+            audit.place: run for run, audit in enumerate(assessment.audits) if not audit.is_stale
+        }
+        for assessment in assessed
+        if assessment.audits and assessment.verdict != RETIRED
     }
     found = (
         of_requirement
         for of_requirement in of_requirements(evidence, places)
         if of_requirement.id in places
     )
-    return {each.id: _view(each) for each in found}
+    return {coverage_of_one.id: _view(coverage_of_one) for coverage_of_one in found}
 
 
 def _view(one: RequirementCoverage) -> SituationsView:
@@ -44,6 +46,6 @@ def _view(one: RequirementCoverage) -> SituationsView:
     return SituationsView(
         f"{seen}/{every}",
         f"{seen} of {every} situations seen",
-        tuple(each.words for each in one.of(CoverageStatus.PERHAPS)),
-        tuple(each.words for each in one.of(CoverageStatus.NEVER)),
+        tuple(situation.words for situation in one.of(CoverageStatus.PERHAPS)),
+        tuple(situation.words for situation in one.of(CoverageStatus.NEVER)),
     )

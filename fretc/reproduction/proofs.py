@@ -64,7 +64,7 @@ def unproved_plans(
             if (
                 requirement.id in claimed
                 and repeatable
-                and not any(_is_of(one, method) for one in own)
+                and not any(_is_of(proof, method) for proof in own)
             ):
                 why = f"{requirement.id} plans `{method}` but the file has no proof of it"
                 yield unknown(PROOFS, requirement.id, why)
@@ -144,7 +144,7 @@ def _beginning(proofs: Proofs) -> Iterator[Recheck]:
 
 def _compared(record: Proof, proofs_now: Sequence[Proof]) -> Recheck:
     requirement, claim = record.requirement, f"{record.layer}: {record.claim}"
-    now = next((one for one in proofs_now if _key(one) == _key(record)), None)
+    now = next((candidate for candidate in proofs_now if _key(candidate) == _key(record)), None)
     if now is None:
         return _absence(record, claim)
     others = record.artefacts.keys() - now.artefacts.keys()

@@ -59,7 +59,9 @@ def compared(document: Document, now: Analysis) -> Iterator[Recheck]:
 
 
 def _questions(analysis: Analysis) -> str:
-    return "; ".join(f"{each.question} ({each.why})" for each in analysis.open) or "none"
+    return (
+        "; ".join(f"{question.question} ({question.why})" for question in analysis.open) or "none"
+    )
 
 
 def _component(before: Component, now: Component | None) -> Recheck:

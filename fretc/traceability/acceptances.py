@@ -49,7 +49,7 @@ def warnings(
     recorded = _recorded(evidence) if evidence is not None else None
     return (
         *found,
-        *(each for each in logged if each.accepted),
+        *(diagnostic for diagnostic in logged if diagnostic.accepted),
         *idle(project.acceptances, every, project.declarations, recorded),
     )
 

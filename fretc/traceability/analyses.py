@@ -97,10 +97,13 @@ def _components(
         requirement.sentence.component for requirement in requirements if requirement.id in analyzed
     }
     own = [requirement for requirement in requirements if requirement.sentence.component in systems]
-    for some in (requirements, own):  # An input of one system may be an output of another.
-        chosen = roles([*some, *assumed])
+    for candidates in (requirements, own):  # An input of one system may be an output of another.
+        chosen = roles([*candidates, *assumed])
         if not isinstance(chosen, tuple):
-            groups = [[each.id for each in group] for group in by_outputs(some, assumed, chosen)]
+            groups = [
+                [requirement.id for requirement in group]
+                for group in by_outputs(candidates, assumed, chosen)
+            ]
             found = {id: tuple(ids) for ids in groups for id in ids}
             return {requirement.id: found.get(requirement.id, ()) for requirement in requirements}
     return dict.fromkeys(

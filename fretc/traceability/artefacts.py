@@ -66,7 +66,9 @@ def compiled_monitor(requirement: FormalizedRequirement, file: str) -> str:
     for end, target in _LANGUAGES.items():
         if file.endswith(end):
             made = _of_target(TARGETS[target], requirement)
-            return next((one.sha256 for one in made if PurePath(one.file).name == file), "")
+            return next(
+                (product.sha256 for product in made if PurePath(product.file).name == file), ""
+            )
     return ""
 
 
@@ -98,8 +100,8 @@ def joint_monitors(
         named = [by_id[id] for id in dict.fromkeys(ids) if id in by_id]
         in_order = [requirement for requirement in requirements if requirement in named]
         orders = {
-            tuple(requirement.id for requirement in some): some
-            for some in (requirements, in_order, named)
+            tuple(requirement.id for requirement in group): group
+            for group in (requirements, in_order, named)
         }
         found.update(_of_joint(file, order) for order in orders.values())
     return frozenset(found - {""})
@@ -110,7 +112,7 @@ def _of_joint(file: str, requirements: Sequence[FormalizedRequirement]) -> str:
     target = TARGETS[_JOINT[file]]
     accepted = [requirement for requirement in requirements if target.refuse(requirement) is None]
     made = target.emit(accepted, Options(one_file=True)) if accepted else ()
-    return next((sha256(each.text) for each in made if each.path.name == file), "")
+    return next((sha256(product.text) for product in made if product.path.name == file), "")
 
 
 def _of_target(target: Target, requirement: FormalizedRequirement) -> tuple[Product, ...]:

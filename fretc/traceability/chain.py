@@ -325,10 +325,10 @@ class _ChainBuilder:
         """Add the warnings that a reviewer accepts; no verdict depends on them."""
         topics = _topics(requirement, self._project)
         known = self._common.acceptances
-        for each in (*known.get(id(entry), ()), *known.get(None, ())):
-            if each.about != TOPIC or each.subject in ("", *topics):
-                self._accept[each.name] = each.reason
-                self._add(Node(ACCEPTANCE, each.name), print_of_words(each.reason))
+        for acceptance in (*known.get(id(entry), ()), *known.get(None, ())):
+            if acceptance.about != TOPIC or acceptance.subject in ("", *topics):
+                self._accept[acceptance.name] = acceptance.reason
+                self._add(Node(ACCEPTANCE, acceptance.name), print_of_words(acceptance.reason))
 
     def _add_parents(self, requirement: RequirementEntry, visited: set[str]) -> None:
         """Add all hazards and requirements above the requirement."""
@@ -607,7 +607,9 @@ def upstream_of(nodes: Iterable[Node], links: Sequence[Link]) -> dict[Node, froz
     def reach(node: Node) -> frozenset[Node]:
         if node not in upstream:
             upstream[node] = frozenset()  # A requirement may be its own ancestor.
-            upstream[node] = frozenset(above[node]).union(*(reach(each) for each in above[node]))
+            upstream[node] = frozenset(above[node]).union(
+                *(reach(source) for source in above[node])
+            )
         return upstream[node]
 
     for node in above:

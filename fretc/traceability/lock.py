@@ -440,7 +440,7 @@ def _standing(chain: Chain, review: Review | None) -> ReviewedRequirement:
     if not suspect and not changed(chain.prints, prints):
         return ReviewedRequirement(chain, review, (), ())
     vouched = texts is None or agree(chain.requirement, texts, prints)
-    causes = tuple(dict.fromkeys(cause for each in suspect for cause in each.causes))
+    causes = tuple(dict.fromkeys(cause for item in suspect for cause in item.causes))
     found = changes(chain, prints, review.verdicts, texts if vouched else None, causes)
     return ReviewedRequirement(chain, review, suspect, found, not vouched)
 
@@ -493,11 +493,11 @@ def withdrawal_warnings(
     """F511 or F540 for each requirement that was withdrawn since its review."""
     return tuple(
         Diagnostic(
-            Code.RETIRED_SINCE_REVIEW if one.retired else Code.ORPHANED_REVIEW,
-            one.text,
+            Code.RETIRED_SINCE_REVIEW if withdrawal.retired else Code.ORPHANED_REVIEW,
+            withdrawal.text,
             Source(path, "").span(),
-            help=f"if this is intended, accept it: `fretc lock {one.review.requirement} ...`",
+            help=f"to accept this: `fretc lock {withdrawal.review.requirement} ...`",
             severity=Severity.WARNING,
         )
-        for one in withdrawn
+        for withdrawal in withdrawn
     )

@@ -51,11 +51,17 @@ def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> 
     marks = max(10 * _FEWEST, _MARKS // max(1, len(active)))
     in_force = {assessment.anchor for assessment in active}
     chosen = {*[anchor for anchor in worst if anchor in in_force][:pictured]}
-    several = [each for each in active if each.anchor in chosen and len(each.audits) > 1]
+    several = [
+        assessment
+        for assessment in active
+        if assessment.anchor in chosen and len(assessment.audits) > 1
+    ]
     tallies = _tallies(active, details)
     of_all = _plan_of_all(active, tallies, details)
-    plans = {each.anchor: _plan(each, details, most, marks) for each in several}
-    known = _known(details, [at for each in (of_all, *plans.values()) for at in each.places])
+    plans = {assessment.anchor: _plan(assessment, details, most, marks) for assessment in several}
+    known = _known(
+        details, [at for lane_plan in (of_all, *plans.values()) for at in lane_plan.places]
+    )
     uses_of = {
         each.anchor: uses(*_numbers(each, details, thresholds, most))
         for each, thresholds in details.thresholds(plans)
@@ -65,13 +71,13 @@ def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> 
         of_all.lanes(known),
         tuple(
             RequirementAcross(
-                each.id,
-                each.anchor,
-                plans[each.anchor].lanes(known) if each.anchor in plans else None,
-                uses_of.get(each.anchor),
+                assessment.id,
+                assessment.anchor,
+                plans[assessment.anchor].lanes(known) if assessment.anchor in plans else None,
+                uses_of.get(assessment.anchor),
             )
-            for each in active
-            if each.anchor in chosen
+            for assessment in active
+            if assessment.anchor in chosen
         ),
         maps,
         maps_left_out,
@@ -101,8 +107,8 @@ def _plan_of_all(
 def _tallies(active: Sequence[Assessment], details: Details) -> Mapping[str, Tally]:
     """Run → its worst verdict and counts, in the order of the runs."""
     tallies: dict[str, Tally] = {}
-    for each in active:
-        for audit in each.reviewed_audits:
+    for assessment in active:
+        for audit in assessment.reviewed_audits:
             run, known = details.runs[run_key(audit.result)].anchor, _count(audit.result)
             before = tallies.get(run)
             tallies[run] = (
@@ -127,8 +133,8 @@ def _maps(
     """The maps of the worst runs, and a sentence about runs without a map."""
     judged = {
         details.runs[run_key(audit.result)].anchor
-        for each in active
-        for audit in each.reviewed_audits
+        for assessment in active
+        for audit in assessment.reviewed_audits
         if audit.result.ticks
     }
     ranked = [run for run in tallies if run in judged]
@@ -138,7 +144,7 @@ def _maps(
         results[of_run.run].append(of_run)
     courses = _courses(details)
     drawn = [_map(of, courses[run], details) for run, of in results.items()]
-    maps = tuple(each for each in drawn if each is not None)
+    maps = tuple(run_map_or_none for run_map_or_none in drawn if run_map_or_none is not None)
     if not maps:
         return (), ""
     left = left_out([tallies[run] for run in ranked[MOST_MAPS:]], "no map")
@@ -156,12 +162,12 @@ def _map(of: Sequence[RunStretches], first: int, details: Details) -> RunMap | N
         first: index of the result that contains the plot data of the run.
         details: the evidence.
     """
-    violated = [each.place for each in of if each.count[0]]
+    violated = [summary.place for summary in of if summary.count[0]]
     found = dict(details.evidence.details({first, *violated}) if details.evidence else ())
     course = found[first].course
     if not course or course.way is None:
         return None
-    return run_map(course.way, [RunResult(each, found.get(each.place)) for each in of])
+    return run_map(course.way, [RunResult(summary, found.get(summary.place)) for summary in of])
 
 
 # What the evidence says ------------------------------------------------------------------------
@@ -172,7 +178,7 @@ def _of_runs(
 ) -> list[RunStretches]:
     """The results of some runs, by their anchors, in the order of all runs."""
     places = {run.anchor: run.number for run in details.runs.values()}
-    found = [result for each in active for result in _results(each, details, runs)]
+    found = [result for assessment in active for result in _results(assessment, details, runs)]
     return sorted(found, key=lambda one: places[one.run])
 
 

@@ -102,7 +102,7 @@ class _Lane:
     def places(self) -> Iterator[int]:
         """Indices of the results to read: those with marks or words, and one with ticks."""
         judged = [result for result in self.results if result.is_judged]
-        yield from (each.place for each in (*judged[:1], *with_marks(self.results)))
+        yield from (result.place for result in (*judged[:1], *with_marks(self.results)))
         if self.course is not None:
             yield self.course
 

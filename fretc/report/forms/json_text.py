@@ -44,7 +44,7 @@ def _groups(views: Sequence[RequirementView]) -> Iterator[list[RequirementView]]
     """The requirements in their order, in groups whose results are read at once."""
     group: list[RequirementView] = []
     for view in views:
-        if group and sum(len(each.results) for each in (*group, view)) > _AT_ONCE:
+        if group and sum(len(member.results) for member in (*group, view)) > _AT_ONCE:
             yield group
             group = []
         group.append(view)

@@ -33,11 +33,12 @@ class _Case:
 def junit(report: Report) -> str:
     """The JUnit XML; a case is a failure or an error if `--strict` would exit with 1."""
     root = ElementTree.Element("testsuites", name="fretc report")
-    withdrawn = {one.requirement for one in report.withdrawn}
+    withdrawn = {withdrawal.requirement for withdrawal in report.withdrawn}
     views = [view for view in report.requirements if view.id not in withdrawn]
     of_project = [_of_requirement(view) for view in views if _needs_own_case(view)]
     of_project += [
-        _Case(one.requirement, "failure", f"withdrawn: {one.text}") for one in report.withdrawn
+        _Case(withdrawal.requirement, "failure", f"withdrawn: {withdrawal.text}")
+        for withdrawal in report.withdrawn
     ]
     suite = _suite(root, report.project, of_project)
     _accepted(suite, report)
@@ -120,9 +121,9 @@ def _accepted(suite: ElementTree.Element, report: Report) -> None:
     """Add the accepted warnings, each with its reason."""
     accepted = [remark for remark in report.remarks if remark.accepted]
     properties = ElementTree.SubElement(suite, "properties") if accepted else suite
-    for one in accepted:
-        name = valid(f"accepted {one.code}: {one.message}")
-        ElementTree.SubElement(properties, "property", name=name, value=valid(one.accepted))
+    for remark in accepted:
+        name = valid(f"accepted {remark.code}: {remark.message}")
+        ElementTree.SubElement(properties, "property", name=name, value=valid(remark.accepted))
 
 
 def _cases(suite: ElementTree.Element, classname: str, cases: Sequence[_Case]) -> None:

@@ -101,7 +101,7 @@ def _worst(details: Details, view: RequirementView) -> tuple[str, str]:
         counterexamples = (
             f"{refutation.layer}: {refutation.claim}" for refutation in refutations(view)
         )
-        plans = (f"{one.method}: {one.result}" for one in view.planned if one.refuted)
+        plans = (f"{plan.method}: {plan.result}" for plan in view.planned if plan.refuted)
         return " but for a counterexample", next(chain(counterexamples, plans))
     if not open_ones or view.probability is not None:
         return "", next(iter(view.reasons), view.mark.text)
@@ -181,11 +181,11 @@ def _signatures(report: Report) -> Iterator[str]:
         key=lambda one: (one.signature.mark != DOES_NOT_VERIFY, one.signature.is_good),
     )
     if signed:
-        bad = sum(not one.signature.is_good for one in signed)
+        bad = sum(not entry.signature.is_good for entry in signed)
         texts = [
-            f"{one.signature.mark.glyph} {one.kind} {_plain(one.name)}: "
-            f"{_plain(one.signature.text)}"
-            for one in signed
+            f"{entry.signature.mark.glyph} {entry.kind} {_plain(entry.name)}: "
+            f"{_plain(entry.signature.text)}"
+            for entry in signed
         ]
         yield f"Signatures: {bad} of {len(signed)} are missing or invalid: {_some(texts)}"
 

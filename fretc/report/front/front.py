@@ -84,7 +84,7 @@ def _facts(
 ) -> Iterator[str]:
     yield phrases.times(len(active), "requirement")
     yield _runs(runs) if runs else "no run"
-    reviews = [one.standing.review for one in assessed]
+    reviews = [assessment.standing.review for assessment in assessed]
     dates = sorted(on for review in reviews if review and (on := _date(review.date)))
     yield f"reviewed on {days(dates[0], dates[-1])}" if dates else "not reviewed"
     yield f"fretc {__version__}"

@@ -181,7 +181,7 @@ def assessments(
         analyzed: the file of `fretc analyze`; None if there is none.
     """
     requirements = {id(requirement.entry): requirement for requirement in project.formalized}
-    diagnostics = {id(each.requirement): each.diagnostic for each in project.failed}
+    diagnostics = {id(failed.requirement): failed.diagnostic for failed in project.failed}
     results = briefs.by_requirement if briefs else {}
     products_of = {id: products(requirement) for id, requirement in requirements.items()}
     basis_of = bases(project, monitors=monitors(products_of))

@@ -407,10 +407,10 @@ def _composed(tree: e.Expression, wanted: bool, explain: _Explain[C]) -> list[C]
             return _composed(e.Or((e.Not(left), right)), wanted, explain)
         case e.And(args) | e.Or(args):
             found = [explain(arg, wanted=wanted) for arg in args]
-            certain = [one for one in found if one is not None]
+            certain = [explanation for explanation in found if explanation is not None]
             one_is_enough = isinstance(tree, e.And) == wanted
             if not certain or (len(certain) < len(found) and not one_is_enough):
                 return None
-            return [cause for one in certain for cause in one]
+            return [cause for explanation in certain for cause in explanation]
         case _:
             return None

@@ -153,7 +153,8 @@ def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[st
     return {
         "lanes": everything and asdict(drawn_lanes(everything, "across-lanes", links)),
         "maps": [
-            asdict(drawn_map(each, f"map-{each.anchor}", links)) for each in report.across.maps
+            asdict(drawn_map(run_map, f"map-{run_map.anchor}", links))
+            for run_map in report.across.maps
         ],
         "maps_left_out": report.across.maps_left_out,
         "requirements": {

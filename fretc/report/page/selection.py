@@ -117,8 +117,12 @@ def selection(report: Report, details: Details) -> Selection:
     run_rows = tuple(own.get(run.anchor, run) for run in rows)
     left = len(report.runs) - len(run_rows) if many else 0
     anchors = {
-        *(row.anchor for each in by_anchor.values() for row in each.rows),
-        *(view.anchor for each in by_anchor.values() for view in (*each.details, *each.folded)),
+        *(row.anchor for section in by_anchor.values() for row in section.rows),
+        *(
+            view.anchor
+            for section in by_anchor.values()
+            for view in (*section.details, *section.folded)
+        ),
         *(run.anchor for run in (*sections, *run_rows)),
     }
     return Selection(

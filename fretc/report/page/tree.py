@@ -164,9 +164,11 @@ def shortened(elements: Sequence[Element]) -> tuple[Element, ...]:
     kept = [element for element in elements if element.id in ids]
     return tuple(
         replace(
-            each, supported_by=tuple(id for id in each.supported_by if id in ids), in_context_of=()
+            element,
+            supported_by=tuple(id for id in element.supported_by if id in ids),
+            in_context_of=(),
         )
-        for each in kept
+        for element in kept
     )
 
 
@@ -209,12 +211,12 @@ def _clusters(flat: Sequence[Placement]) -> Iterator[list[Placement]]:
     """The groups that stay on one page: an element with its context and its counter-evidence."""
     cluster: list[Placement] = []
     height = 0.0
-    for each in flat:
-        height += _height(each)
-        if cluster and (each.relation is Relation.SUPPORT or height > _TALL):
+    for placement in flat:
+        height += _height(placement)
+        if cluster and (placement.relation is Relation.SUPPORT or height > _TALL):
             yield cluster
-            cluster, height = [], _height(each)
-        cluster.append(each)
+            cluster, height = [], _height(placement)
+        cluster.append(placement)
     if cluster:
         yield cluster
 
@@ -228,9 +230,9 @@ def _piece(group: Sequence[Placement], number: int, count: int) -> Piece:
     shapes: list[Shape] = []
     above: dict[int, tuple[float, float]] = {}
     y = 6.0
-    for each in group:
-        shapes.append(_shape(each, y, above))
-        y += _height(each)
+    for placement in group:
+        shapes.append(_shape(placement, y, above))
+        y += _height(placement)
     part = f", part {number} of {count}" if count > 1 else ""
     text = f"{len(group)} elements, from “{group[0].text}”; the list below has them all."
     return Piece(f"argument-{number}", f"Assurance argument{part}", text, _WIDTH, y, tuple(shapes))

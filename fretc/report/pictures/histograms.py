@@ -156,7 +156,7 @@ def seconds_allowed(requirement: FormalizedRequirement | None) -> float | None:
 def _late(late: Sequence[float], bound: float | None) -> str:
     """The median and the longest; of one answer only how long it took."""
     bounds = [] if bound is None else [bound]
-    middle, longest = (phrases.duration(each, bounds) for each in (median(late), max(late)))
+    middle, longest = (phrases.duration(latency, bounds) for latency in (median(late), max(late)))
     return longest if len(late) == 1 else f"median {middle}, longest {longest}"
 
 
@@ -238,16 +238,16 @@ _FROM, _UP_TO = "{count} from {low} to below {high}", "{count} {above} {low} up 
 
 def _in_words(bins: Sequence[Bin], unit: str, form: str) -> str:
     """The fullest bars, in their order."""
-    full = [each for each in bins if each.count]
+    full = [column for column in bins if column.count]
     fullest = sorted(sorted(full, key=lambda each: -each.count)[:_NAMED], key=lambda each: each.low)
     parts = [
         form.format(
-            count=phrases.whole(each.count),
-            low=phrases.decimal(each.low),
-            above="above" if each.low > 0 else "from",
-            high=phrases.value(each.high, unit),
+            count=phrases.whole(column.count),
+            low=phrases.decimal(column.low),
+            above="above" if column.low > 0 else "from",
+            high=phrases.value(column.high, unit),
         )
-        for each in fullest
+        for column in fullest
     ]
-    rest = sum(each.count for each in full) - sum(each.count for each in fullest)
+    rest = sum(column.count for column in full) - sum(column.count for column in fullest)
     return f"{phrases.joined([*parts, *([f'{phrases.whole(rest)} elsewhere'] if rest else [])])}."

@@ -329,14 +329,14 @@ def histogram(content: Histogram, id: str) -> DrawnHistogram:
     left = 20 + (_APART if content.crossed else 0)
     right = WIDTH - 30 - _APART * len(late)
     low, high = content.bins[0].low, content.bins[-1].high
-    most = max([*(each.count for each in content.bins), content.crossed, *(n for n, _, _ in late)])
+    most = max([*(bin_.count for bin_ in content.bins), content.crossed, *(n for n, _, _ in late)])
     scale = (right - left) / (high - low)
 
     def x(number: float) -> float:
         return round(left + (number - low) * scale, 1)
 
     columns = [
-        _column(x(each.low), x(each.high), each.count, most) for each in content.bins if each.count
+        _column(x(bin_.low), x(bin_.high), bin_.count, most) for bin_ in content.bins if bin_.count
     ]
     if content.crossed:
         columns.append(_column(4, _APART - 6, content.crossed, most, "crossed", "crossed"))

@@ -102,13 +102,15 @@ class Details:
     def run_views(self, summaries: Iterable[RunSummary]) -> tuple[RunView, ...]:
         """The runs with their topics, in the order in which they are given."""
         ordered = tuple(summaries)
-        wanted = {each.anchor for each in ordered}
+        wanted = {summary.anchor for summary in ordered}
         topics = {}
         for facts in self.evidence.runs() if self.evidence else ():
             anchor = self.runs[run_key(facts)].anchor
             if anchor in wanted and anchor not in topics:
                 topics[anchor] = topic_views(facts, self.project)
-        return tuple(RunView(**_fields(each), topics=topics[each.anchor]) for each in ordered)
+        return tuple(
+            RunView(**_fields(summary), topics=topics[summary.anchor]) for summary in ordered
+        )
 
 
 def _fields(summary: RunSummary) -> dict[str, Any]:

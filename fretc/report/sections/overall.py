@@ -51,9 +51,9 @@ def overall(
     active_views = [view for view in sections if view.status != RETIRED]
     missing = [plan for view in active_views for plan in view.planned if not plan.has_result]
     refuted = [view.name for view in active_views if is_refuted(view)]
-    red = [one for one in active if one.is_broken]
+    red = [assessment for assessment in active if assessment.is_broken]
     stale = outdated(active)
-    good = [one for one in active if one.is_shown]
+    good = [assessment for assessment in active if assessment.is_shown]
     has_flaws = has_errors(project.diagnostics)
     forged = _forged(signatures)
     sentences = tuple(
@@ -63,7 +63,7 @@ def overall(
                 *((stale,) if red else ()),
                 *changed,
                 *_held(active, good, len(runs)),
-                *(f"{one.text}." for one in withdrawn),
+                *(f"{withdrawal.text}." for withdrawal in withdrawn),
                 _refuted(refuted),
                 *_few(reservations),
                 _waived(active),
@@ -77,7 +77,7 @@ def overall(
         )
     )
     if red:
-        mark = replace(_VIOLATED, suspect=all(one.suspicions for one in red))
+        mark = replace(_VIOLATED, suspect=all(assessment.suspicions for assessment in red))
         return Overall(mark, violated(red), sentences)
     if forged:
         return Overall(BROKEN, forged, sentences)
@@ -104,12 +104,14 @@ def _with(headline: str, stale: str) -> str:
 
 def _held(active: Sequence[Assessment], good: Sequence[Assessment], runs: int) -> Iterator[str]:
     """How many requirements hold in each run, and how many probabilities over all runs."""
-    single = [one for one in active if one.probability is None]
-    probable = [one for one in active if one.probability is not None]
+    single = [assessment for assessment in active if assessment.probability is None]
+    probable = [assessment for assessment in active if assessment.probability is not None]
     if single or not probable:
-        yield _held_in_runs(single, [one for one in good if one.probability is None], runs)
+        yield _held_in_runs(
+            single, [assessment for assessment in good if assessment.probability is None], runs
+        )
     if probable:
-        count = sum(one.is_shown for one in probable)
+        count = sum(assessment.is_shown for assessment in probable)
         yield (
             f"{count} of {phrases.times(len(probable), 'probability', 'probabilities')} "
             f"{'is' if len(probable) == 1 else 'are'} supported, as an average over the triggers "
@@ -127,7 +129,7 @@ def _held_in_runs(active: Sequence[Assessment], good: Sequence[Assessment], runs
         held = f"held in {where}" if good else f"was not shown to hold in {where}"
         name = active[0].entry.name
         return f"The one requirement, {name}, {held if where else 'was not audited'}."
-    everywhere = all(len(one.audits) == runs for one in good)
+    everywhere = all(len(assessment.audits) == runs for assessment in good)
     where = _where(runs) if everywhere else "each run in which they were audited"
     return f"{len(good)} of {len(active)} requirements held in {where}."
 
@@ -143,11 +145,13 @@ def _refuted(ids: Sequence[str]) -> str:
 
 
 def _waived(active: Sequence[Assessment]) -> str:
-    waived = [one for one in active if one.verdict == WAIVED]
+    waived = [assessment for assessment in active if assessment.verdict == WAIVED]
     if not waived:
         return ""
     verb = "is" if len(waived) == 1 else "are"
-    names = phrases.some([f"{one.entry.name}: {one.unwaived_mark.text}" for one in waived])
+    names = phrases.some(
+        [f"{assessment.entry.name}: {assessment.unwaived_mark.text}" for assessment in waived]
+    )
     return f"{phrases.times(len(waived), 'requirement')} {verb} waived, and not shown: {names}."
 
 
@@ -159,7 +163,7 @@ def _unsigned(sections: Sequence[RequirementView]) -> str:
 
 
 def _forged(signatures: Signatures) -> str:
-    places = [one.name for one in signatures.signed if one.signature.mark == BROKEN]
+    places = [entry.name for entry in signatures.signed if entry.signature.mark == BROKEN]
     if not places:
         return ""
     verb = "does" if len(places) == 1 else "do"

@@ -147,7 +147,10 @@ def _of_bindings(project: Project) -> str:
         requirement for requirement in project.requirements if requirement.status != "retired"
     ]
     return of_all(
-        {each.id: of_bindings(requirements.get(id(each)), project.declarations) for each in inforce}
+        {
+            requirement.id: of_bindings(requirements.get(id(requirement)), project.declarations)
+            for requirement in inforce
+        }
     )
 
 

@@ -247,7 +247,7 @@ def _at(moment: Moment) -> str:
 def _threshold(threshold: Threshold) -> ThresholdView:
     kept, unit, bound = threshold.comparison, threshold.unit, threshold.bound
     least, greatest = (
-        phrases.value(each, unit, [bound]) for each in (threshold.least, threshold.greatest)
+        phrases.value(number, unit, [bound]) for number in (threshold.least, threshold.greatest)
     )
     margin = {None: "never known", "crossed": "crossed"}.get(kept) or (
         "always out of range"

@@ -72,7 +72,7 @@ def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
         f"; {suspect} of these reviews no longer {verb}" if suspect else ", all reviews are current"
     )
     reviews = [standing.review for standing in standings if standing.review is not None]
-    unsigned = sum(not of_review(book, each).is_good for each in reviews)
+    unsigned = sum(not of_review(book, standing).is_good for standing in reviews)
     verb = "is" if unsigned == 1 else "are"
     who = f" {unsigned} of {len(standings)} {verb} unauthenticated." if unsigned else ""
     count = phrases.times(len(assessments), "requirement")
@@ -82,7 +82,7 @@ def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
 def changes(assessments: Sequence[Assessment], project: Project) -> tuple[Change, ...]:
     """The changes of each requirement since its review; one without changes is left out."""
     reviewed = [assessment for assessment in assessments if assessment.standing.review]
-    pairs = [(each, difference(each.standing, project)) for each in reviewed]
+    pairs = [(assessment, difference(assessment.standing, project)) for assessment in reviewed]
     return tuple(_change(each, change) for each, change in pairs if change.state != "same")
 
 
@@ -137,22 +137,22 @@ def withdrawals(withdrawn: Sequence[WithdrawnRequirement]) -> tuple[Change, ...]
     """A change for each requirement that is gone; a retired one is among `changes` already."""
     return tuple(
         Change(
-            requirement=one.review.requirement,
-            title=one.review.texts.title if one.review.texts else "",
+            requirement=withdrawal.review.requirement,
+            title=withdrawal.review.texts.title if withdrawal.review.texts else "",
             anchor="",
             state="gone",
-            by=_by(one.review),
+            by=_by(withdrawal.review),
             texts=(),
-            lines=(one.text,),
+            lines=(withdrawal.text,),
             contradictions=(),
             consequences=(),
             suspicion="",
             verdicts=tuple(
-                (run, then, "none") for run, then in sorted(one.review.verdicts.items())
+                (run, then, "none") for run, then in sorted(withdrawal.review.verdicts.items())
             ),
         )
-        for one in withdrawn
-        if not one.retired
+        for withdrawal in withdrawn
+        if not withdrawal.retired
     )
 
 

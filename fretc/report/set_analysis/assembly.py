@@ -64,7 +64,7 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
         mark=replace(_mark(analysis.verdict), suspect=bool(old)),
         headline=_headline(analysis),
         suspicions=tuple(old),
-        left_out=tuple(each.id for each in project.without_rule if each.status != RETIRED),
+        left_out=tuple(entry.id for entry in project.without_rule if entry.status != RETIRED),
         components=tuple(
             SetComponent(
                 _mark(component.verdict),
@@ -84,15 +84,15 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
         ),
         complete=analysis.complete,
         clashes=tuple(
-            SetConflict(view.members(each.requirements), "", view.play(each.play, None))
-            for each in analysis.inconsistent
+            SetConflict(view.members(conflict.requirements), "", view.play(conflict.play, None))
+            for conflict in analysis.inconsistent
         ),
         remarks=tuple(text.strip() for text, _ in remarks(analysis)),
         assumptions=tuple(assumption.in_words for assumption in analysis.assumptions),
         inputs=_of_role(analysis, Role.INPUT),
         outputs=_of_role(analysis, Role.OUTPUT),
         terms=analysis.terms,
-        open=tuple(f"{each.question}: {each.why}" for each in analysis.open),
+        open=tuple(f"{question.question}: {question.why}" for question in analysis.open),
     )
 
 
@@ -139,9 +139,11 @@ class _Views:
         found = columns(ticks, names)
         back = [i for i, each in enumerate(found) if loop is not None and each.first <= loop]
         return Play(
-            tuple(each.head for each in found),
+            tuple(conflict.head for conflict in found),
             tuple(
-                PlayLane(name, str(roles.get(name, "")), tuple(each.values[i] for each in found))
+                PlayLane(
+                    name, str(roles.get(name, "")), tuple(conflict.values[i] for conflict in found)
+                )
                 for i, name in enumerate(names)
             ),
             back[-1] if back else None,
