@@ -51,7 +51,7 @@ class MutantBatch:
 class MutationJob:
     """The inputs of a mutation analysis, except the logs."""
 
-    suspects: tuple[MutantBatch, ...]
+    batches: tuple[MutantBatch, ...]
     declarations: Declarations
     """Declarations with the signals of the audit, so that ticks are the same as in the audit."""
     propositions: tuple[str, ...]
@@ -81,7 +81,7 @@ class RunSurvey:
     """(requirement, mutant) → the difference on this run."""
 
 
-def inquiry(project: Project, plan: Plan) -> MutationJob:
+def mutation_job(project: Project, plan: Plan) -> MutationJob:
     """The mutants of each requirement that the plan audits.
 
     Args:
@@ -94,25 +94,25 @@ def inquiry(project: Project, plan: Plan) -> MutationJob:
         for requirement in project.formalized
         if requirement.id in audited
     }
-    found = tuple(map(suspects, requirements.values()))
+    batches = tuple(map(mutant_batch, requirements.values()))
     declarations = project.declarations
     assert declarations is not None, "there is a plan"
-    for own in (mutant.requirement.declarations for batch in found for mutant in batch.mutants):
+    for own in (mutant.requirement.declarations for batch in batches for mutant in batch.mutants):
         if own is not None:
             declarations = extended(declarations, own.propositions, own.mistakes)
     declarations = replace(declarations, signals=plan.declarations.signals)
-    names = dict.fromkeys(name for batch in found for name in batch.monitor.PROPOSITIONS)
-    known = tuple(name for name in names if _is_told(declarations, name))
-    return MutationJob(found, declarations, known, plan.integrity)
+    names = dict.fromkeys(name for batch in batches for name in batch.monitor.PROPOSITIONS)
+    known = tuple(name for name in names if _is_determined(declarations, name))
+    return MutationJob(batches, declarations, known, plan.integrity)
 
 
-def _is_told(declarations: Declarations, name: str) -> bool:
+def _is_determined(declarations: Declarations, name: str) -> bool:
     """Whether the signals determine the proposition."""
     proposition = declarations.propositions.get(name)
     return proposition is not None and declarations.signals.keys() >= {*proposition.signals}
 
 
-def suspects(requirement: FormalizedRequirement) -> MutantBatch:
+def mutant_batch(requirement: FormalizedRequirement) -> MutantBatch:
     """The mutants of a requirement in one monitor, with the requirement itself."""
     judged: list[Mutant] = []
     refused: list[tuple[Mutant, str]] = []
@@ -154,14 +154,14 @@ def of_run(asked: MutationJob, log: str) -> RunSurvey | Diagnostic:
     end = Verdict(declarations.clock.end)
     known: set[str] = set()
     noticed: dict[tuple[str, str], Difference] = {}
-    for suspect in asked.suspects:
-        own, *others = judgements(suspect.monitor, truths, end, intact=recording.intact)
+    for batch in asked.batches:
+        own, *others = judgements(batch.monitor, truths, end, intact=recording.intact)
         if own.verdict != kernel.NO_DATA:
-            known.add(suspect.id)
-        for mutant, other in zip(suspect.mutants, others, strict=True):
+            known.add(batch.id)
+        for mutant, other in zip(batch.mutants, others, strict=True):
             found = difference(own, other)
             if found is not None:
-                noticed[suspect.id, mutant.key] = found
+                noticed[batch.id, mutant.key] = found
     return RunSurvey(frozenset(known), noticed)
 
 
@@ -218,7 +218,7 @@ class MutationResult:
 
     runs: tuple[str, ...]
     """The runs that could be read."""
-    suspects: tuple[MutantBatch, ...]
+    batches: tuple[MutantBatch, ...]
     known: frozenset[str]
     """The requirements on which some run has a verdict."""
     noticed: Mapping[tuple[str, str], tuple[int, Difference]]
@@ -231,7 +231,7 @@ class MutationResult:
     @property
     def count(self) -> int:
         """The number of mutants, without those that are proved equivalent."""
-        return sum(len(suspect.mutants) + len(suspect.refused) for suspect in self.suspects) - len(
+        return sum(len(batch.mutants) + len(batch.refused) for batch in self.batches) - len(
             self.equivalent
         )
 
@@ -243,10 +243,8 @@ class MutationResult:
     def with_proofs(self, suite: Suite) -> MutationResult:
         """The result with the equivalent mutants of a test suite, for unchanged sentences."""
         known = {requirement.id: requirement.fingerprint for requirement in suite.requirements}
-        current = {
-            suspect.id for suspect in self.suspects if known.get(suspect.id) == suspect.fingerprint
-        }
-        keys = {(suspect.id, one.key) for suspect in self.suspects for one in _all(suspect)}
+        current = {batch.id for batch in self.batches if known.get(batch.id) == batch.fingerprint}
+        keys = {(batch.id, one.key) for batch in self.batches for one in _all(batch)}
         proved = {
             (mutant.requirement, mutant.key)
             for mutant in suite.mutants
@@ -255,8 +253,8 @@ class MutationResult:
         return replace(self, equivalent=frozenset(proved & keys - self.noticed.keys()))
 
 
-def _all(suspects: MutantBatch) -> tuple[Mutant, ...]:
-    return (*suspects.mutants, *(mutant for mutant, _ in suspects.refused))
+def _all(batch: MutantBatch) -> tuple[Mutant, ...]:
+    return (*batch.mutants, *(mutant for mutant, _ in batch.refused))
 
 
 def survey(
@@ -286,7 +284,7 @@ def survey(
     number = {place: run for run, place in enumerate(runs)}
     return MutationResult(
         tuple(name_of(logs[place]) for place in runs),
-        asked.suspects,
+        asked.batches,
         frozenset(known),
         {key: (number[place], apart) for key, (place, apart) in first.items()},
         tuple(unread[place] for place in sorted(unread)),

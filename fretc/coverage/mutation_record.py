@@ -76,22 +76,22 @@ def document(survey: MutationResult) -> Document:
         fretc=__version__,
         runs=survey.runs,
         requirements=tuple(
-            Requirement(suspect.id, suspect.id in survey.known, tuple(_mutants(suspect, survey)))
-            for suspect in survey.suspects
+            Requirement(batch.id, batch.id in survey.known, tuple(_mutants(batch, survey)))
+            for batch in survey.batches
         ),
     )
 
 
-def _mutants(suspects: MutantBatch, survey: MutationResult) -> Iterator[Judged]:
-    for mutant in suspects.mutants:
-        key = suspects.id, mutant.key
+def _mutants(batches: MutantBatch, survey: MutationResult) -> Iterator[Judged]:
+    for mutant in batches.mutants:
+        key = batches.id, mutant.key
         found = survey.noticed.get(key)
         outcome: Outcome = "equivalent" if key in survey.equivalent else "not noticed"
         outcome = outcome if found is None else "noticed"
         notice = None if found is None else _notice(*found)
         yield Judged(mutant.key, mutant.words, written(mutant), outcome, notice)
-    for mutant, why in suspects.refused:
-        same = (suspects.id, mutant.key) in survey.equivalent
+    for mutant, why in batches.refused:
+        same = (batches.id, mutant.key) in survey.equivalent
         outcome = "equivalent" if same else "not judged"
         yield Judged(mutant.key, mutant.words, written(mutant), outcome, None, why)
 

@@ -158,9 +158,7 @@ def report(
         not_shown=tuple(_not_shown(view) for view in worst_first(sections) if view.reasons),
         reservations=reservations,
         planned=tuple(plan for view in sections for plan in view.planned if view.status != RETIRED),
-        proofs=proof_views(
-            (all_proof for all_proof in all_proofs if all_proof.requirement in SHARED), shared
-        ),
+        proofs=proof_views((proof for proof in all_proofs if proof.requirement in SHARED), shared),
         verification=phrases.place(proofs.file) if proofs else "",
         remarks=tuple(remark(diagnostic) for diagnostic in (*project.diagnostics, *checked)),
         hazards=hazard_views(project),

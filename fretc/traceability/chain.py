@@ -317,7 +317,7 @@ class _ChainBuilder:
 
     def _add_status_and_plans(self, requirement: RequirementEntry) -> None:
         """Add status and planned methods; only the review depends on them, no verdict."""
-        self._add(in_force(self._id), print_of_status(requirement.status))
+        self._add(status_node(self._id), print_of_status(requirement.status))
         for method in requirement.verify:
             self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
 
@@ -463,7 +463,7 @@ def print_of_status(status: str) -> str:
     return digest("retired") if status == "retired" else IN_FORCE
 
 
-def in_force(requirement: str) -> Node:
+def status_node(requirement: str) -> Node:
     """The node of the status of a requirement."""
     return Node(STATUS, requirement)
 

@@ -29,7 +29,7 @@ from fretc.traceability.chain import (
     Node,
     Suspect,
     changed,
-    in_force,
+    status_node,
     suspects,
 )
 from fretc.traceability.changes import Change, changes
@@ -76,7 +76,7 @@ class Review:
     @property
     def was_in_force(self) -> bool:
         """Whether the requirement was not retired at the review."""
-        return self.prints.get(in_force(self.requirement)) == IN_FORCE
+        return self.prints.get(status_node(self.requirement)) == IN_FORCE
 
     @property
     def was_claimed(self) -> bool:

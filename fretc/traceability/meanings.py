@@ -28,12 +28,12 @@ from fretc.traceability.chain import (
     TEXT,
     WORDS,
     Node,
-    in_force,
     print_of_hazard,
     print_of_header,
     print_of_proof,
     print_of_status,
     print_of_words,
+    status_node,
 )
 from fretc.traceability.texts import (
     Bindings,
@@ -103,7 +103,7 @@ def _of_header(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
         yield ("", "", name), Leaf(node, name, text, text)
     yield ("", "", "parents"), Leaf(node, "parents", ", ".join(texts.parents), {*texts.parents})
     retired = texts.status == "retired"
-    yield ("", "", "status"), Leaf(in_force(id), "status", texts.status, retired)
+    yield ("", "", "status"), Leaf(status_node(id), "status", texts.status, retired)
     plan = Node(PLAN, id)
     yield ("", "", "verify"), Leaf(plan, "verify", ", ".join(texts.verify), {*texts.verify})
     for name, reason in texts.accept.items():
@@ -307,7 +307,7 @@ def _of(value: Any) -> str:
 
 def _fingerprints(id: str, texts: ReviewedTexts) -> Iterator[tuple[Node, str]]:
     """The fingerprints that fretc computes from these texts."""
-    yield in_force(id), print_of_status(texts.status)
+    yield status_node(id), print_of_status(texts.status)
     for method in texts.verify:
         yield Node(PLAN, f"{id} {method}"), _of(method)
     for name, reason in texts.accept.items():

@@ -140,11 +140,11 @@ def _maps(
     ranked = [run for run in tallies if run in judged]
     ranked.sort(key=lambda run: worst_first(tallies[run]))
     results: dict[str, list[RunStretches]] = {run: [] for run in ranked[:MOST_MAPS]}
-    for of_run in _of_runs(active, details, results):
-        results[of_run.run].append(of_run)
+    for summary in _of_runs(active, details, results):
+        results[summary.run].append(summary)
     courses = _courses(details)
     drawn = [_map(of, courses[run], details) for run, of in results.items()]
-    maps = tuple(run_map_or_none for run_map_or_none in drawn if run_map_or_none is not None)
+    maps = tuple(picture for picture in drawn if picture is not None)
     if not maps:
         return (), ""
     left = left_out([tallies[run] for run in ranked[MOST_MAPS:]], "no map")

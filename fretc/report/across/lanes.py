@@ -212,8 +212,8 @@ def _lane(lane: _Lane, nearest: float) -> RunLane:
     of = sorted(
         (
             mark
-            for with_mark in with_marks(lane.results)
-            for mark in _marks(with_mark, lane.known[with_mark.place][0])
+            for result in with_marks(lane.results)
+            for mark in _marks(result, lane.known[result.place][0])
         ),
         key=lambda mark: (mark.start, mark.end),
     )
