@@ -1,4 +1,4 @@
-"""What the audited runs have exercised of each requirement, for its section and for the matrix."""
+"""Views of the situations that audited runs have shown, for sections and matrix."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from fretc.report.model.views import SituationsView
 def situations(
     assessed: Sequence[Assessment], evidence: EvidenceSource | None
 ) -> Mapping[str, SituationsView]:
-    """Of each requirement in force that has results, by its id.
+    """Requirement id → view of its situations, for requirements in force with results.
 
-    A result that is evidence of something else shows nothing of the requirement as it is now.
+    Suspect results are not counted.
 
     Args:
         assessed: all requirements.
-        evidence: that their audits are of; None: there is none.
+        evidence: the evidence; None if there is none.
     """
     if evidence is None:
         return {}

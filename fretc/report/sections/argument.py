@@ -1,4 +1,4 @@
-"""The assurance argument: hazards are controlled because requirements hold, as the evidence shows.
+"""The assurance argument: hazards are controlled because evidence shows that requirements hold.
 
 The argument claims no more than the report. A goal without evidence is undeveloped. Counter-
 evidence is a solution that challenges its goal; current counter-evidence defeats the goal. A proof
@@ -50,7 +50,7 @@ class Element:
     defeated: bool = False
     """Whether current counter-evidence challenges the goal."""
     name: str = ""
-    """Its short name in a reference; empty: the text."""
+    """The short name in a reference; "" for the text."""
 
 
 _SUBJECTS: Mapping[str, str] = MappingProxyType(
@@ -72,7 +72,7 @@ _SHARED_SUBJECTS: Mapping[str, str] = MappingProxyType(
 )
 """The goal that proofs about shared parts support."""
 _NAMED = 3
-"""The most violating runs that an element names; it counts the others."""
+"""Maximum number of violating runs that an element names; others are counted."""
 
 
 def argument(report: Report) -> tuple[Element, ...]:
@@ -134,7 +134,7 @@ class _Argument:
         yield from self._requirements(anchors)
 
     def _requirements(self, anchors: Sequence[str]) -> Iterator[Element]:
-        """The elements of each requirement once, however many hazards it has."""
+        """The elements of each requirement, without duplicates if it has several hazards."""
         for anchor in anchors:
             if anchor not in self._yielded:
                 self._yielded.add(anchor)
@@ -197,7 +197,7 @@ class _CounterEvidence:
     id: str
     text: str
     is_current: bool
-    """Whether it is about the requirement as it is now."""
+    """Whether the counter-evidence is about the present requirement."""
 
 
 def _support(view: RequirementView) -> str:
@@ -209,7 +209,7 @@ def _support(view: RequirementView) -> str:
 
 
 def _counter_evidence(view: RequirementView, id: str) -> Iterator[_CounterEvidence]:
-    """The runs that violate it, suspect ones apart; or the answer about its probability."""
+    """Counter-evidence: violating runs, suspect ones separately, or the estimate."""
     probability = view.probability
     if probability is not None:
         if probability.mark.word == REFUTED:
@@ -282,5 +282,5 @@ def _claims(head: str, proofs: Sequence[ProofView]) -> str:
 
 
 def _id(prefix: str, name: str) -> str:
-    """An id of GSN letters; different names have different ids."""
+    """A valid GSN id; distinct for distinct names."""
     return f"{prefix}_{re.sub(r'[^A-Za-z0-9]', lambda m: f'_{ord(m[0]):x}_', name)}"

@@ -35,7 +35,7 @@ def overall(
     signatures: Signatures,
     changed: Sequence[str] = (),
 ) -> Overall:
-    """Mark, headline and sentences.
+    """The overall result: mark, headline and sentences.
 
     Args:
         project: with or without errors.
@@ -43,9 +43,9 @@ def overall(
         sections: the view of each assessment, in the same order.
         runs: all audited runs.
         reservations: about requirements that are shown.
-        withdrawn: requirements that were reviewed and are claimed no more.
+        withdrawn: reviewed requirements that are no longer in force.
         signatures: all of them.
-        changed: what has changed since the review, in sentences.
+        changed: sentences about changes since the review.
     """
     active = [assessment for assessment in assessments if assessment.verdict != RETIRED]
     active_views = [view for view in sections if view.status != RETIRED]
@@ -95,7 +95,7 @@ def overall(
 
 
 def _with(headline: str, stale: str) -> str:
-    """A headline, and what is suspect for which reason."""
+    """A headline with the reasons why results are suspect."""
     return f"{headline}: {stale}" if stale else f"{headline}."
 
 
@@ -103,7 +103,7 @@ def _with(headline: str, stale: str) -> str:
 
 
 def _held(active: Sequence[Assessment], good: Sequence[Assessment], runs: int) -> Iterator[str]:
-    """How many requirements hold in each run, and how many probabilities over all runs."""
+    """Sentences with the number of requirements that hold, and of supported probabilities."""
     single = [assessment for assessment in active if assessment.probability is None]
     probable = [assessment for assessment in active if assessment.probability is not None]
     if single or not probable:
@@ -156,7 +156,7 @@ def _waived(active: Sequence[Assessment]) -> str:
 
 
 def _unsigned(sections: Sequence[RequirementView]) -> str:
-    """A waiver lets a requirement pass, no matter who has written it."""
+    """A sentence about effective waivers without a valid signature."""
     waived = [view for view in sections if view.waiver and view.mark.word == WAIVED]
     names = [view.name for view in waived if view.waiver and not view.waiver.signature.is_good]
     return f"There is no valid signature for the waiver of {phrases.some(names)}." if names else ""
@@ -188,7 +188,7 @@ _FLAWED = "The requirements, bindings or hazards have errors: this report is not
 
 
 def _few(reservations: Sequence[str]) -> Sequence[str]:
-    """The reservations themselves, or a sentence with their number where there are many."""
+    """The reservations, or a sentence with their number if there are many."""
     if len(reservations) <= 3:
         return reservations
     return (f"There are {len(reservations)} reservations; part 2 lists them.",)

@@ -16,11 +16,11 @@ _AUDIT = "audit"
 
 
 def planned(assessment: Assessment, proofs: Sequence[ProofView]) -> tuple[Planned, ...]:
-    """Every method that the requirement's `verify` names, in its order.
+    """The planned methods in the requirement's `verify`, in its order.
 
     Args:
         assessment: of the requirement.
-        proofs: about it, and about parts that all requirements share.
+        proofs: proofs about the requirement and about shared parts.
     """
     return tuple(
         _planned(assessment, method, proofs) for method in dict.fromkeys(assessment.entry.verify)
@@ -35,7 +35,7 @@ def _planned(assessment: Assessment, method: str, proofs: Sequence[ProofView]) -
 
 
 def _by_proofs(assessment: Assessment, method: str, proofs: Sequence[ProofView]) -> Planned:
-    """The worst proof decides; one that is vacuous or not checked is no result."""
+    """A method by its proofs: the worst one decides; vacuous and unchecked ones are not results."""
     decisive = worst(proofs)
     refuted = decisive.mark.word == Result.COUNTEREXAMPLE
     has_result = refuted or is_proved(decisive)
@@ -53,7 +53,7 @@ def _audit(assessment: Assessment) -> Planned:
 
 
 def _other(assessment: Assessment, method: str) -> Planned:
-    """A method without a known result, and what fretc can make for it."""
+    """A method without a known result, with the files that fretc can generate for it."""
     return Planned(
         assessment.id,
         assessment.anchor,

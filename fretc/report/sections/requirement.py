@@ -63,13 +63,13 @@ def section(
         assessment: of the requirement.
         project: with or without errors.
         runs: all runs.
-        anchors: of the section of each requirement, by its id.
+        anchors: id → anchor of the section of a requirement.
         audited: whether there is any evidence.
-        proofs: about all requirements, and about shared parts.
-        shared_products: what targets make from the bindings alone.
-        joint: SHA-256 of the monitors of all requirements together.
-        book: who signed what.
-        situations: that runs have shown; None where no run has been audited.
+        proofs: proofs about all requirements and about shared parts.
+        shared_products: files that targets generate from the bindings.
+        joint: SHA-256 of the joint monitors.
+        book: the checked signatures.
+        situations: situations that runs have shown; None if no run was audited.
     """
     entry, requirement = assessment.entry, assessment.requirement
     products = (*assessment.products, *shared_products)
@@ -117,7 +117,7 @@ def section(
 
 
 def _limit(requirement: FormalizedRequirement | None) -> str:
-    """Why no run can violate it; many runs decide about a probability, so it has no limit."""
+    """Why no run can violate the requirement, or ""; a probability is judged over many runs."""
     return (
         ""
         if requirement is None or requirement.sentence.probability is not None
@@ -221,7 +221,7 @@ def _proposition(name: str, declared: Declarations | None) -> PropositionView:
 
 
 def _expression(declared: Declarations, bound: Proposition) -> str:
-    """The expression, as the bindings write it; what only a sentence states, in their language."""
+    """The expression of a proposition, in the syntax of the bindings."""
     written = _written(declared.source.text)
     if bound.name not in written:
         return printed(bound.expression)
@@ -230,7 +230,7 @@ def _expression(declared: Declarations, bound: Proposition) -> str:
 
 @lru_cache(maxsize=1)
 def _written(bindings: str) -> Mapping[str, Any]:
-    """The propositions of bindings, as they are written."""
+    """Proposition → its text in the bindings."""
     written: Mapping[str, Any] = tomllib.loads(bindings).get("proposition", {})
     return written
 

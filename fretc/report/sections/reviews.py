@@ -47,7 +47,7 @@ def review(assessment: Assessment, book: SignatureBook) -> ReviewView:
 
 
 def waiver(assessment: Assessment, book: SignatureBook) -> WaiverView | None:
-    """The waiver that counts today."""
+    """The view of the waiver that is valid today."""
     granted = assessment.waiver
     if granted is None:
         return None
@@ -60,7 +60,7 @@ def waiver(assessment: Assessment, book: SignatureBook) -> WaiverView | None:
 
 
 def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
-    """The number of reviews, of those that stand, and of those without a signature."""
+    """Sentences with the number of reviews, of current ones, and of unsigned ones."""
     standings = [
         assessment.standing for assessment in assessments if assessment.standing.review is not None
     ]
@@ -89,9 +89,9 @@ def changes(assessments: Sequence[Assessment], project: Project) -> tuple[Change
 def change_groups(
     assessments: Sequence[Assessment], changes: Sequence[Change]
 ) -> tuple[ChangeGroup, ...]:
-    """Each change once, with all requirements that it touches.
+    """The distinct changes, each with all requirements that it affects.
 
-    One that may be why its requirements have the most new violations each comes first.
+    The change whose requirements have the most new violations comes first.
     """
     violations = {change.anchor: new_violations(change) for change in changes}
     touched: dict[ChangeText, list[tuple[str, str]]] = {}
@@ -115,7 +115,7 @@ def change_groups(
 
 
 def change_sentences(changes: Sequence[Change], groups: Sequence[ChangeGroup]) -> Iterator[str]:
-    """What has changed since the review, what became of verdicts, and what contradicts it."""
+    """Sentences about changes since the review, changed verdicts, and contradictions."""
     for group in groups[:_SENTENCES]:
         named = phrases.some([id for id, _ in group.requirements])
         only = only_change(group, changes)
@@ -134,7 +134,7 @@ _SENTENCES = 3
 
 
 def withdrawals(withdrawn: Sequence[WithdrawnRequirement]) -> tuple[Change, ...]:
-    """A change for each requirement that is gone; a retired one is among `changes` already."""
+    """A change for each removed requirement; retired ones are already among `changes`."""
     return tuple(
         Change(
             requirement=withdrawal.review.requirement,

@@ -91,7 +91,7 @@ def _files(
 
 
 def _file(book: SignatureBook, subject: Subject) -> Signed:
-    """A file is signed under the last part of its name."""
+    """The signature of a file, which is signed under its base name."""
     return Signed(subject.kind, subject.name, "", _view(book.of_file(subject.kind, subject.sha256)))
 
 
@@ -107,7 +107,7 @@ def _people(book: SignatureBook, assessments: Sequence[Assessment]) -> Iterator[
 
 
 def idle_signatures(book: SignatureBook, assessments: Sequence[Assessment]) -> Iterator[Diagnostic]:
-    """F559 for each review and waiver with a signature that does not count."""
+    """F559 for each review and waiver with an invalid signature."""
     for assessment in assessments:
         review, waiver = assessment.standing.review, assessment.waiver
         if review is not None:

@@ -1,4 +1,4 @@
-"""Evidence of `fretc analyze` → what the report says of it, and of its currency."""
+"""The view of the file of `fretc analyze`, and whether it is up to date."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ _WORDS: Mapping[Verdict, str] = {
 
 
 def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str]) -> SetAnalysis:
-    """All of it.
+    """The view of the analysis.
 
     Args:
-        known: the evidence.
-        project: as it is now.
-        anchors: of the requirement of each id.
+        known: the file of `fretc analyze`.
+        project: the present project.
+        anchors: id → anchor of the requirement.
     """
     requirements = [
         requirement for requirement in project.formalized if requirement.entry.status != RETIRED
@@ -105,7 +105,7 @@ def _of_role(analysis: Analysis, role: Role) -> tuple[str, ...]:
 
 
 def _headline(analysis: Analysis) -> str:
-    """The answer, in a sentence."""
+    """The result in a sentence."""
     match analysis.verdict:
         case Verdict.REALIZABLE:
             held = ", while the assumptions hold" if analysis.assumptions else ""
@@ -123,7 +123,7 @@ def _headline(analysis: Analysis) -> str:
 
 
 class _Views:
-    """What members and plays look like."""
+    """Builds views of members and runs."""
 
     def __init__(self, document: Document, anchors: Mapping[str, str]) -> None:
         self._document, self._anchors = document, anchors
@@ -133,7 +133,7 @@ class _Views:
         return tuple(SetMember(id, self._anchors.get(id, ""), known[id].sentence) for id in ids)
 
     def play(self, ticks: Sequence[Mapping[str, object]], loop: int | None) -> Play:
-        """A play in columns; `loop` is a tick."""
+        """The view of a run in columns; `loop` is a tick."""
         roles = self._document.analysis.roles
         names = lanes(ticks, roles)
         found = columns(ticks, names)
@@ -154,7 +154,7 @@ class _Views:
 
 
 def sentence(found: SetAnalysis) -> str:
-    """What the headline has to say of it; empty where all is well."""
+    """The sentence for the headline; "" if the analysis is good."""
     if found.is_good:
         return ""
     parts = [] if found.mark.word == REALIZABLE else [found.headline]
@@ -168,7 +168,7 @@ def sentence(found: SetAnalysis) -> str:
 
 
 def in_overall(overall: Overall, found: SetAnalysis | None) -> Overall:
-    """The overall result with what is known of all requirements together."""
+    """The overall result, extended by the result of the analysis."""
     if found is None:
         return overall
     if found.is_good:
@@ -182,7 +182,7 @@ def in_overall(overall: Overall, found: SetAnalysis | None) -> Overall:
 
 
 def in_front(front: Front, found: SetAnalysis | None) -> Front:
-    """The first screen with the same; a headline of its own says it, too."""
+    """The first screen, extended by the result of the analysis unless the headline contains it."""
     said = "" if found is None else sentence(found)
     if not said or said in front.headline:
         return front
