@@ -33,7 +33,7 @@ fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.analysis.arena  fretc.analysis.arithmetic  fretc.analysis.games  fretc.analysis.controllers
 fretc.analysis
 fretc.testing  fretc.testing.exports  fretc.testing.conformance  fretc.coverage
-fretc.report.traceability  fretc.attestation  fretc.reproduction
+fretc.traceability  fretc.attestation  fretc.reproduction
 fretc.report.model  fretc.report.pictures  fretc.report.set_analysis
 fretc.report.sections  fretc.report.front
 fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.trends

@@ -1,4 +1,4 @@
-"""Recorded logs → results."""
+"""Audits of recorded logs: `audit_logs` and its result."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ Path = str | os.PathLike[str]
 
 @dataclass(frozen=True, slots=True)
 class Audit:
-    """What the logs show of the requirements."""
+    """The result of an audit: verdicts on the requirements in the logs."""
 
     results: tuple[Result, ...]
-    """One for each log and requirement in force, also where nothing could be judged."""
+    """One result for each log and requirement in force, also if nothing could be judged."""
     probabilities: tuple[Estimated, ...]
-    """What all logs say of each requirement with a probability."""
+    """The estimate over all logs for each requirement with a probability."""
     diagnostics: tuple[Diagnostic, ...]
-    """What there is to say of logs, and of requirements that cannot be judged."""
+    """Diagnostics about logs, and about requirements that cannot be judged."""
     violated: bool
-    """Whether any requirement is violated in any log, or refuted by all of them."""
+    """Whether a requirement is violated in a log, or refuted by the estimate over all logs."""
     shown: bool
-    """Whether every requirement is satisfied in every log, or supported by all of them."""
+    """Whether each requirement is satisfied in every log, or supported by the estimate."""
     evidence: str
     """The text of the evidence file, as `fretc audit` writes it."""
 
@@ -49,18 +49,18 @@ def audit_logs(
 ) -> Audit:
     """Judge logs by every requirement in force.
 
-    A log that cannot be read, and a requirement that cannot be judged, have results too: they say
-    no data, and why.
+    A log that cannot be read, and a requirement that cannot be judged, have results with the
+    verdict `no data` and a reason.
 
     Args:
         project: the requirements and their bindings.
         logs: files, folders of them, patterns, or URLs.
-        integrity: how much of a log is read beyond what is bound: `index`, `hash` or `full`.
-        confidence: of what all logs say of a probability, between 0.5 and 1.
-        jobs: processes that share the logs.
+        integrity: how thoroughly a log is checked: `index`, `hash` or `full`.
+        confidence: of the estimate of a probability over all logs, between 0.5 and 1.
+        jobs: number of parallel processes.
 
     Raises:
-        Refusal: there is no log, no such file, or no requirement that can be judged.
+        Refusal: no log is given, a file does not exist, or no requirement can be judged.
     """
     error = _bad_choice(integrity, confidence, jobs)
     if error is not None:
@@ -89,11 +89,16 @@ def _audit(plan: Plan, run: Run) -> Audit:
 def _bad_choice(integrity: str, confidence: float, jobs: int) -> Diagnostic | None:
     if integrity not in list(Integrity):
         names = ", ".join(Integrity)
-        return _bad(f"there is no integrity `{integrity}`", f"name one of {names}")
+        return _bad(f"unknown integrity level `{integrity}`", f"name one of {names}")
     if not 0.5 < confidence < 1:
-        return _bad(f"no confidence is {confidence}", "give a number between 0.5 and 1")
+        return _bad(
+            f"the confidence must be between 0.5 and 1, and it is {confidence}",
+            "give a number between 0.5 and 1",
+        )
     if jobs < 1:
-        return _bad(f"{jobs} processes do no work", "give 1 or more")
+        return _bad(
+            f"at least 1 process is needed, and the number given is {jobs}", "give 1 or more"
+        )
     return None
 
 
@@ -102,4 +107,4 @@ def _bad(what: str, fix: str) -> Diagnostic:
 
 
 def _nothing() -> Diagnostic:
-    return Diagnostic(Code.NOTHING_TO_DO, "there is no log to audit", help="name one or several")
+    return Diagnostic(Code.NOTHING_TO_DO, "no log is given", help="name one log or more")

@@ -1,4 +1,4 @@
-"""Monitors of requirements: their text, and the monitor that it makes."""
+"""Monitors of requirements: `monitor_text` and `load_monitor`."""
 
 from __future__ import annotations
 
@@ -17,52 +17,52 @@ from monitors.loading import load
 
 
 class Monitor(Protocol):
-    """A generated monitor; docs/monitors.md says what its methods give."""
+    """A generated monitor; docs/monitors.md describes its methods."""
 
     PROPOSITIONS: Mapping[str, str]
-    """Each proposition with its parameter: of `step`, where no sentence compares numbers."""
+    """Proposition → parameter, of `step` if no sentence compares numbers."""
 
     @property
     def tick(self) -> int:
         """The last tick; -1 before the first."""
 
     def step(self, **values: Value) -> Verdict | tuple[Verdict, ...]:
-        """One tick, by the value of each variable; None is unknown.
+        """Process one tick, from the value of each variable; None means unknown.
 
         Returns:
-            A verdict, or of several requirements one for each.
+            The verdict, or the verdict of each requirement if there are several.
         """
 
     def run(
         self, rows: Iterable[Sequence[Value] | Mapping[str, Value]]
     ) -> Verdict | tuple[Verdict, ...]:
-        """Many ticks: the values of all variables in their order, or by their names."""
+        """Process many ticks; a row has the values of all variables in order, or by name."""
 
     def standings(self) -> tuple[Standing, ...]:
-        """What would be said of each requirement if the trace ended now."""
+        """The verdict of each requirement if the trace ended now."""
 
     def verdicts(self) -> tuple[Verdict, ...]:
-        """Of each requirement, whatever follows: satisfied or violated; or pending."""
+        """The final verdict of each requirement: satisfied, violated, or pending."""
 
     def state(self) -> dict[str, Any]:
-        """Everything that is remembered, as plain values that JSON can hold."""
+        """The state of the monitor, as plain values for JSON."""
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Go on from what `state` gave; ValueError: it is of another monitor."""
+        """Continue from a state that `state` returned; ValueError if it is of another monitor."""
 
     def reset(self) -> None:
-        """Forget everything: the next step is tick 0."""
+        """Return to the initial state: the next step is tick 0."""
 
 
 @bounded
 def monitor_text(*requirements: FormalizedRequirement) -> str:
-    """The text of one monitor for all of the requirements: a file that needs Python alone.
+    """The text of one monitor for all given requirements: a file that needs only Python.
 
     Args:
-        requirements: at least one, each with an id of its own; one that comes twice counts once.
+        requirements: at least one, with distinct ids; duplicates are ignored.
 
     Raises:
-        Refusal: a monitor cannot express one of them, or they do not fit into one file.
+        Refusal: a monitor cannot express a requirement, or they do not fit into one file.
     """
     if not requirements:
         raise Refusal((_nothing(),))
@@ -80,7 +80,7 @@ def monitor_text(*requirements: FormalizedRequirement) -> str:
 
 
 def load_monitor(*requirements: FormalizedRequirement) -> Monitor:
-    """The monitor of the requirements, compiled and ready to be stepped.
+    """A monitor for the requirements, ready to be stepped.
 
     Args, raises: as for `monitor_text`.
     """
@@ -93,7 +93,8 @@ def _several_clocks(requirements: tuple[FormalizedRequirement, ...]) -> Iterable
         if requirement.clock != first.clock:
             yield Diagnostic(
                 Code.BAD_USAGE,
-                f"{requirement.id} and {first.id} are on two clocks: one monitor has one",
+                f"{requirement.id} and {first.id} have different clocks, and a joint monitor has "
+                "one clock",
                 requirement.entry.wording,
                 help="formalize both with the same bindings",
             )
@@ -101,5 +102,7 @@ def _several_clocks(requirements: tuple[FormalizedRequirement, ...]) -> Iterable
 
 def _nothing() -> Diagnostic:
     return Diagnostic(
-        Code.NOTHING_TO_DO, "a monitor needs a requirement", help="give one requirement or several"
+        Code.NOTHING_TO_DO,
+        "no requirement is given: a monitor needs at least one",
+        help="give one requirement or more",
     )

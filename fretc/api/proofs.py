@@ -1,4 +1,4 @@
-"""Whether what is made of requirements keeps them."""
+"""Proofs that generated artefacts satisfy their requirements."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def verify(
     ajpf: Iterable[Path] = (),
     limit: int = 60,
 ) -> tuple[Proof, ...]:
-    """Prove, layer by layer, that what is made of the requirements keeps them.
+    """Prove, layer by layer, that the generated artefacts satisfy the requirements.
 
     Args:
         project: the requirements and their bindings.
@@ -34,7 +34,7 @@ def verify(
             requirement; None: each of them where it applies, and `agent` where a requirement plans
             it or `ajpf`.
         provers: `frama-c`, `dafny` or `crosshair`, if they are installed.
-        ajpf: results that AJPF has given.
+        ajpf: result files of AJPF.
         limit: CPU seconds for each claim.
 
     Returns:
@@ -42,10 +42,10 @@ def verify(
         applicable` where neither `layers` nor the requirement's `verify` names the layer.
 
     Raises:
-        Refusal: a requirement has a mistake, or no monitor can express it.
+        Refusal: a requirement has an error, or no monitor can express it.
     """
     if has_errors(project.diagnostics):
-        raise Refusal(each for each in project.diagnostics if each.is_error)
+        raise Refusal(diagnostic for diagnostic in project.diagnostics if diagnostic.is_error)
     every = tuple(map(str, Layer))
     demanded = () if layers is None else _named("layer", layers, every)
     chosen_layers = demanded if layers is not None else every
@@ -53,7 +53,9 @@ def verify(
     if not project.formalized or not chosen_layers:
         raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is nothing to verify"),))
     if limit < 1:
-        raise Refusal((_bad(f"no proof ends in {limit} seconds", "give 1 or more"),))
+        raise Refusal(
+            (_bad(f"the time limit must be 1 second or more, and it is {limit}", "give 1 or more"),)
+        )
     results, remarks = ajpf_proofs(project.formalized, [os.fspath(path) for path in ajpf])
     if has_errors(remarks):
         raise Refusal(remarks)
@@ -76,7 +78,7 @@ def _named(what: str, choice: Iterable[str], names: tuple[str, ...]) -> tuple[st
     for name in chosen:
         if name not in names:
             raise Refusal(
-                (_bad(f"there is no {what} `{name}`", f"name some of {', '.join(names)}"),)
+                (_bad(f"unknown {what} `{name}`", f"name one or more of {', '.join(names)}"),)
             )
     return chosen
 

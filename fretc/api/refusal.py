@@ -1,4 +1,4 @@
-"""The one exception of the API: why something could not be done."""
+"""`Refusal`, the exception of the API."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-class Refusal(Exception):  # noqa: N818 - as its users speak of it
-    """The input is not what it must be.
+class Refusal(Exception):  # noqa: N818 - the public name has no suffix
+    """The input cannot be processed.
 
-    Its text has for each diagnostic the code, the place with a caret, and what to do.
+    The text of the exception has the code, the position and the help of each diagnostic.
     """
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
@@ -26,15 +26,15 @@ class Refusal(Exception):  # noqa: N818 - as its users speak of it
         super().__init__(self.diagnostics)
 
     def __str__(self) -> str:
-        """What the command would print."""
+        """The diagnostics, as the command line prints them."""
         return render_all(by_place(self.diagnostics))
 
 
 def accepted(value: R | Diagnostic) -> R:
-    """The value, where there is one.
+    """The value, unless it is a diagnostic.
 
     Raises:
-        Refusal: there is none.
+        Refusal: the value is a diagnostic.
     """
     if isinstance(value, Diagnostic):
         raise Refusal((value,))
@@ -42,7 +42,7 @@ def accepted(value: R | Diagnostic) -> R:
 
 
 def bounded(function: Callable[P, R]) -> Callable[P, R]:
-    """Let the function raise `Refusal` where its input costs too much to read, or is too deep."""
+    """Make the function raise `Refusal` if its input is too large or nested too deeply."""
 
     @functools.wraps(function)
     def refusing(*args: P.args, **kwargs: P.kwargs) -> R:
@@ -57,9 +57,9 @@ def bounded(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def too_deep() -> Diagnostic:
-    """An expression of more levels than Python can follow."""
+    """The refusal of an expression with more levels than Python's recursion limit allows."""
     return Diagnostic(
         Code.TOO_DEEP,
         "an expression has too many nested operators",
-        help="give parts of it names of their own",
+        help="define parts of the expression under separate names",
     )

@@ -1,4 +1,4 @@
-"""The traceability report."""
+"""`make_report` and its result, the traceability report."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ Path = str | os.PathLike[str]
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """Hazard, requirement, formula, artefact, run and verdict in one."""
+    """A traceability report: hazards, requirements, formulas, artefacts, runs and verdicts."""
 
     _build: ReportBuild
 
     @property
     def html(self) -> str:
-        """One page that works offline."""
+        """The report as one HTML page that works offline."""
         return self._build.html or ""
 
     @property
     def json(self) -> str:
-        """What it says, for programs."""
+        """The content of the report as JSON."""
         return self._build.json or ""
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What there is to say of evidence, proofs, reviews and waivers."""
+        """Diagnostics about evidence, proofs, reviews and waivers."""
         return self._build.diagnostics
 
 
@@ -53,17 +53,17 @@ def make_report(
     ajpf: Iterable[Path] = (),
     analysis: Path | None = None,
 ) -> Report:
-    """Make the report.
+    """Make the traceability report.
 
     Args:
         project: the requirements with their hazards.
-        evidence: the file; where there is none, nothing has been exercised.
-        verification: what `fretc verify` wrote; None: `build/verification.json`, if it is there.
-        lock: the reviews; None: `fretc.lock` beside the requirements, if it is there.
-        waivers: None: `waivers.toml` beside the requirements, if it is there.
-        signers: whose keys count; None: `allowed_signers` beside the requirements, if it is there.
-        ajpf: results of AJPF; none: each `build/*_ajpf/result.json`.
-        analysis: what `fretc analyze` wrote; None: `build/analysis.json`, if it is there.
+        evidence: the evidence file; if it does not exist, no requirement is exercised.
+        verification: the file of `fretc verify`; None: `build/verification.json`, if it exists.
+        lock: the reviews; None: `fretc.lock` in the folder of the requirements, if it exists.
+        waivers: None: `waivers.toml` in the folder of the requirements, if it exists.
+        signers: the trusted keys; None: `allowed_signers` in that folder, if it exists.
+        ajpf: result files of AJPF; if empty, each `build/*_ajpf/result.json`.
+        analysis: the file of `fretc analyze`; None: `build/analysis.json`, if it exists.
 
     Raises:
         Refusal: a file cannot be read, or there is no requirement.

@@ -1,4 +1,4 @@
-"""Requirements and bindings from files, one sentence from a text, and formulas as texts."""
+"""Read projects, formalize sentences, and print formulas."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ Path = str | os.PathLike[str]
 def read_project(
     requirements: Path = "requirements", bindings: Path | None = None, hazards: Path | None = None
 ) -> Project:
-    """Read a folder of requirements, or one file, with what stands beside it.
+    """Read a folder of requirements, or one file, with bindings and hazards.
 
-    A mistake in one requirement, or in a signal or a proposition that it reads, is no reason to
-    refuse the others: it is among the `diagnostics` of the project, and every function that would
-    need that requirement refuses it or says of it that nothing is shown.
+    An error in a requirement, or in a signal or a proposition that it reads, does not affect the
+    others. The `diagnostics` of the project report it. Functions that need that requirement refuse
+    it, or report that it is not shown.
 
     Args:
         requirements: the folder, or one `.fret` file.
@@ -51,18 +51,18 @@ def formalize(sentence: str, bindings: Path | None = None, id: str = "R1") -> Fo
     """Parse and formalize one sentence of FRETish.
 
     Args:
-        sentence: without a header.
-        bindings: a `bindings.toml`; None: a duration counts ticks, whatever its unit.
-        id: of the requirement.
+        sentence: the text of the sentence, without a header.
+        bindings: path of a `bindings.toml`; None: durations count ticks, whatever their unit.
+        id: the id of the requirement.
 
     Raises:
-        Refusal: the sentence is not FRETish, is free text, or the bindings have a mistake.
+        Refusal: the sentence is not FRETish, is free text, or the bindings have an error.
     """
     entry = RequirementEntry(id, Source("<sentence>", sentence.strip()).span())
     declarations = _declarations(bindings) if bindings is not None else None
     requirement, remarks = formalized(entry, declarations)
     if requirement is None or has_errors(remarks):
-        raise Refusal([each for each in remarks if each.is_error] or remarks)
+        raise Refusal([remark for remark in remarks if remark.is_error] or remarks)
     return requirement
 
 
@@ -73,7 +73,7 @@ def _path(path: Path | None) -> str | None:
 def _declarations(path: Path) -> Declarations:
     declarations, remarks = read_bindings(accepted(read(os.fspath(path))))
     if declarations is None or has_errors(remarks):
-        raise Refusal(each for each in remarks if each.is_error)
+        raise Refusal(remark for remark in remarks if remark.is_error)
     return declarations
 
 
@@ -82,13 +82,13 @@ class Formulas:
     """The formulas of one requirement in one notation."""
 
     infinite: str
-    """Future-time, on infinite traces."""
+    """Future-time formula on infinite traces."""
     finite: str
-    """Future-time, on finite traces, with `LAST`."""
+    """Future-time formula on finite traces, with `LAST`."""
     past: str | None
-    """Past-time, at the last tick; None: the notation has no past operators."""
+    """Past-time formula at the last tick; None if the notation has no past operators."""
     probabilistic: str | None
-    """PCTL*; None: the sentence gives no probability."""
+    """PCTL* formula; None if the sentence has no probability."""
     meaning: str
     """The sentence in plain English."""
 
@@ -101,7 +101,7 @@ def formulas(requirement: FormalizedRequirement, notation: str = "plain") -> For
         notation: `plain`, `fret`, `spot`, `nusmv` or `latex`.
 
     Raises:
-        Refusal: there is no such notation.
+        Refusal: the notation is unknown.
     """
     dialect = printing.DIALECTS.get(notation)
     if dialect is None:
@@ -118,6 +118,6 @@ def formulas(requirement: FormalizedRequirement, notation: str = "plain") -> For
 def _no_notation(notation: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
-        f"there is no notation `{notation}`",
+        f"unknown notation `{notation}`",
         help=f"name one of {', '.join(printing.DIALECTS)}",
     )

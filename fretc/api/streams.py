@@ -1,4 +1,4 @@
-"""Requirements judged tick by tick, from the raw samples of a robot that runs."""
+"""Requirements judged tick by tick, from raw samples of a running robot."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ class Tick:
     """One tick of the declared clock."""
 
     number: int
-    """From 0 on."""
+    """Index of the tick, from 0."""
     time_ns: int
     truth: Mapping[str, Truth]
-    """Of each proposition; None is unknown."""
+    """Proposition → its value at the tick; None if unknown."""
     standings: tuple[Standing, ...]
-    """What would be said of each requirement if the trace ended here."""
+    """The verdict of each requirement if the trace ended here."""
 
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """What an audit says of the same samples."""
+    """The end of a stream: the same verdicts as an audit of the same samples."""
 
     ticks: tuple[Tick, ...]
-    """Those that were left."""
+    """The last ticks."""
     verdicts: Mapping[str, str]
-    """Of each requirement: satisfied, violated, inconclusive, vacuous or no data."""
+    """Requirement id → satisfied, violated, inconclusive, vacuous or no data."""
 
 
 class Stream:
-    """The requirements of a project, judged while samples come.
+    """Judges the requirements of a project while samples arrive.
 
     Ticks and verdicts are those of an audit of a log with the same samples, computed by the same
     functions. Times are nanoseconds of the clock that the bindings declare.
@@ -54,7 +54,7 @@ class Stream:
         """Judge every requirement in force.
 
         Raises:
-            Refusal: one of them cannot be judged, or has a probability: no single run shows that.
+            Refusal: a requirement cannot be judged, or has a probability, which needs many runs.
         """
         plan = _plan(project)
         self._plan, self._declared = plan, project.declarations
@@ -62,17 +62,18 @@ class Stream:
         self._truths = Truths(plan.declarations, self._monitors.propositions)
 
     def add(self, signal: str, time_ns: int, value: object) -> None:
-        """One sample of a signal.
+        """Add one sample of a signal.
 
-        What its field holds is given, in the unit of the field: a number, or a word; for a path
-        with `[:]` or an index, the whole array; None where it is unknown. The signal's `values`,
-        `valid`, `invalid` and `reduce` say what that means. A sample of a signal that no
-        requirement reads is passed by.
+        `value` is the raw content of the field, in its unit: a number or a word, or the whole array
+        for a path with `[:]` or an index; None if unknown. The signal's `values`, `valid`,
+        `invalid` and `reduce` are applied to it. A sample of a signal that no requirement reads is
+        ignored.
 
         Raises:
-            Refusal: there is no such signal, the value is no number and no word, it needs other
-                fields of its message (then use `add_message`), or it comes late. The stream is as
-                it was.
+            Refusal: the signal is unknown, the value is neither a number nor a word, the signal
+            needs
+                other fields of its message (then use `add_message`), or the sample is late. The
+                stream does not change.
         """
         if self._signal(signal) is not None:
             error = self._truths.add(signal, index(time_ns), value)
@@ -80,14 +81,14 @@ class Stream:
                 raise Refusal((error,))
 
     def add_message(self, topic: str, time_ns: int, message: object) -> None:
-        """One message: a sample of each signal that reads its topic.
+        """Add one message: a sample of each signal of its topic.
 
         The message is a mapping of its fields, or an object that has them as attributes. A message
-        of a topic that no requirement reads is passed by.
+        of a topic that no requirement reads is ignored.
 
         Raises:
-            Refusal: a field is missing, is no number, or the message comes late. The stream is as
-                it was.
+            Refusal: a field is missing or not a number, or the message is late. The stream does not
+                change.
         """
         error = self._truths.message(topic, index(time_ns), message)
         if error is not None:
@@ -95,19 +96,19 @@ class Stream:
 
     @property
     def findings(self) -> tuple[Diagnostic, ...]:
-        """About samples that are unknown: none of the values of their signal, or no truth value."""
+        """Diagnostics about samples that count as unknown, because their value is not allowed."""
         return self._truths.findings
 
     @property
     def waiting(self) -> tuple[str, ...]:
-        """The topics that have to begin before the first tick can be placed."""
+        """The topics without a message, for which the first tick waits."""
         return self._truths.waiting
 
     def until(self, time_ns: int) -> tuple[Tick, ...]:
-        """Let time pass: nothing from before `time_ns` comes any more.
+        """Let time pass: no sample from before `time_ns` follows.
 
         Returns:
-            The ticks before that time that are new.
+            The new ticks before that time.
 
         Raises:
             Refusal: a million ticks or more would pass at once, or the stream has ended.
@@ -115,17 +116,17 @@ class Stream:
         return tuple(map(self._step, accepted(self._truths.until(index(time_ns)))))
 
     def end(self) -> End:
-        """End the stream at its last sample, or at the time that has passed if that is later.
+        """End the stream at its last sample, or at the time of `until` if that is later.
 
         Raises:
-            Refusal: it has ended already.
+            Refusal: the stream has ended already.
         """
         last = accepted(self._truths.end())
         ticks = tuple(map(self._step, last.ticks))
         return End(ticks, self._monitors.verdicts(last.cut, intact=True))
 
     def _signal(self, name: str) -> Signal | None:
-        """The signal, if a requirement reads it."""
+        """The declared signal, or None if no requirement reads it."""
         assert self._declared is not None, "a plan has bindings"
         if name not in self._declared.signal_names:
             raise Refusal((_no_signal(name, self._declared.signal_names),))

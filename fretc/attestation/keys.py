@@ -1,7 +1,6 @@
-"""Keys, and the DSSE envelopes that they sign and verify.
+"""SSH keys, and the DSSE envelopes that they sign and verify.
 
-Both stand here because this is the only module that imports securesystemslib and cryptography,
-which an extra installs.
+This is the only module that imports securesystemslib and cryptography, which an extra installs.
 
 Sources: DSSE 1.0, https://github.com/secure-systems-lab/dsse; public keys of SSH: RFC 4253,
 section 6.6, and RFC 8709.
@@ -46,14 +45,14 @@ KEY_TYPES = (
 )
 """The accepted types, as the first word of an OpenSSH public key names them.
 
-Keys in a security token (`sk-...`) are missing: what these sign is never the bytes alone.
+Keys in a security token (`sk-...`) are not supported, because they do not sign the bytes alone.
 """
 _RSA_MIN_BITS, _RSA_MAX_BITS = 2048, 16384
-"""NIST SP 800-131A forbids signatures by shorter keys; OpenSSH makes no longer ones."""
+"""NIST SP 800-131A forbids shorter keys; OpenSSH does not generate longer ones."""
 
 
 class UnusableKeyError(ValueError):
-    """A key cannot be used; the text says why."""
+    """A key cannot be used; the text is the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +60,7 @@ class PublicKey:
     """A key that verifies signatures."""
 
     fingerprint: str
-    """`SHA256:...`, as `ssh-keygen -l` prints it; envelopes name the key by it."""
+    """`SHA256:...`, as `ssh-keygen -l` prints it; the id of the key in envelopes."""
     bits: int
     kind: str
     """`ED25519`, `ECDSA` or `RSA`, as `ssh-keygen -l` prints it; not one of `KEY_TYPES`."""
@@ -83,13 +82,13 @@ class PrivateKey:
 
 @dataclass(frozen=True, slots=True)
 class DsseEnvelope:
-    """A payload and its signatures, none of which has been verified yet."""
+    """A payload with unverified signatures."""
 
     payload: bytes
     key_ids: tuple[str, ...]
-    """The key that each signature says it is of, by its fingerprint: a claim, and no proof."""
+    """Fingerprint of the key that each signature names, which is not verified."""
     library_envelope: Envelope = field(compare=False, repr=False)
-    """The same for securesystemslib, which verifies it."""
+    """The envelope as securesystemslib represents it."""
 
     def is_signed_by(self, key: PublicKey) -> bool:
         """Whether the key verifies one of the signatures of the payload."""
@@ -104,15 +103,17 @@ class DsseEnvelope:
 
 
 def public_key(text: str) -> PublicKey:
-    """The public key in a text in the format of OpenSSH or in PEM.
+    """The public key in a text in OpenSSH or PEM format.
 
     Raises:
-        UnusableKeyError: the text is no public key, or one of a kind that is not accepted.
+        UnusableKeyError: the text is not a public key of a supported type.
     """
     words = text.split()
     is_pem = text.lstrip().startswith("-----BEGIN ")
     if not is_pem and (not words or words[0] not in KEY_TYPES):
-        raise UnusableKeyError(f"it is no public key of {', '.join(f'`{t}`' for t in KEY_TYPES)}")
+        raise UnusableKeyError(
+            f"it is not a public key of type {', '.join(f'`{t}`' for t in KEY_TYPES)}"
+        )
     try:
         load = load_pem_public_key if is_pem else load_ssh_public_key
         return _public_key(load(text.strip().encode()))
@@ -121,18 +122,18 @@ def public_key(text: str) -> PublicKey:
 
 
 def private_key(data: bytes, passphrase: Callable[[], str]) -> PrivateKey:
-    """The private key in a file in the format of OpenSSH or in PEM.
+    """The private key in a file in OpenSSH or PEM format.
 
     Args:
         data: the content of the file.
-        passphrase: asks the user for the passphrase; called only where the key has one.
+        passphrase: asks the user for the passphrase; called only if the key has one.
 
     Raises:
-        UnusableKeyError: the file is no private key, or one of a kind that is not accepted, or the
-            passphrase is wrong.
+        UnusableKeyError: the file is not a private key of a supported type, or the passphrase is
+        wrong.
     """
     if not data.lstrip().startswith(b"-----BEGIN ") or b"PRIVATE KEY-----" not in data:
-        raise UnusableKeyError("it is no private key")
+        raise UnusableKeyError("it is not a private key")
     try:
         key = _library_key(data, passphrase)
         public = _public_key(key.public_key())
@@ -142,18 +143,18 @@ def private_key(data: bytes, passphrase: Callable[[], str]) -> PrivateKey:
 
 
 def _library_key(data: bytes, passphrase: Callable[[], str]) -> PrivateKeyTypes:
-    """The private key as cryptography has it, decrypted where it is encrypted."""
+    """The decrypted private key, as an object of the library cryptography."""
     load = load_ssh_private_key if b"OPENSSH" in data.split(b"\n", 1)[0] else load_pem_private_key
     try:
         return load(data, None)
-    except TypeError:  # both functions raise it where an encrypted key comes without a passphrase
+    except TypeError:  # Both functions raise it for an encrypted key without a passphrase.
         secret = passphrase().encode()
     try:
         return load(data, secret)
     except (ValueError, TypeError, UnsupportedAlgorithm) as error:
-        # The message of another error says nothing beyond "wrong or damaged".
+        # Other errors have no further information.
         why = f": {_why(error)}" if isinstance(error, UnsupportedAlgorithm) else ""
-        raise UnusableKeyError(f"its passphrase is another one, or it is damaged{why}") from None
+        raise UnusableKeyError(f"the passphrase is wrong, or the file is damaged{why}") from None
 
 
 def _public_key(key: PublicKeyTypes) -> PublicKey:
@@ -166,7 +167,7 @@ def _public_key(key: PublicKeyTypes) -> PublicKey:
 
 
 def _bits_and_kind(key: PublicKeyTypes) -> tuple[int, str]:
-    """Both as `ssh-keygen -l` prints them.
+    """Length and type of a key, as `ssh-keygen -l` prints them.
 
     Raises:
         UnusableKeyError: the key is too short, too long, or of another kind.
@@ -180,15 +181,15 @@ def _bits_and_kind(key: PublicKeyTypes) -> tuple[int, str]:
             return key.key_size, "RSA"
         case RSAPublicKey():
             raise UnusableKeyError(
-                f"an RSA key has {_RSA_MIN_BITS} bits at least, {_RSA_MAX_BITS} at most"
+                f"an RSA key has {_RSA_MIN_BITS} bits or more, up to {_RSA_MAX_BITS}"
             )
         case _:
-            raise UnusableKeyError("only Ed25519, ECDSA and RSA keys are taken")
+            raise UnusableKeyError("only Ed25519, ECDSA and RSA keys are supported")
 
 
 def _why(error: Exception) -> str:
-    """The message of an error, without a capital and a full stop, for the end of a sentence."""
-    if isinstance(error, UnusableKeyError):  # it is a ValueError, and has our own words
+    """The message of an error, for the end of a sentence."""
+    if isinstance(error, UnusableKeyError):  # This ValueError has a message of fretc.
         return str(error)
     message = str(error).strip().rstrip(".") or type(error).__name__
     return f"{message[:1].lower()}{message[1:]}"
@@ -198,20 +199,20 @@ def _why(error: Exception) -> str:
 
 
 def signed_envelope(payload: bytes, key: PrivateKey) -> str:
-    """The payload in an envelope with one signature, on one line of JSON."""
+    """An envelope with the payload and one signature, as one line of JSON."""
     envelope = Envelope(payload, PAYLOAD_TYPE, {})
     envelope.sign(key.signer)
     return json.dumps(envelope.to_dict(), sort_keys=True)
 
 
 def read_envelope(line: str) -> DsseEnvelope:
-    """An envelope from its JSON. Its form is checked, its signatures are not.
+    """The envelope in a line of JSON. Its structure is checked, its signatures are not.
 
-    The form is stricter than DSSE's: the payload type is `PAYLOAD_TYPE`, every signature names its
-    key, no two name the same, and nothing else stands in the envelope.
+    The checks are stricter than DSSE: the payload type is `PAYLOAD_TYPE`, each signature names its
+    key, no two signatures name the same key, and there are no other fields.
 
     Raises:
-        SchemaError: the JSON has another form.
+        SchemaError: the JSON has another structure.
     """
     shape = JsonValue(plain(line))
     shape.only("payload", "payloadType", "signatures")
@@ -231,10 +232,10 @@ def read_envelope(line: str) -> DsseEnvelope:
 
 
 def _bytes(value: JsonValue) -> bytes:
-    """The bytes that a value has in base64.
+    """Decode a base64 string.
 
-    Base64 has several texts for some bytes. Only the canonical one is read, so that a payload or a
-    signature cannot be written in another way and still verify.
+    Only the canonical encoding is accepted, so that a payload or signature has exactly one valid
+    text.
     """
     text = value.text()
     try:

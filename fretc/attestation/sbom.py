@@ -1,4 +1,4 @@
-"""What the installed fretc consists of: a software bill of materials in CycloneDX 1.6.
+"""Software bill of materials of the installed fretc, in CycloneDX 1.6.
 
 The only module that imports cyclonedx, which an extra installs.
 
@@ -26,20 +26,20 @@ TOOL = "fretc"
 _OF_DEVELOPERS = ("dev", "peers")
 """Extras that no command needs."""
 _SHORT = 64
-"""Characters: a longer licence is the text of one, not its name."""
+"""Maximum characters of the name of a licence; a longer text is the licence itself."""
 
 Name = tuple[str, frozenset[str]]
-"""A distribution and the extras of it that are asked for."""
+"""A distribution and its requested extras."""
 
 
 def missing() -> Diagnostic | None:
-    """F908, where what makes it is not installed."""
+    """F908 if the library for bills of materials is not installed."""
     packages = ["cyclonedx", "packageurl", "packaging"]
     return unless_installed("a bill of materials needs", packages, "sbom")
 
 
 def sbom(root: str = TOOL) -> str:
-    """The bill of a distribution and of all that it needs and that is installed, as JSON."""
+    """The bill of materials of a distribution and its installed dependencies, as JSON."""
     from cyclonedx.output.json import JsonV1Dot6
 
     return f"{JsonV1Dot6(_bom(root)).output_as_string(indent=2)}\n"
@@ -65,9 +65,9 @@ def _bom(root: str) -> Bom:
 
 
 def closure(root: str = TOOL) -> Mapping[str, tuple[str, ...]]:
-    """Each distribution that is needed and installed → those that it needs itself, sorted.
+    """Installed dependency → its own installed dependencies, sorted.
 
-    What an extra of the root needs counts where all of it is installed.
+    An extra of the root counts if all its dependencies are installed.
     """
     needs: dict[str, set[str]] = {}
     waiting: list[Name] = [(_canonical(root), frozenset(_installed_extras(root)))]
@@ -77,7 +77,7 @@ def closure(root: str = TOOL) -> Mapping[str, tuple[str, ...]]:
         if one in visited:
             continue
         visited.add(one)
-        needed = [each for each in _needed(name, extras) if _is_installed(each)]
+        needed = [dependency for dependency in _needed(name, extras) if _is_installed(dependency)]
         needs.setdefault(name, set()).update(map(_name, needed))
         waiting.extend((_name(each), frozenset(each.extras)) for each in needed)
     return {name: tuple(sorted(needs[name] - {name})) for name in sorted(needs)}
@@ -86,13 +86,13 @@ def closure(root: str = TOOL) -> Mapping[str, tuple[str, ...]]:
 def _installed_extras(root: str) -> Iterator[str]:
     always = {*_needed(root, [])}
     for extra in distribution(root).metadata.get_all("Provides-Extra", []):
-        mine = [each for each in _needed(root, [extra]) if each not in always]
+        mine = [dependency for dependency in _needed(root, [extra]) if dependency not in always]
         if extra not in _OF_DEVELOPERS and all(map(_is_installed, mine)):
             yield extra
 
 
 def _needed(name: str, extras: Iterable[str]) -> Iterator[Requirement]:
-    """What a distribution needs here, with these extras."""
+    """The dependencies of a distribution in this environment, with these extras."""
     from packaging.requirements import Requirement
 
     contexts = ("", *extras)
@@ -134,10 +134,14 @@ def _component(one: Distribution) -> Component:
 
 
 def _licences(one: Distribution) -> list[str]:
-    """As the distribution names them: an expression, else a name, else its classifiers."""
+    """The licences of a distribution, from its expression, its name, or its classifiers."""
     for field in ("License-Expression", "License"):
         text = (one.metadata[field] or "").strip() if field in one.metadata else ""
         if text and text != "UNKNOWN" and len(text) <= _SHORT and "\n" not in text:
             return [text]
     classifiers = one.metadata.get_all("Classifier", [])
-    return [each.rpartition(" :: ")[2] for each in classifiers if each.startswith("License :: ")]
+    return [
+        classifier.rpartition(" :: ")[2]
+        for classifier in classifiers
+        if classifier.startswith("License :: ")
+    ]

@@ -1,7 +1,7 @@
-"""Signatures beside a file (`FILE.intoto.jsonl`), compared with the keys that count.
+"""Signatures of a file (`FILE.intoto.jsonl`), checked against the trusted signers.
 
-Each line is an envelope. Nothing in it counts before a signature of it verifies; what an envelope
-says of itself (its payload, the name of its key) only explains why it does not count.
+Each line is an envelope. Its content is used only after a signature verifies. The payload and key
+name of an unverified envelope only serve to explain why it is rejected.
 
 Source: in-toto Attestation Framework, Bundle, https://github.com/in-toto/attestation.
 """
@@ -31,12 +31,12 @@ if TYPE_CHECKING:
 
 SUFFIX = ".intoto.jsonl"
 SIGNERS = "allowed_signers"
-"""Whose keys count, in the folder of the requirements."""
+"""Name of the list of trusted signers, in the folder of the requirements."""
 
 
 @dataclass(frozen=True, slots=True)
 class Envelope:
-    """A line of the file: a DSSE envelope, and the statement that is its payload."""
+    """A line of the file: a DSSE envelope and the statement in its payload."""
 
     dsse: DsseEnvelope
     statement: Statement
@@ -44,17 +44,17 @@ class Envelope:
 
     @property
     def text(self) -> str:
-        """The line."""
+        """The envelope as a line of the file."""
         return self.place.text
 
 
 def beside(path: str) -> str:
-    """Where the signatures of a file are."""
+    """Path of the signatures of a file."""
     return f"{path}{SUFFIX}"
 
 
 def read(path: str) -> tuple[Envelope, ...] | Diagnostic:
-    """The envelopes beside a file, none where there are no signatures; or what is wrong (F556)."""
+    """The envelopes of a file, empty if it is not signed; or F556."""
     source = read_text(beside(path))
     if isinstance(source, Diagnostic):
         return () if source.code is Code.NO_SUCH_FILE else source
@@ -75,12 +75,12 @@ def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
             dsse = read_envelope(line)
             envelopes.append(Envelope(dsse, read_statement(dsse.payload), place))
         except SchemaError as error:
-            return _wrong(place, f"the line is no signed statement of fretc: {error}")
+            return _wrong(place, f"the line is not a signed statement of fretc: {error}")
     return tuple(envelopes)
 
 
 def envelope(line: str) -> Envelope:
-    """The envelope of a new line."""
+    """The envelope in a new line."""
     from fretc.attestation.keys import read_envelope
 
     dsse = read_envelope(line)
@@ -92,31 +92,34 @@ def _wrong(place: Span, what: str) -> Diagnostic:
         Code.BAD_SIGNATURES,
         what,
         place.part(0, 0),
-        help="take the file from your repository again, or remove it and sign anew: `fretc sign`",
+        help="restore the file from version control, or delete it and sign again: `fretc sign`",
     )
 
 
 def appended(envelopes: Sequence[Envelope], new: Envelope, current: frozenset[Subject]) -> str:
-    """The file with one envelope more.
+    """The text of the signature file with a new envelope added.
 
     Args:
-        envelopes: of the file. The new one replaces one of the same key about nothing else; one
-            about nothing that is still there is left out.
-        new: one more.
-        current: everything that can be signed now.
+        envelopes: the present ones, without those that `kept` removes.
+        new: the new envelope.
+        current: all subjects that can be signed now.
     """
-    return "".join(f"{one.text}\n" for one in (*kept(envelopes, new, current), new))
+    return "".join(f"{item.text}\n" for item in (*kept(envelopes, new, current), new))
 
 
 def kept(
     envelopes: Sequence[Envelope], new: Envelope, current: frozenset[Subject]
 ) -> tuple[Envelope, ...]:
-    """The envelopes that stay beside a new one."""
+    """The envelopes to keep when a new one is added.
+
+    Removed are envelopes without a current subject, and envelopes of the same key whose current
+    subjects the new envelope covers.
+    """
     return tuple(
-        one
-        for one in envelopes
-        if (about := one.statement.main & current)
-        and not (one.dsse.key_ids == new.dsse.key_ids and about <= new.statement.main)
+        entry
+        for entry in envelopes
+        if (about := entry.statement.main & current)
+        and not (entry.dsse.key_ids == new.dsse.key_ids and about <= new.statement.main)
     )
 
 
@@ -124,7 +127,7 @@ def kept(
 
 
 class State(StrEnum):
-    """What is known of who signed a thing."""
+    """The state of the signature of an item."""
 
     SIGNED = "signed"
     ANOTHER = "signed by another"
@@ -135,20 +138,20 @@ class State(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Signing:
-    """Who signed a thing, in words."""
+    """The state of a signature, with an explanation."""
 
     state: State
     text: str
 
     @property
     def is_good(self) -> bool:
-        """Whether the required signer has signed it."""
+        """Whether the required signer has signed the item."""
         return self.state is State.SIGNED
 
 
 @dataclass(frozen=True, slots=True)
 class _CheckedEnvelope:
-    """An envelope, the signers of whom a signature verifies, and those of whom none does."""
+    """An envelope, its signers with a valid signature, and its signers with only invalid ones."""
 
     envelope: Envelope
     subjects: frozenset[Subject]
@@ -158,42 +161,44 @@ class _CheckedEnvelope:
 
 @dataclass(frozen=True, slots=True)
 class SignatureBook:
-    """All signatures of a project, checked against the signers."""
+    """All signatures of a project, checked against the trusted signers."""
 
     signers: Signers | None
-    """None: there is no list, and no key counts."""
+    """The trusted signers; None if there is no list, so that no signature is valid."""
     envelopes: tuple[_CheckedEnvelope, ...] = ()
 
     def of(self, subject: Subject, name: str | None = None) -> Signing:
-        """Who signed exactly this.
+        """The signature of a subject.
 
         Args:
-            subject: what it is now.
-            name: the required signer; None: any of the signers.
+            subject: the item with its present content.
+            name: the required signer; None: any trusted signer.
         """
-        about = [one for one in self.envelopes if subject in one.subjects]
+        about = [entry for entry in self.envelopes if subject in entry.subjects]
         return self._of(about, subject, name)
 
     def of_file(self, kind: str, sha256: str) -> Signing:
-        """Who signed a file of this content, whatever it is called."""
-        about = [one for one in self.envelopes if _has(one, kind, sha256)]
+        """The signature of a file with this content, under any name."""
+        about = [entry for entry in self.envelopes if _has(entry, kind, sha256)]
         return self._of(about, Subject(kind, "", sha256), None)
 
     def agreed(self, evidence: EvidenceSource) -> Signing:
-        """Who signed evidence with a statement that says the same as the file."""
+        """The signature of evidence, only from statements that agree with the file."""
         now = attestation.evidence(evidence, None)
-        agreeing = [one for one in self.envelopes if _agrees(one.envelope.statement, now)]
+        agreeing = [entry for entry in self.envelopes if _agrees(entry.envelope.statement, now)]
         signing = self.of_file(attestation.EVIDENCE, evidence.sha256)
         if not signing.is_good:
             return signing
-        if not any(one.by for one in agreeing):
-            return Signing(State.CHANGED, "the statement that was signed says something else")
+        if not any(entry.by for entry in agreeing):
+            return Signing(
+                State.CHANGED, "the signed statement differs from what the file contains"
+            )
         return SignatureBook(self.signers, tuple(agreeing)).of_file(
             attestation.EVIDENCE, evidence.sha256
         )
 
     def _of(self, about: Sequence[_CheckedEnvelope], subject: Subject, name: str | None) -> Signing:
-        by = list(dict.fromkeys(signer for one in about for signer in one.by))
+        by = list(dict.fromkeys(signer for entry in about for signer in entry.by))
         good = [signer for signer in by if name is None or signer.goes_by(name)]
         if good:
             return Signing(State.SIGNED, f"signed by {_names(good)}")
@@ -202,7 +207,10 @@ class SignatureBook:
         if about:
             return Signing(State.UNKNOWN, self._unknown(about))
         before = [
-            signer for one in self.envelopes if _has_another(one, subject) for signer in one.by
+            signer
+            for entry in self.envelopes
+            if _has_another(entry, subject)
+            for signer in entry.by
         ]
         if before:
             names = _names(dict.fromkeys(before))
@@ -210,25 +218,25 @@ class SignatureBook:
         return Signing(State.NONE, "nobody signed it")
 
     def _unknown(self, about: Sequence[_CheckedEnvelope]) -> str:
-        keys = dict.fromkeys(key for one in about for key in one.envelope.dsse.key_ids)
-        names = {signer.key.fingerprint for one in about for signer in one.broken}
+        keys = dict.fromkeys(key for entry in about for key in entry.envelope.dsse.key_ids)
+        names = {signer.key.fingerprint for entry in about for signer in entry.broken}
         unknown_keys = ", ".join(key for key in keys if key not in names)
         if not unknown_keys:
             return "its signature does not verify"
         if self.signers is None:
-            return f"there is a signature ({unknown_keys}), and no list of signers"
-        return f"there is a signature with a key that is not among the signers ({unknown_keys})"
+            return f"there is a signature ({unknown_keys}), but there is no list of signers"
+        return f"there is a signature, but its key is not in the list of signers ({unknown_keys})"
 
     def diagnostics(self) -> Iterator[Diagnostic]:
-        """F557 for each signature that does not verify, and what is wrong with the signers."""
+        """F557 for each signature that does not verify, and diagnostics about the signers."""
         yield from self.signers.remarks if self.signers else ()
-        for one in self.envelopes:
-            for signer in one.broken:
-                yield _broken(one.envelope, signer)
+        for entry in self.envelopes:
+            for signer in entry.broken:
+                yield _broken(entry.envelope, signer)
 
 
 def _agrees(signed: Statement, now: Statement) -> bool:
-    """Whether a signed statement equals the present one, but for the proofs."""
+    """Whether a signed statement equals the present one, except for proofs."""
     says = {**signed.says, "proofs": now.says["proofs"]}
     return signed.of(attestation.LOG) == now.of(attestation.LOG) and says == now.says
 
@@ -237,13 +245,13 @@ NO_SIGNATURES = SignatureBook(None)
 
 
 def _has(one: _CheckedEnvelope, kind: str, sha256: str) -> bool:
-    return any((each.kind, each.sha256) == (kind, sha256) for each in one.subjects)
+    return any((subject.kind, subject.sha256) == (kind, sha256) for subject in one.subjects)
 
 
 def _has_another(one: _CheckedEnvelope, subject: Subject) -> bool:
-    """Whether the envelope is about an earlier content of it; of a file, the kind is enough."""
+    """Whether the envelope covers an earlier content of the subject (for a file: of its kind)."""
     return any(
-        each.kind == subject.kind and subject.name in ("", each.name) for each in one.subjects
+        item.kind == subject.kind and subject.name in ("", item.name) for item in one.subjects
     )
 
 
@@ -254,23 +262,25 @@ def _names(signers: Iterable[Signer]) -> str:
 def _broken(envelope: Envelope, signer: Signer) -> Diagnostic:
     return Diagnostic(
         Code.BROKEN_SIGNATURE,
-        f"the signature of {signer.name} does not verify: it, or what was signed, is not as it was",
+        f"the signature of {signer.name} does not verify: the signature or the signed content "
+        "has changed",
         envelope.place.part(0, 0),
-        help="ask the signer, and sign anew what is right; somebody may have forged this",
+        help="ask the signer whether the content is right, then sign it again; the signature "
+        "may be forged",
     )
 
 
 def missing() -> Diagnostic | None:
-    """F908, where what is needed for signatures is not installed."""
+    """F908 if the libraries for signatures are not installed."""
     return unless_installed("signatures need", ["securesystemslib", "cryptography"], "sign")
 
 
 def read_signatures(files: Sequence[str], signers: str | None) -> SignatureBook | Diagnostic:
-    """The signatures beside files, checked against a list of signers.
+    """The signatures of files, checked against a list of signers.
 
     Args:
-        files: that may have been signed.
-        signers: path of the list; None: there is none.
+        files: paths of files that may be signed.
+        signers: path of the list; None if there is none.
     """
     if signers is None and not any(Path(beside(path)).exists() for path in files):
         return SignatureBook(None)
@@ -284,18 +294,18 @@ def read_signatures(files: Sequence[str], signers: str | None) -> SignatureBook 
 
 
 def book(files: Sequence[str], signers: Signers | None) -> SignatureBook | Diagnostic:
-    """The signatures beside files, checked."""
+    """The signatures of files, checked against trusted signers."""
     checked: list[_CheckedEnvelope] = []
     for path in files:
         envelopes = read(path)
         if isinstance(envelopes, Diagnostic):
             return envelopes
-        checked.extend(_checked(one, signers.signers if signers else ()) for one in envelopes)
+        checked.extend(_checked(entry, signers.signers if signers else ()) for entry in envelopes)
     return SignatureBook(signers, tuple(checked))
 
 
 def _checked(envelope: Envelope, signers: Sequence[Signer]) -> _CheckedEnvelope:
-    named = [one for one in signers if one.key.fingerprint in envelope.dsse.key_ids]
-    good = tuple(one for one in named if envelope.dsse.is_signed_by(one.key))
-    bad = tuple(one for one in named if one not in good)
+    named = [signer for signer in signers if signer.key.fingerprint in envelope.dsse.key_ids]
+    good = tuple(path for path in named if envelope.dsse.is_signed_by(path.key))
+    bad = tuple(path for path in named if path not in good)
     return _CheckedEnvelope(envelope, frozenset(envelope.statement.subjects), good, bad)

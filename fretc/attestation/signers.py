@@ -1,4 +1,4 @@
-"""`allowed_signers`: whose keys count, in the form that `ssh-keygen -Y verify` and git read.
+"""`allowed_signers`: the list of trusted keys, in the format of `ssh-keygen -Y verify` and git.
 
 Source: ssh-keygen(1), ALLOWED SIGNERS.
 """
@@ -18,7 +18,7 @@ from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import with_budget
 
 NAMESPACE = "fretc"
-"""A line with `namespaces="..."` counts where this is one of them."""
+"""A line with `namespaces="..."` is used only if it includes this namespace."""
 _LINE = re.compile(
     r"""(?:"(?P<quoted>[^"\n]+)"|(?P<plain>[^\s"]+))[ \t]+
         (?:(?P<options>(?:[^\s"]|"[^"\n]*")+)[ \t]+)?
@@ -33,17 +33,17 @@ class Signer:
     """A key, and the names of its holders."""
 
     principals: tuple[str, ...]
-    """Names; `*` and `?` stand for any characters, and `!` begins one that is not meant."""
+    """Names of the holders; `*` and `?` are wildcards, and `!` excludes a name."""
     key: PublicKey
 
     @property
     def name(self) -> str:
-        """The name and the key, for a person."""
+        """Name and key for a reader."""
         named = ", ".join(self.principals)
         return f"{named} ({self.key.fingerprint})" if named else self.key.fingerprint
 
     def goes_by(self, name: str) -> bool:
-        """Whether a person of that name has the key."""
+        """Whether the key belongs to a person of that name."""
         denied = any(_fits(name, p[1:]) for p in self.principals if p.startswith("!"))
         return not denied and any(_fits(name, p) for p in self.principals)
 
@@ -54,17 +54,17 @@ def _fits(name: str, pattern: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Signers:
-    """A whole file."""
+    """The content of a list of signers."""
 
     file: str
     sha256: str
     signers: tuple[Signer, ...]
     remarks: tuple[Diagnostic, ...] = ()
-    """About lines that do not count."""
+    """Diagnostics about ignored lines."""
 
 
 def read(path: str) -> Signers | Diagnostic:
-    """The signers of a file, or what is wrong with it (F548)."""
+    """The signers in a file, or F548."""
     source = read_text(path)
     if isinstance(source, Diagnostic):
         return source
@@ -72,7 +72,7 @@ def read(path: str) -> Signers | Diagnostic:
 
 
 def trusted(path: str) -> Signers | Diagnostic:
-    """The one public key of a file, in OpenSSH's form or in PEM; or the signers of it."""
+    """The signers in a file: a single public key (OpenSSH or PEM), or a list of signers."""
     source = read_text(path)
     if isinstance(source, Diagnostic):
         return source
@@ -87,7 +87,7 @@ def trusted(path: str) -> Signers | Diagnostic:
 
 
 def bad_key(path: str, error: UnusableKeyError) -> Diagnostic:
-    """F931."""
+    """F931: the key in the file cannot be used."""
     return Diagnostic(
         Code.BAD_KEY,
         f"the key in `{path}` cannot be used: {error}",
@@ -112,7 +112,7 @@ def _read(source: Source) -> Signers | Diagnostic:
 
 
 def _lines(source: Source) -> Iterator[Span]:
-    """Those that say something."""
+    """The lines of a file that are neither empty nor comments."""
     start = 0
     for text in source.text.split("\n"):
         line = text.rstrip()
@@ -122,20 +122,20 @@ def _lines(source: Source) -> Iterator[Span]:
 
 
 def _signer(line: Span) -> Signer | Diagnostic | None:
-    """None where the key is for something else."""
+    """The signer in a line; None if the key is for another purpose."""
     match = _LINE.fullmatch(line.text)
     if match is None:
         return _wrong(line, "the line is not `NAME KEY-TYPE KEY`")
     options = list(_OPTION.finditer(match["options"] or ""))
     if "".join(option[0] for option in options) != (match["options"] or ""):
-        return _wrong(line, f"`{match['options']}` are no options")
+        return _wrong(line, f"`{match['options']}` are not valid options")
     for option in options:
         if option["name"].lower() != "namespaces":
             return _unused(line, f"fretc does not know `{option['name']}`")
         if not _is_for_us(option["value"] or ""):
             return None
     if match["type"] not in KEY_TYPES:
-        return _unused(line, f"fretc does not take `{match['type']}`")
+        return _unused(line, f"fretc does not support keys of type `{match['type']}`")
     try:
         key = public_key(f"{match['type']} {match['key']}")
     except UnusableKeyError as error:
@@ -148,14 +148,14 @@ def _is_for_us(namespaces: str) -> bool:
 
 
 def _wrong(line: Span, what: str) -> Diagnostic:
-    fix = "write `name@example.org ssh-ed25519 AAAA...`, as ssh-keygen(1) says of ALLOWED SIGNERS"
+    fix = "write `name@example.org ssh-ed25519 AAAA...`, see ALLOWED SIGNERS in ssh-keygen(1)"
     return Diagnostic(Code.BAD_SIGNERS, what, line, help=fix)
 
 
 def _unused(line: Span, why: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_SIGNERS,
-        f"the key of this line does not count: {why}",
+        f"the key of this line is ignored: {why}",
         line,
         help=f"name a key of {', '.join(f'`{each}`' for each in KEY_TYPES)}, without options or "
         f'with `namespaces="{NAMESPACE}"`',

@@ -1,7 +1,8 @@
-"""A statement to be signed: things with their SHA-256, and what it says of them.
+"""Statements to be signed: subjects with their SHA-256, and claims about them.
 
-A statement of evidence names the evidence, its logs and proofs, and repeats what they say; one of
-reviews or waivers names each of them by itself, so that a later one leaves the others signed.
+A statement about evidence names the evidence, its logs and proofs, and repeats their results. A
+statement about reviews or waivers has one subject per review, so that adding a review does not
+invalidate the signatures of the others.
 
 Source: in-toto Attestation Framework, Statement v1, https://github.com/in-toto/attestation.
 """
@@ -23,8 +24,8 @@ from compiler.logic.claims import Proof
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary
-from fretc.report.traceability.lock import Review
-from fretc.report.traceability.waivers import Waiver
+from fretc.traceability.lock import Review
+from fretc.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
 
 TYPE = "https://in-toto.io/Statement/v1"
@@ -39,12 +40,12 @@ _KINDS = {
     WAIVER: (WAIVER,),
     REPORT: (REPORT,),
 }
-"""What a statement is about → the kinds of things that it may name."""
+"""Topic of a statement → the kinds of subjects that it may have."""
 
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """A thing that is signed. Its kind is part of it: the hash of a log is no hash of evidence."""
+    """A signed item; its kind is signed too, so that a log cannot pass for evidence."""
 
     kind: str
     name: str
@@ -58,26 +59,26 @@ class Subject:
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """What somebody signs."""
+    """The content of a signature."""
 
     about: str
-    """One of the kinds."""
+    """The topic: one of the kinds."""
     subjects: tuple[Subject, ...]
     says: Mapping[str, Any] = field(default_factory=dict)
-    """What it repeats of them."""
+    """Results of the subjects that the statement repeats."""
 
     @property
     def main(self) -> frozenset[Subject]:
-        """What it is about: not the logs and proofs of evidence."""
+        """The subjects of the topic, without the logs and proofs of evidence."""
         return self.of(self.about)
 
     def of(self, kind: str) -> frozenset[Subject]:
-        """The things of one kind."""
+        """The subjects of one kind."""
         return frozenset(subject for subject in self.subjects if subject.kind == kind)
 
 
 def text(statement: Statement) -> bytes:
-    """Its JSON, with the tool that makes it."""
+    """The statement as JSON, with the version of fretc."""
     return json.dumps(
         {
             "_type": TYPE,
@@ -101,10 +102,10 @@ def _uri(about: str) -> str:
 
 
 def read(payload: bytes) -> Statement:
-    """A statement from its JSON.
+    """The statement in a JSON text.
 
     Raises:
-        SchemaError: it is none that fretc makes.
+        SchemaError: the text is not a statement of fretc.
     """
     try:
         shape = JsonValue(plain(payload.decode()))
@@ -136,9 +137,9 @@ def _subject(at: JsonValue, about: str) -> Subject:
 
 
 def evidence(file: EvidenceSource, proofs: Proofs | None) -> Statement:
-    """Of audits, and of what was proved beside them."""
+    """The statement about evidence and proofs."""
     briefs = [brief for _, brief in file.briefs()]
-    logs = dict.fromkeys(Subject(LOG, each.run, each.log) for each in briefs if each.log)
+    logs = dict.fromkeys(Subject(LOG, result.run, result.log) for result in briefs if result.log)
     return Statement(
         EVIDENCE,
         (
@@ -149,14 +150,16 @@ def evidence(file: EvidenceSource, proofs: Proofs | None) -> Statement:
         {
             "fretc": file.fretc,
             "requirements": _requirements(briefs),
-            "probabilities": [[one.requirement, one.answer] for one in file.probabilities],
+            "probabilities": [
+                [probability.requirement, probability.answer] for probability in file.probabilities
+            ],
             "proofs": _proved(proofs.proofs) if proofs else [],
         },
     )
 
 
 def _requirements(results: Sequence[ResultSummary]) -> list[dict[str, Any]]:
-    """Of each requirement what its verdicts rest on, and the verdicts."""
+    """Requirement → the inputs of its verdicts, and the verdicts."""
     verdicts_of: dict[str, dict[str, Any]] = {}
     for result in results:
         recorded = zip(KINDS, result.rests_on, strict=True)
@@ -168,18 +171,18 @@ def _requirements(results: Sequence[ResultSummary]) -> list[dict[str, Any]]:
 
 
 def proofs(file: Proofs) -> Statement:
-    """Of what was proved."""
+    """The statement about a file of proofs."""
     return Statement(PROOFS, (_proofs(file),), {"proofs": _proved(file.proofs)})
 
 
 def analysis(file: AnalyzedSet) -> Statement:
-    """Of whether requirements can be kept together."""
+    """The statement about an analysis of requirements."""
     found = file.document.analysis
     says = {
         "requirements": {id: each.sha256 for id, each in file.document.requirements.items()},
         "verdict": found.verdict,
-        "conflicts": [list(each.requirements) for each in found.conflicts],
-        "assumptions": {each.id: each.sentence for each in found.assumptions},
+        "conflicts": [list(conflict.requirements) for conflict in found.conflicts],
+        "assumptions": {assumption.id: assumption.sentence for assumption in found.assumptions},
     }
     return Statement(ANALYSIS, (Subject(ANALYSIS, Path(file.file).name, file.sha256),), says)
 
@@ -202,25 +205,25 @@ def _proved(proofs: Sequence[Proof]) -> list[dict[str, Any]]:
 
 
 def reviews(all_reviews: Iterable[Review]) -> Statement:
-    """Of reviews, each by its seal."""
+    """The statement about reviews; the hash of a review is its seal."""
     return Statement(REVIEW, tuple(map(review, all_reviews)))
 
 
 def review(one: Review) -> Subject:
-    """One review."""
+    """The subject of one review."""
     return Subject(REVIEW, one.requirement, one.seal)
 
 
 def waivers(all_waivers: Iterable[Waiver]) -> Statement:
-    """Of waivers, each by its content."""
+    """The statement about waivers."""
     return Statement(WAIVER, tuple(map(waiver, all_waivers)))
 
 
 def waiver(one: Waiver) -> Subject:
-    """One waiver."""
+    """The subject of one waiver."""
     return Subject(WAIVER, one.requirement, one.seal)
 
 
 def report(path: str, sha256: str) -> Statement:
-    """Of a report, in whatever form."""
+    """The statement about a report in any format."""
     return Statement(REPORT, (Subject(REPORT, Path(path).name, sha256),))

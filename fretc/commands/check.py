@@ -87,10 +87,10 @@ def check(
     from fretc.audit.store.anywhere import required_source, source
     from fretc.report.diagnostics import idle_waivers, stale_evidence
     from fretc.report.model.assessments import assessments
-    from fretc.report.traceability.acceptances import warnings
-    from fretc.report.traceability.lock import Lock, withdrawal_warnings, withdrawn_requirements
-    from fretc.report.traceability.lock import read as read_lock
-    from fretc.report.traceability.waivers import read as read_waivers
+    from fretc.traceability.acceptances import warnings
+    from fretc.traceability.lock import Lock, withdrawal_warnings, withdrawn_requirements
+    from fretc.traceability.lock import read as read_lock
+    from fretc.traceability.waivers import read as read_waivers
     from fretc.verification.reader import known as proven
 
     (requirements,) = places([folder] if folder is not None else [], requirements)

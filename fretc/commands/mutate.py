@@ -67,13 +67,13 @@ def mutate(
     from fretc.commands.audit_progress import shown
     from fretc.commands.coverage import planned_project, suite_of
     from fretc.coverage import mutation_output, mutation_record
-    from fretc.coverage.mutation import inquiry, survey
+    from fretc.coverage.mutation import mutation_job, survey
     from fretish.diagnostics.rendering import visible
 
     (place,) = places([folder] if folder else [], requirements)
     project, plan = planned_project(place, bindings)
     logs, _ = selected(paths, None, None, 0)
-    asked = inquiry(project, plan)
+    asked = mutation_job(project, plan)
     try:
         with shown(logs) as show:
             found = survey(asked, logs, jobs, show)
@@ -83,7 +83,7 @@ def mutate(
     say_also(found.diagnostics, project.diagnostics)
     if not found.runs:
         raise SystemExit(BAD)
-    suite = suite_of(tests, {each.id: each.fingerprint for each in found.suspects})
+    suite = suite_of(tests, {each.id: each.fingerprint for each in found.batches})
     if suite is not None:
         found = found.with_proofs(suite)
     if form == "json":

@@ -44,8 +44,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from compiler.project.project import Project
-    from fretc.report.traceability.chain import Chain
-    from fretc.report.traceability.lock import Lock, Review
+    from fretc.traceability.chain import Chain
+    from fretc.traceability.lock import Lock, Review
 
 
 @click.command(
@@ -99,7 +99,7 @@ def lock(
     """
     from compiler.files.dates import is_date, is_in_future, today
     from compiler.files.templating import to_json
-    from fretc.report.traceability.lock import (
+    from fretc.traceability.lock import (
         Acceptance,
         Lock,
         accepted,
@@ -184,8 +184,8 @@ def diff(
     Example: fretc diff
     """
     from compiler.files.templating import to_json
-    from fretc.report.traceability.comparison import as_record, differences, text
-    from fretc.report.traceability.lock import Lock, standings
+    from fretc.traceability.comparison import as_record, differences, text
+    from fretc.traceability.lock import Lock, standings
 
     project, chains, _ = _chains(requirements, evidence, verification, analysis)
     refused = _refused(project)
@@ -240,7 +240,7 @@ def _chains(
     from fretc.audit.evidence.result_summaries import ResultSummaries
     from fretc.audit.measurements.confidence_intervals import REFUTED
     from fretc.audit.store.anywhere import required_source, source
-    from fretc.report.traceability.chain import chains
+    from fretc.traceability.chain import chains
     from fretc.verification.reader import known
 
     project = load_folder(requirements)
@@ -279,7 +279,7 @@ def _chosen(
 
 
 def _beside(requirements: str) -> str:
-    from fretc.report.traceability.lock import NAME
+    from fretc.traceability.lock import NAME
 
     folder = Path(requirements)
     return str((folder.parent if folder.is_file() else folder) / NAME)
@@ -287,7 +287,7 @@ def _beside(requirements: str) -> str:
 
 def _read(path: str, *, must: bool) -> Lock | None:
     """The lock; where there is none yet, None, unless there must be one."""
-    from fretc.report.traceability.lock import read
+    from fretc.traceability.lock import read
 
     lock_ = read(path)
     if not isinstance(lock_, Diagnostic):

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from fretc.attestation.keys import PrivateKey
     from fretc.attestation.statement import Statement, Subject
     from fretc.audit.evidence.result_summaries import EvidenceSource
-    from fretc.report.traceability.lock import Review
-    from fretc.report.traceability.waivers import Waiver
+    from fretc.traceability.lock import Review
+    from fretc.traceability.waivers import Waiver
     from fretc.verification.reader import Proofs
 
 PASSPHRASE = "FRETC_PASSPHRASE"
@@ -333,7 +333,7 @@ def _report(path: str) -> Signable:
 
 
 def _lock(path: str, key: str, reviewer: str | None) -> Signable:
-    from fretc.report.traceability.lock import read
+    from fretc.traceability.lock import read
 
     lock = read(path)
     if isinstance(lock, Diagnostic):
@@ -362,7 +362,7 @@ def of_reviews(path: str, mine: Iterable[Review], all_: Iterable[Review]) -> Sig
 def _waivers(path: str, key: str, reviewer: str | None) -> Signable:
     from compiler.files.dates import today
     from fretc.attestation import statement as attestation
-    from fretc.report.traceability.waivers import read
+    from fretc.traceability.waivers import read
 
     waivers, wrong = read(path, None, today())
     if any(each.is_error for each in wrong):

@@ -53,10 +53,10 @@ if TYPE_CHECKING:
     from fretc.audit.evidence.reader import EvidenceFile
     from fretc.audit.evidence.schema import Document
     from fretc.audit.plan import Plan
-    from fretc.report.traceability.lock import Lock
     from fretc.reproduction.completeness import Scope
     from fretc.reproduction.manifest import Manifest
     from fretc.reproduction.outcome import Recheck
+    from fretc.traceability.lock import Lock
     from fretc.verification.reader import Proofs
 
 
@@ -261,7 +261,7 @@ def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
 
 def _lock(requirements: str) -> Lock | None:
     from compiler.project.paths import sibling_path
-    from fretc.report.traceability.lock import NAME, read
+    from fretc.traceability.lock import NAME, read
 
     path = sibling_path(requirements, NAME)
     lock = read(path) if path is not None else None
@@ -321,8 +321,8 @@ def _unmet(
     """What `--strict` demands and is missing."""
     from compiler.project.paths import sibling_path
     from fretc.attestation.signatures import SIGNERS
-    from fretc.report.traceability.lock import NAME
     from fretc.reproduction.strictness import unmet_demands
+    from fretc.traceability.lock import NAME
 
     installed()
     listed, lock = (sibling_path(requirements, name) for name in (SIGNERS, NAME))

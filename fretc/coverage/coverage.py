@@ -1,7 +1,7 @@
-"""Which situations of each requirement recorded runs came by, from the evidence of their audit.
+"""Situations of each requirement that recorded runs have shown, from audit evidence.
 
-Seen is what is certain; what may only have been there is `perhaps`; and a run whose audit did not
-look, or could not, is counted apart: it has neither seen anything nor shown that nothing was there.
+A situation is `seen` if a run certainly shows it, and `perhaps` if that depends on unknown values.
+Runs whose audit did not measure situations are counted separately.
 """
 
 from __future__ import annotations
@@ -19,28 +19,28 @@ from fretc.coverage.least_runs import LeastRuns, least_runs
 
 
 class CoverageStatus(StrEnum):
-    """What all runs together show of a situation."""
+    """The status of a situation over all runs."""
 
     SEEN = "seen"
-    """In some run it was certainly there."""
+    """At least one run certainly shows the situation."""
     PERHAPS = "perhaps"
-    """In some run it may have been: something is unknown there."""
+    """A run may show the situation, depending on unknown values."""
     NEVER = "never"
-    """In no run that was looked at."""
+    """No measured run shows the situation."""
     NOT_MEASURED = "not measured"
-    """No run was looked at."""
+    """No run was measured."""
 
 
 @dataclass(frozen=True, slots=True)
 class RecordedSituation:
-    """A situation of a requirement, and the runs that came by it."""
+    """A situation of a requirement, and the runs that show it."""
 
     key: str
     words: str
     seen: Mapping[int, Moment]
-    """The first tick in each run, by the place of the run."""
+    """Index of a run → first tick that certainly shows the situation."""
     perhaps: Mapping[int, Moment]
-    """The same of others, where it may have been."""
+    """Index of another run → first tick that may show the situation."""
     standing: CoverageStatus
 
 
@@ -50,46 +50,48 @@ class RequirementCoverage:
 
     id: str
     fingerprint: str
-    """SHA-256 of its sentence."""
+    """SHA-256 of the sentence."""
     situations: tuple[RecordedSituation, ...]
     measured: tuple[int, ...]
-    """The places of the runs that were looked at."""
+    """The indices of the runs that were measured."""
     unmeasured: tuple[int, ...]
-    """Those of the others that have a result."""
+    """The indices of other runs with a result."""
 
     def of(self, standing: CoverageStatus) -> tuple[RecordedSituation, ...]:
-        """The situations of which the runs show this."""
-        return tuple(each for each in self.situations if each.standing is standing)
+        """The situations with this status."""
+        return tuple(situation for situation in self.situations if situation.standing is standing)
 
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """What all runs of an audit have exercised."""
+    """The coverage of all requirements by the runs of an audit."""
 
     runs: tuple[str, ...]
     requirements: tuple[RequirementCoverage, ...]
     least: LeastRuns
-    """Runs that came by all that the runs together came by."""
+    """A small set of runs that shows every situation that all runs show."""
 
 
 def coverage(source: EvidenceSource) -> Coverage:
-    """What the runs of some evidence have exercised, and which of them would be enough for that.
+    """The coverage by the runs of evidence, with a small set of runs that has the same coverage.
 
     Args:
-        source: in which the results of a run stand together.
+        source: evidence in which the results of a run are adjacent.
 
     Raises:
-        StoreError: it turns out not to be what it must be.
+        StoreError: the store is damaged.
     """
     names, found = of_all_runs(source)
-    aims = [frozenset(each.seen) for one in found for each in one.of(CoverageStatus.SEEN)]
+    aims = [
+        frozenset(situation.seen) for item in found for situation in item.of(CoverageStatus.SEEN)
+    ]
     return Coverage(names, found, least_runs(aims))
 
 
 def of_all_runs(
     source: EvidenceSource,
 ) -> tuple[tuple[str, ...], tuple[RequirementCoverage, ...]]:
-    """The names of the runs, and what they show of each requirement."""
+    """The names of the runs, and the coverage of each requirement."""
     names: list[str] = []
     known: dict[tuple[str, str], int] = {}
     places: dict[str, dict[int, int]] = {}
@@ -105,34 +107,38 @@ def of_all_runs(
 def of_requirements(
     source: EvidenceSource, places: Mapping[str, Mapping[int, int]]
 ) -> tuple[RequirementCoverage, ...]:
-    """What some results show of each requirement of the evidence, in their order.
+    """The coverage of each requirement by some results, in the order of the evidence.
 
     Args:
-        source: has them.
-        places: requirement → the place of each result that counts → its run.
+        source: the evidence.
+        places: requirement → index of each counted result → index of its run.
     """
-    ledgers = {each.id: _Ledger(each) for each in source.requirements}
+    ledgers = {requirement.id: _Ledger(requirement) for requirement in source.requirements}
     of_place = {place: id for id, some in places.items() for place in some}
     for place, shown in source.situations(ledgers.keys()):
         id = of_place.get(place)
         if id in ledgers:
             ledgers[id].add(places[id][place], shown)
-    return tuple(each.coverage() for each in ledgers.values())
+    return tuple(ledger.coverage() for ledger in ledgers.values())
 
 
 class _Ledger:
-    """What is known of one requirement, while results are read."""
+    """Accumulates the coverage of one requirement while results are read."""
 
     def __init__(self, requirement: Requirement) -> None:
         self._id, self._fingerprint = requirement.id, requirement.sha256
         self._situations = requirement.situations or ()
-        self._seen: dict[str, dict[int, Moment]] = {each.key: {} for each in self._situations}
-        self._perhaps: dict[str, dict[int, Moment]] = {each.key: {} for each in self._situations}
+        self._seen: dict[str, dict[int, Moment]] = {
+            situation.key: {} for situation in self._situations
+        }
+        self._perhaps: dict[str, dict[int, Moment]] = {
+            situation.key: {} for situation in self._situations
+        }
         self._measured: dict[int, None] = {}
         self._unmeasured: dict[int, None] = {}
 
     def add(self, run: int, shown: Situations | UnsetType) -> None:
-        """One more result."""
+        """Add the situations of one result."""
         if not shown:
             self._unmeasured[run] = None
             return
@@ -143,7 +149,7 @@ class _Ledger:
                     table[key].setdefault(run, moment)
 
     def coverage(self) -> RequirementCoverage:
-        """All of it."""
+        """The coverage of all added results."""
         situations = tuple(map(self._situation, self._situations))
         return RequirementCoverage(
             self._id, self._fingerprint, situations, tuple(self._measured), tuple(self._unmeasured)
@@ -159,5 +165,7 @@ class _Ledger:
 
 
 def counts(requirements: Iterable[RequirementCoverage]) -> Counter[CoverageStatus]:
-    """How many situations of all requirements there are of each standing."""
-    return Counter(each.standing for one in requirements for each in one.situations)
+    """The number of situations of all requirements by status."""
+    return Counter(
+        situation.standing for requirement in requirements for situation in requirement.situations
+    )

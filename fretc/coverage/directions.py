@@ -1,4 +1,4 @@
-"""What to record next: how a run comes by a situation, from the shortest runs of `fretc test`."""
+"""What to record next: inputs that lead to a situation, from the shortest tests of `fretc test`."""
 
 from __future__ import annotations
 
@@ -17,47 +17,49 @@ class Way(StrEnum):
     """Which runs can show a situation."""
 
     KEPT = "record"
-    """A run that keeps the requirement."""
-    BROKEN = "only a run that breaks the requirement shows it"
+    """A run that satisfies the requirement."""
+    BROKEN = "only a run that violates the requirement can show it"
     NONE = "no run can show it"
-    EXCLUDED = "no run that keeps the other requirements shows it"
+    EXCLUDED = "no run that satisfies the other requirements can show it"
 
 
 @dataclass(frozen=True, slots=True)
 class Direction:
-    """How a run comes by a situation."""
+    """Instructions to reach a situation."""
 
     way: Way
     steps: str
-    """What a driver does from the start of the run; empty where no run can."""
+    """The inputs from the start of the run; "" if no run can reach the situation."""
 
     @property
     def text(self) -> str:
-        """One line."""
+        """The instructions on one line."""
         return f"{self.way}: {self.steps}" if self.steps else f"{self.way}"
 
 
 Directions = Mapping[tuple[str, str], Direction]
-"""Requirement and situation → how; none where nobody has searched."""
+"""(requirement, situation) → direction; a situation that was not searched is missing."""
 
 
 def directions(suite: Suite, fingerprints: Mapping[str, str]) -> Directions:
-    """Those of a suite.
+    """The directions from a test suite.
 
     Args:
-        suite: that `fretc test` made.
-        fingerprints: of the sentence of each requirement; tests of another sentence say nothing.
+        suite: a suite of `fretc test`.
+        fingerprints: requirement → SHA-256 of its sentence; tests of other sentences are ignored.
     """
     current = {
-        each.id: each.sentence
-        for each in suite.requirements
-        if fingerprints.get(each.id) == each.fingerprint
+        requirement.id: requirement.sentence
+        for requirement in suite.requirements
+        if fingerprints.get(requirement.id) == requirement.fingerprint
     }
     tests = {test.name: test for test in suite.tests}
     groups: dict[tuple[str, str], dict[Polarity, Obligation]] = {}
-    for one in suite.obligations:
-        if one.requirement in current:
-            groups.setdefault((one.requirement, one.situation), {})[one.polarity] = one
+    for obligation in suite.obligations:
+        if obligation.requirement in current:
+            groups.setdefault((obligation.requirement, obligation.situation), {})[
+                obligation.polarity
+            ] = obligation
     found = {
         key: _direction(both, tests, current[key[0]], nanoseconds(suite.clock))
         for key, both in groups.items()
@@ -83,12 +85,12 @@ def _direction(
 
 
 def steps(test: Test, sentence: str, tick: int | None) -> str:
-    """What a driver does, stretch by stretch: the values that the sentence reads, as they change.
+    """The inputs of a test in words: the values that the sentence reads, whenever they change.
 
     Args:
-        test: the run.
-        sentence: of the requirement.
-        tick: nanoseconds; None: its length is not known.
+        test: the test.
+        sentence: the sentence of the requirement.
+        tick: length of a tick in nanoseconds; None if unknown.
     """
     names = [name for name in test.rows[0].values if _is_in(name, sentence)] if test.rows else []
     parts: list[str] = []
@@ -123,20 +125,22 @@ def _time(ticks: int, tick: int | None) -> str:
 
 
 def unseen(covered: Coverage, known: Directions) -> Iterator[tuple[str, str]]:
-    """The situations that no run has shown for certain, and that some run might.
+    """The situations that no run has certainly shown, but that a run can show.
 
-    Left out are those of which it is proved that no run shows them that keeps all requirements.
+    Situations that provably no run can show without violating a requirement are left out.
     """
-    for one in covered.requirements:
-        for situation in one.situations:
-            direction = known.get((one.id, situation.key))
+    for requirement in covered.requirements:
+        for situation in requirement.situations:
+            direction = known.get((requirement.id, situation.key))
             if situation.standing is not CoverageStatus.SEEN and (
                 direction is None or direction.way is Way.KEPT
             ):
-                yield one.id, situation.key
+                yield requirement.id, situation.key
 
 
 def is_complete(covered: Coverage, known: Directions) -> bool:
-    """Whether every situation has been seen that a run can show."""
-    measured = all(one.situations and one.measured for one in covered.requirements)
+    """Whether every situation that a run can show has been seen."""
+    measured = all(
+        requirement.situations and requirement.measured for requirement in covered.requirements
+    )
     return measured and next(unseen(covered, known), None) is None

@@ -1,8 +1,8 @@
-"""The fewest runs that show all that the runs together show.
+"""The smallest set of runs that shows every situation that all runs show.
 
-That is set cover, solved exactly where the search ends within so many nodes, and else greedily,
-which is said. Source of the greedy bound: Chvatal, A greedy heuristic for the set-covering problem,
-Mathematics of Operations Research 4 (1979).
+This is the set cover problem. It is solved exactly if the search ends within `_NODES` nodes, and
+otherwise greedily, as the result states. Source of the greedy bound: Chvatal, A greedy heuristic
+for the set-covering problem, Mathematics of Operations Research 4 (1979).
 """
 
 from __future__ import annotations
@@ -14,27 +14,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 _NODES = 20_000
-"""Of the search tree; a number of nodes, and no time: the same runs give the same answer."""
+"""Maximum nodes of the search tree; not a time, so that the result is reproducible."""
 _CELLS = 20_000
-"""Runs times aims, above which no exact answer is tried."""
+"""Maximum number of runs times goals for an exact solution."""
 
 
 @dataclass(frozen=True, slots=True)
 class LeastRuns:
-    """Places of runs, in their order, and whether it is proved that no fewer would do."""
+    """Sorted indices of runs, and whether the set is proved to be minimal."""
 
     runs: tuple[int, ...]
     is_exact: bool
 
 
 def least_runs(aims: Iterable[frozenset[int]]) -> LeastRuns:
-    """The fewest runs of which each aim has one.
+    """The smallest set with at least one run of each goal.
 
     Args:
-        aims: the runs that reach it, at least one each.
+        aims: for each goal the runs that reach it, at least one.
     """
     needed = _minimal(aims)
-    # A run that all others of an aim need anyway is no question: what is left is small.
+    # Reductions leave a small problem for the exact search.
     forced = {run for aim in needed if len(aim) == 1 for run in aim}
     open_aims = [aim for aim in needed if forced.isdisjoint(aim)]
     if not open_aims:
@@ -46,7 +46,7 @@ def least_runs(aims: Iterable[frozenset[int]]) -> LeastRuns:
 
 
 def _minimal(aims: Iterable[frozenset[int]]) -> list[frozenset[int]]:
-    """The aims that no other one implies: those without a smaller one within them."""
+    """The goals that no other goal implies: those without a proper subset among the goals."""
     kept: list[frozenset[int]] = []
     for aim in sorted(set(aims), key=lambda each: (len(each), sorted(each))):
         if not any(other <= aim for other in kept):
@@ -55,7 +55,7 @@ def _minimal(aims: Iterable[frozenset[int]]) -> list[frozenset[int]]:
 
 
 def _candidates(aims: Sequence[frozenset[int]]) -> list[int]:
-    """The runs without those of which another one reaches all aims; the first of equal ones."""
+    """The runs that no other run dominates; the first of equal runs."""
     reached: dict[int, int] = {}
     for number, aim in enumerate(aims):
         for run in aim:
@@ -68,10 +68,10 @@ def _candidates(aims: Sequence[frozenset[int]]) -> list[int]:
 
 
 def _exact(aims: Sequence[frozenset[int]], candidates: Sequence[int]) -> list[int] | None:
-    """The fewest; None where the search does not end.
+    """A minimal set, or None if the search exceeds its nodes.
 
-    Branch and bound: one run of the aim that has fewest is to be taken, and a run whose turn is
-    over is taken by no later branch.
+    Branch and bound: branch on the runs of the goal with the fewest runs; later branches exclude
+    the runs of earlier ones.
     """
     if len(aims) * len(candidates) > _CELLS:
         return None
@@ -92,18 +92,18 @@ def _exact(aims: Sequence[frozenset[int]], candidates: Sequence[int]) -> list[in
 @dataclass(frozen=True, slots=True)
 class _Branch:
     chosen: tuple[int, ...]
-    """Columns: the runs that are taken."""
+    """Column indices of the chosen runs."""
     aims: NDArray[np.intp]
-    """Rows: the aims that none of them reaches."""
+    """Row indices of the goals that no chosen run reaches."""
     free: NDArray[np.intp]
-    """Columns: the runs that may still be taken."""
+    """Column indices of the runs that may still be chosen."""
 
 
 def _at_least(reach: NDArray[np.bool_]) -> float:
-    """No fewer runs reach all aims.
+    """A lower bound on the number of runs that reach all goals.
 
-    Each aim counts as the part of the largest run that reaches it; the aims of no run count more
-    than 1 so. Infinite where an aim has no run.
+    Each goal has the weight 1/n, where n is the size of the largest run that reaches it, so that
+    the goals of a run weigh at most 1. Infinite if a goal has no run.
     """
     largest = (reach * reach.sum(axis=0)).max(axis=1, initial=0)
     with np.errstate(divide="ignore"):
@@ -111,7 +111,7 @@ def _at_least(reach: NDArray[np.bool_]) -> float:
 
 
 def _branches(reach: NDArray[np.bool_], branch: _Branch) -> list[_Branch]:
-    """One for each run of the aim that has fewest; the last one, of the largest run, is next."""
+    """A branch for each run of the goal with the fewest runs; the largest run comes last."""
     free, rest = branch.free, reach[np.ix_(branch.aims, branch.free)]
     aim = int(rest.sum(axis=1).argmin())
     takers = np.flatnonzero(rest[aim])
@@ -127,7 +127,7 @@ def _branches(reach: NDArray[np.bool_], branch: _Branch) -> list[_Branch]:
 
 
 def _greedy(aims: Sequence[frozenset[int]], candidates: Sequence[int]) -> list[int]:
-    """The run that reaches most of what is left, the first of equals; and so on."""
+    """Greedy cover: repeatedly the run that reaches most open goals, the first of equal runs."""
     left, chosen = [*aims], []
     while left:
         best = max(candidates, key=lambda run: (sum(run in aim for aim in left), -run))

@@ -1,8 +1,8 @@
-"""Which wrong requirements recorded runs would have shown: mutants judged beside the right one.
+"""Mutants of requirements that recorded runs notice.
 
-A run notices a mutant where the two verdicts on it differ, both of them known, or where one is
-certainly violated at a tick at which the other certainly is not. What is unknown notices nothing.
-All mutants of a requirement are one monitor, judged over the very columns of its audit.
+A run notices a mutant if the known verdicts of requirement and mutant differ, or if at a tick
+exactly one of them is certainly violated. Unknown values notice nothing. One monitor judges all
+mutants of a requirement, over the columns of its audit.
 """
 
 from __future__ import annotations
@@ -35,58 +35,58 @@ from monitors.loading import load
 
 @dataclass(frozen=True)
 class MutantBatch:
-    """A requirement and its mutants, as one monitor: the requirement is the first in it."""
+    """A requirement and its mutants in one monitor, in which the requirement comes first."""
 
     id: str
     fingerprint: str
-    """SHA-256 of its sentence."""
+    """SHA-256 of the sentence of the requirement."""
     mutants: tuple[Mutant, ...]
-    """Those that a monitor can judge, in its order."""
+    """The mutants that a monitor can judge, in the order of the monitor."""
     refused: tuple[tuple[Mutant, str], ...]
-    """The others, and why."""
+    """The other mutants, each with the reason."""
     monitor: Monitor
 
 
 @dataclass(frozen=True)
 class MutationJob:
-    """All that is needed beside a log to tell which mutants its run notices."""
+    """The inputs of a mutation analysis, except the logs."""
 
-    suspects: tuple[MutantBatch, ...]
+    batches: tuple[MutantBatch, ...]
     declarations: Declarations
-    """With the signals of the audit, so that its ticks are those of the audit."""
+    """Declarations with the signals of the audit, so that ticks are the same as in the audit."""
     propositions: tuple[str, ...]
-    """Those of which these signals tell the truth; others are unknown throughout."""
+    """The propositions that these signals determine; others are always unknown."""
     integrity: Integrity
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """What a run says of a requirement and of a mutant."""
+    """Different results of a requirement and of a mutant on one run."""
 
     own: str
     """The verdict of the requirement."""
     other: str
-    """That of the mutant."""
+    """The verdict of the mutant."""
     tick: int | None
-    """The first tick at which only one of them is violated; None: the verdicts alone differ."""
+    """The first tick at which only one of them is violated; None if only the verdicts differ."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunSurvey:
-    """What one run tells apart."""
+    """The mutants that one run notices."""
 
     known: frozenset[str]
-    """The requirements on which it has a verdict."""
+    """The requirements on which the run has a verdict."""
     noticed: Mapping[tuple[str, str], Difference]
-    """Requirement and mutant → how it tells them apart."""
+    """(requirement, mutant) → the difference on this run."""
 
 
-def inquiry(project: Project, plan: Plan) -> MutationJob:
+def mutation_job(project: Project, plan: Plan) -> MutationJob:
     """The mutants of each requirement that the plan audits.
 
     Args:
-        project: that the plan is of.
-        plan: of an audit.
+        project: the project of the plan.
+        plan: the plan of an audit.
     """
     audited = {claim.id for claim in plan.claims}
     requirements = {
@@ -94,25 +94,25 @@ def inquiry(project: Project, plan: Plan) -> MutationJob:
         for requirement in project.formalized
         if requirement.id in audited
     }
-    found = tuple(map(suspects, requirements.values()))
+    batches = tuple(map(mutant_batch, requirements.values()))
     declarations = project.declarations
     assert declarations is not None, "there is a plan"
-    for own in (mutant.requirement.declarations for one in found for mutant in one.mutants):
+    for own in (mutant.requirement.declarations for batch in batches for mutant in batch.mutants):
         if own is not None:
             declarations = with_propositions(declarations, own.propositions, own.mistakes)
     declarations = replace(declarations, signals=plan.declarations.signals)
-    names = dict.fromkeys(name for one in found for name in one.monitor.PROPOSITIONS)
-    known = tuple(name for name in names if _is_told(declarations, name))
-    return MutationJob(found, declarations, known, plan.integrity)
+    names = dict.fromkeys(name for batch in batches for name in batch.monitor.PROPOSITIONS)
+    known = tuple(name for name in names if _is_determined(declarations, name))
+    return MutationJob(batches, declarations, known, plan.integrity)
 
 
-def _is_told(declarations: Declarations, name: str) -> bool:
-    """Whether the signals tell its truth."""
+def _is_determined(declarations: Declarations, name: str) -> bool:
+    """Whether the signals determine the proposition."""
     proposition = declarations.propositions.get(name)
     return proposition is not None and declarations.signals.keys() >= {*proposition.signals}
 
 
-def suspects(requirement: FormalizedRequirement) -> MutantBatch:
+def mutant_batch(requirement: FormalizedRequirement) -> MutantBatch:
     """The mutants of a requirement in one monitor, with the requirement itself."""
     judge: list[Mutant] = []
     refused: list[tuple[Mutant, str]] = []
@@ -131,7 +131,7 @@ def suspects(requirement: FormalizedRequirement) -> MutantBatch:
 
 
 def _called(requirement: FormalizedRequirement, id: str) -> FormalizedRequirement:
-    """The requirement under another id: in a monitor each has its own."""
+    """The requirement under another id, because ids in a monitor are distinct."""
     return replace(requirement, entry=replace(requirement.entry, id=id))
 
 
@@ -139,11 +139,11 @@ def _called(requirement: FormalizedRequirement, id: str) -> FormalizedRequiremen
 
 
 def of_run(asked: MutationJob, log: str) -> RunSurvey | Diagnostic:
-    """What the run of a log tells apart, or why the log cannot be read.
+    """The mutants that the run of a log notices, or why the log cannot be read.
 
     Args:
         asked: the mutants.
-        log: its path.
+        log: path of the log.
     """
     declarations, names = asked.declarations, asked.propositions
     signals = tuple(declarations.signals)
@@ -154,26 +154,26 @@ def of_run(asked: MutationJob, log: str) -> RunSurvey | Diagnostic:
     end = Verdict(declarations.clock.end)
     known: set[str] = set()
     noticed: dict[tuple[str, str], Difference] = {}
-    for one in asked.suspects:
-        own, *others = judgements(one.monitor, truths, end, intact=recording.intact)
+    for batch in asked.batches:
+        own, *others = judgements(batch.monitor, truths, end, intact=recording.intact)
         if own.verdict != kernel.NO_DATA:
-            known.add(one.id)
-        for mutant, other in zip(one.mutants, others, strict=True):
+            known.add(batch.id)
+        for mutant, other in zip(batch.mutants, others, strict=True):
             found = difference(own, other)
             if found is not None:
-                noticed[one.id, mutant.key] = found
+                noticed[batch.id, mutant.key] = found
     return RunSurvey(frozenset(known), noticed)
 
 
 def judgements(
     monitor: Monitor, truths: Trace, end: Verdict, *, intact: bool
 ) -> tuple[Judgement, ...]:
-    """Those of one trace by each requirement of a monitor.
+    """The judgement of one trace by each requirement of a monitor.
 
     Args:
-        monitor: of any requirements; a proposition that the trace lacks is unknown throughout.
+        monitor: of any requirements; a proposition that is not in the trace is always unknown.
         truths: the trace.
-        end: what a demand is that is open at the end.
+        end: how an obligation is judged that is open at the end.
         intact: whether the log is whole.
     """
     ticks, cut = len(truths.timeline.times), truths.cut
@@ -185,11 +185,11 @@ def judgements(
 
 
 def difference(own: Judgement, other: Judgement) -> Difference | None:
-    """How one run tells two requirements apart for certain; None: it does not.
+    """The certain difference between the judgements of two requirements, or None.
 
     Args:
-        own: the judgement by one.
-        other: that by the other.
+        own: the judgement by the requirement.
+        other: the judgement by the mutant.
     """
     ticks = [*_only_in(own.outcome, other.outcome), *_only_in(other.outcome, own.outcome)]
     known = kernel.NO_DATA not in (own.verdict, other.verdict)
@@ -199,7 +199,7 @@ def difference(own: Judgement, other: Judgement) -> Difference | None:
 
 
 def _only_in(one: Outcome, other: Outcome) -> Iterator[int]:
-    """The first tick at which one is certainly violated and the other certainly is not."""
+    """The first tick at which `one` is certainly violated and `other` is certainly not."""
     column = _column(one.violations) & ~(_column(other.violations) | _column(other.unknown))
     if column:
         yield (column & -column).bit_length() - 1
@@ -214,59 +214,59 @@ def _column(runs: Iterable[tuple[int, int]]) -> int:
 
 @dataclass(frozen=True, slots=True)
 class MutationResult:
-    """What all runs tell apart."""
+    """The mutants that all runs together notice."""
 
     runs: tuple[str, ...]
-    """Those that could be read."""
-    suspects: tuple[MutantBatch, ...]
+    """The runs that could be read."""
+    batches: tuple[MutantBatch, ...]
     known: frozenset[str]
     """The requirements on which some run has a verdict."""
     noticed: Mapping[tuple[str, str], tuple[int, Difference]]
-    """Requirement and mutant → the first run that tells them apart, and how."""
+    """(requirement, mutant) → index of the first run that notices it, and the difference."""
     diagnostics: tuple[Diagnostic, ...]
-    """Why others could not."""
+    """Diagnostics about logs that could not be read."""
     equivalent: frozenset[tuple[str, str]] = frozenset()
-    """Requirement and mutant that are proved to say the same: no run could notice that one."""
+    """(requirement, mutant) that are proved equivalent, so that no run can notice the mutant."""
 
     @property
     def count(self) -> int:
-        """Of the mutants that say something else, as far as is known."""
-        return sum(len(each.mutants) + len(each.refused) for each in self.suspects) - len(
+        """The number of mutants, without those that are proved equivalent."""
+        return sum(len(batch.mutants) + len(batch.refused) for batch in self.batches) - len(
             self.equivalent
         )
 
     @property
     def is_complete(self) -> bool:
-        """Whether every mutant is noticed that says something else."""
+        """Whether every mutant is noticed or proved equivalent."""
         return bool(self.runs) and len(self.noticed) == self.count
 
     def with_proofs(self, suite: Suite) -> MutationResult:
-        """The same with what tests have proved, of requirements whose sentence they are of."""
-        known = {each.id: each.fingerprint for each in suite.requirements}
-        current = {each.id for each in self.suspects if known.get(each.id) == each.fingerprint}
-        keys = {(each.id, one.key) for each in self.suspects for one in _all(each)}
+        """The result with the equivalent mutants of a test suite, for unchanged sentences."""
+        known = {requirement.id: requirement.fingerprint for requirement in suite.requirements}
+        current = {batch.id for batch in self.batches if known.get(batch.id) == batch.fingerprint}
+        keys = {(batch.id, one.key) for batch in self.batches for one in _all(batch)}
         proved = {
-            (each.requirement, each.key)
-            for each in suite.mutants
-            if each.outcome is Fate.EQUIVALENT and each.requirement in current
+            (mutant.requirement, mutant.key)
+            for mutant in suite.mutants
+            if mutant.outcome is Fate.EQUIVALENT and mutant.requirement in current
         }
         return replace(self, equivalent=frozenset(proved & keys - self.noticed.keys()))
 
 
-def _all(suspects: MutantBatch) -> tuple[Mutant, ...]:
-    return (*suspects.mutants, *(mutant for mutant, _ in suspects.refused))
+def _all(batch: MutantBatch) -> tuple[Mutant, ...]:
+    return (*batch.mutants, *(mutant for mutant, _ in batch.refused))
 
 
 def survey(
     asked: MutationJob, logs: Sequence[str], jobs: int, tell: Callable[[str], None]
 ) -> MutationResult:
-    """What the runs of some logs tell apart, in the order of the logs.
+    """The mutants that the runs of some logs notice, in the order of the logs.
 
     Args:
         asked: the mutants.
-        logs: files or folders, each once.
-        jobs: processes.
-        tell: is called with each log when it is done.
+        logs: distinct files or folders.
+        jobs: number of processes.
+        tell: called with each log when it is done.
     """
     known: set[str] = set()
     first: dict[tuple[str, str], tuple[int, Difference]] = {}
@@ -284,7 +284,7 @@ def survey(
     number = {place: run for run, place in enumerate(runs)}
     return MutationResult(
         tuple(name_of(logs[place]) for place in runs),
-        asked.suspects,
+        asked.batches,
         frozenset(known),
         {key: (number[place], apart) for key, (place, apart) in first.items()},
         tuple(unread[place] for place in sorted(unread)),
@@ -294,9 +294,9 @@ def survey(
 def _each_run(
     asked: MutationJob, logs: Sequence[str], jobs: int
 ) -> Iterator[tuple[int, RunSurvey | Diagnostic]]:
-    """Each log, as it is done, by its place."""
+    """(index of a log, its result), in the order of completion."""
     files = [place for place, log in enumerate(logs) if log != STDIN]
-    if STDIN in logs:  # another process does not have it
+    if STDIN in logs:  # Another process does not have this object.
         yield logs.index(STDIN), of_run(asked, STDIN)
     with closing(
         map_processes(partial(of_run, asked), [logs[place] for place in files], jobs)

@@ -1,4 +1,4 @@
-"""What `fretc mutate` prints: each requirement with the mutants that no run has noticed."""
+"""Text output of `fretc mutate`: each requirement with the mutants that no run has noticed."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ Line = tuple[str, str | None]
 
 
 def lines(survey: MutationResult, titles: Mapping[str, str], *, every: bool) -> Iterator[Line]:
-    """All of it.
+    """The lines of the output.
 
     Args:
-        survey: what is known.
-        titles: what a requirement is called, by its id.
-        every: list the mutants that were noticed, too.
+        survey: the result.
+        titles: requirement id → title.
+        every: also list the noticed mutants.
     """
-    for each in survey.suspects:
-        yield from _requirement(each, titles.get(each.id, each.id), survey, every=every)
+    for batch in survey.batches:
+        yield from _requirement(batch, titles.get(batch.id, batch.id), survey, every=every)
     yield "", None
     yield _totals(survey)
 
 
 def _requirement(
-    suspects: MutantBatch, title: str, survey: MutationResult, *, every: bool
+    batch: MutantBatch, title: str, survey: MutationResult, *, every: bool
 ) -> Iterator[Line]:
-    same = sum(id == suspects.id for id, _ in survey.equivalent)
-    count = len(suspects.mutants) + len(suspects.refused) - same
-    found = [(each, survey.noticed.get((suspects.id, each.key))) for each in suspects.mutants]
+    same = sum(id == batch.id for id, _ in survey.equivalent)
+    count = len(batch.mutants) + len(batch.refused) - same
+    found = [(each, survey.noticed.get((batch.id, each.key))) for each in batch.mutants]
     noticed = sum(difference is not None for _, difference in found)
     sign = signs.GOOD if noticed == count else signs.UNUSED
-    wrong = f"{count} wrong sentence{'' if count == 1 else 's'}"
-    unknown = "" if suspects.id in survey.known else "; no run has a verdict on it"
+    wrong = f"{count} mutant{'' if count == 1 else 's'}"
+    unknown = "" if batch.id in survey.known else "; no run has a verdict on it"
     yield f"{sign.glyph} {title}: {noticed} of {wrong} noticed{unknown}", sign.colour
     for mutant, difference in found:
-        if (suspects.id, mutant.key) in survey.equivalent:
+        if (batch.id, mutant.key) in survey.equivalent:
             if every:
-                text = f"    {signs.EMPTY.glyph} {mutant.words}: it says the same"
+                text = f"    {signs.EMPTY.glyph} {mutant.words}: equivalent to the requirement"
                 yield text, signs.EMPTY.colour
         elif difference is None:
             yield f"    {signs.UNUSED.glyph} {mutant.words}", signs.UNUSED.colour
@@ -48,8 +48,8 @@ def _requirement(
         elif every:
             text = f"    {signs.GOOD.glyph} {mutant.words}: {_how(difference, survey.runs)}"
             yield text, signs.GOOD.colour
-    for mutant, why in suspects.refused:
-        if (suspects.id, mutant.key) not in survey.equivalent:
+    for mutant, why in batch.refused:
+        if (batch.id, mutant.key) not in survey.equivalent:
             text = f"    {signs.UNKNOWN.glyph} {mutant.words}: not judged: {why}"
             yield text, signs.UNKNOWN.colour
 
@@ -61,16 +61,16 @@ def _how(found: tuple[int, Difference], runs: tuple[str, ...]) -> str:
 
 
 def _totals(survey: MutationResult) -> Line:
-    """`1 run x 15 requirements: 120 of 259 wrong sentences noticed`."""
+    """`1 run x 15 requirements: 120 of 259 mutants noticed`."""
     same = len(survey.equivalent)
-    refused = sum(len(each.refused) for each in survey.suspects)
-    runs, requirements = len(survey.runs), len(survey.suspects)
+    refused = sum(len(batch.refused) for batch in survey.batches)
+    runs, requirements = len(survey.runs), len(survey.batches)
     sign = signs.GOOD if survey.is_complete else signs.UNUSED
     text = (
         f"{runs:,} run{'' if runs == 1 else 's'} \N{MULTIPLICATION SIGN} "
         f"{requirements:,} requirement{'' if requirements == 1 else 's'}: "
-        f"{len(survey.noticed):,} of {survey.count:,} wrong sentences noticed"
+        f"{len(survey.noticed):,} of {survey.count:,} mutants noticed"
         f"{f', {refused:,} not judged' if refused else ''}"
-        f"{f', {same:,} that say the same left out' if same else ''}"
+        f"{f', {same:,} equivalent mutants left out' if same else ''}"
     )
     return text, sign.colour

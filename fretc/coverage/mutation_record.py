@@ -1,4 +1,4 @@
-"""Mutants against runs as JSON: which were noticed by which run, and which by none."""
+"""JSON output of `fretc mutate`: each mutant with the first run that notices it."""
 
 from __future__ import annotations
 
@@ -18,31 +18,33 @@ Outcome = Literal["noticed", "not noticed", "equivalent", "not judged"]
 
 
 class Notice(Record, frozen=True):
-    """How the first run that notices a mutant does."""
+    """The first run that notices a mutant, and the difference."""
 
-    run: Annotated[Count, about("its place among the runs, from 0")]
-    verdict: Annotated[Verdict, about("of the requirement on it")]
-    mutant: Annotated[Verdict, about("of the mutant on it")]
+    run: Annotated[Count, about("index of the run, from 0")]
+    verdict: Annotated[Verdict, about("verdict of the requirement on this run")]
+    mutant: Annotated[Verdict, about("verdict of the mutant on this run")]
     tick: Annotated[
         Count | None,
         about(
-            "the first at which only one of the two is violated; null: the verdicts alone differ"
+            "first tick at which only one of the two is violated; null: only the verdicts differ"
         ),
     ]
 
 
 class Judged(Record, frozen=True):
-    """A sentence that somebody might have written in place of the requirement."""
+    """A mutant: a requirement with one small change."""
 
     key: Name
-    words: Annotated[str, about("what stands in place of what")]
+    words: Annotated[str, about("the text that is replaced, and its replacement")]
     sentence: str
     outcome: Annotated[
         Outcome,
-        about("equivalent: it is proved to say the same, so no run can notice it"),
+        about(
+            "equivalent: proved to have the same verdict on every run, so that no run can notice it"
+        ),
     ]
     notice: Notice | None
-    why: Annotated[str, about("why it was not judged; empty: it was")] = ""
+    why: Annotated[str, about("why the mutant was not judged; empty if it was judged")] = ""
 
 
 class Requirement(Record, frozen=True):
@@ -54,7 +56,7 @@ class Requirement(Record, frozen=True):
 
 
 class Document(Record, frozen=True):
-    """A whole file."""
+    """The JSON document."""
 
     schema: Literal["fretc-mutation-1"]
     fretc: Annotated[str, about("version of the tool")]
@@ -63,39 +65,39 @@ class Document(Record, frozen=True):
 
 
 def text(survey: MutationResult) -> str:
-    """The whole file: the same values give the same bytes."""
+    """The JSON document as text; equal values give equal bytes."""
     return f"{to_json(plain(document(survey)))}\n"
 
 
 def document(survey: MutationResult) -> Document:
-    """The record of what runs noticed."""
+    """The JSON document of a result."""
     return Document(
         schema=SCHEMA,
         fretc=__version__,
         runs=survey.runs,
         requirements=tuple(
-            Requirement(each.id, each.id in survey.known, tuple(_mutants(each, survey)))
-            for each in survey.suspects
+            Requirement(batch.id, batch.id in survey.known, tuple(_mutants(batch, survey)))
+            for batch in survey.batches
         ),
     )
 
 
-def _mutants(suspects: MutantBatch, survey: MutationResult) -> Iterator[Judged]:
-    for mutant in suspects.mutants:
-        key = suspects.id, mutant.key
+def _mutants(batches: MutantBatch, survey: MutationResult) -> Iterator[Judged]:
+    for mutant in batches.mutants:
+        key = batches.id, mutant.key
         found = survey.noticed.get(key)
         outcome: Outcome = "equivalent" if key in survey.equivalent else "not noticed"
         outcome = outcome if found is None else "noticed"
         notice = None if found is None else _notice(*found)
         yield Judged(mutant.key, mutant.words, written(mutant), outcome, notice)
-    for mutant, why in suspects.refused:
-        same = (suspects.id, mutant.key) in survey.equivalent
+    for mutant, why in batches.refused:
+        same = (batches.id, mutant.key) in survey.equivalent
         outcome = "equivalent" if same else "not judged"
         yield Judged(mutant.key, mutant.words, written(mutant), outcome, None, why)
 
 
 def written(mutant: Mutant) -> str:
-    """Its sentence."""
+    """The sentence of a mutant."""
     return sentence(mutant.requirement.written)
 
 
@@ -104,10 +106,11 @@ def _notice(run: int, found: Difference) -> Notice:
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema of this."""
+    """The JSON Schema of the document."""
     return json_schema(
         Document,
         SCHEMA,
-        "Which wrong requirements recorded runs notice, as `fretc mutate --format json` prints it",
+        "Mutants of requirements that recorded runs notice, as `fretc mutate --format json` "
+        "prints it",
         "Ticks count from 0.",
     )

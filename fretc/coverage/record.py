@@ -1,4 +1,4 @@
-"""Coverage as JSON: each requirement, its situations, and the runs that came by them."""
+"""JSON output of `fretc coverage`: requirements, situations, and the runs that show them."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ SCHEMA: Final = "fretc-coverage-1"
 
 
 class Sighting(Record, frozen=True):
-    """The first tick of a run at which a situation was there, or may have been."""
+    """The first tick of a run that shows, or may show, a situation."""
 
-    run: Annotated[Count, about("its place among the runs, from 0")]
+    run: Annotated[Count, about("index of the run, from 0")]
     tick: Count
     ns: Whole
     seconds: Seconds
@@ -32,13 +32,20 @@ class Situation(Record, frozen=True):
     words: Annotated[str, about("for people")]
     standing: Annotated[
         Literal["seen", "perhaps", "never", "not measured"],
-        about("what all runs together show; perhaps: something is unknown there"),
+        about("status over all runs; perhaps: depends on unknown values"),
     ]
-    seen: Annotated[tuple[Sighting, ...], about("in each run where it was certainly there")]
-    perhaps: Annotated[tuple[Sighting, ...], about("in each other run where it may have been")]
+    seen: Annotated[
+        tuple[Sighting, ...], about("one entry for each run that certainly shows the situation")
+    ]
+    perhaps: Annotated[
+        tuple[Sighting, ...], about("one entry for each other run that may show the situation")
+    ]
     direction: Annotated[
         str | None,
-        about("how a run comes by it, or why none does; null: seen, or nobody has searched"),
+        about(
+            "inputs of a run that shows the situation, or why there is none; null: seen, or not "
+            "searched"
+        ),
     ]
 
 
@@ -46,45 +53,51 @@ class Requirement(Record, frozen=True):
     """A requirement of the audit."""
 
     id: Name
-    situations: Annotated[tuple[Situation, ...], about("empty: they were not measured")]
-    measured: Annotated[tuple[Count, ...], about("places of the runs that were looked at")]
+    situations: Annotated[tuple[Situation, ...], about("empty: the situations were not measured")]
+    measured: Annotated[tuple[Count, ...], about("indices of the runs that were measured")]
     unmeasured: Annotated[
-        tuple[Count, ...], about("of those that were not, or could not be: they show nothing")
+        tuple[Count, ...], about("indices of the runs that were not, or could not be, measured")
     ]
 
 
 class Document(Record, frozen=True):
-    """A whole file."""
+    """The JSON document."""
 
     schema: Literal["fretc-coverage-1"]
     fretc: Annotated[str, about("version of the tool")]
     runs: Annotated[tuple[str, ...], about("the logs, as the user named them")]
     requirements: tuple[Requirement, ...]
     least_runs: Annotated[
-        tuple[Count, ...], about("places of runs that show all that the runs together show")
+        tuple[Count, ...],
+        about("indices of runs that together show every situation that all runs show"),
     ]
-    least_is_exact: Annotated[bool, about("whether it is proved that no fewer runs do")]
+    least_is_exact: Annotated[
+        bool, about("whether it is proved that no smaller set of runs shows them")
+    ]
 
 
 def text(covered: c.Coverage, known: Directions = MappingProxyType({})) -> str:
-    """The whole file: the same values give the same bytes."""
+    """The JSON document as text; equal values give equal bytes."""
     return f"{to_json(plain(document(covered, known)))}\n"
 
 
 def document(covered: c.Coverage, known: Directions) -> Document:
-    """The record of what runs have exercised, and of how they come by the rest."""
+    """The JSON document of a coverage, with directions to unseen situations."""
     return Document(
         schema=SCHEMA,
         fretc=__version__,
         runs=covered.runs,
         requirements=tuple(
             Requirement(
-                each.id,
-                tuple(_situation(each.id, one, known) for one in each.situations),
-                each.measured,
-                each.unmeasured,
+                requirement.id,
+                tuple(
+                    _situation(requirement.id, situation, known)
+                    for situation in requirement.situations
+                ),
+                requirement.measured,
+                requirement.unmeasured,
             )
-            for each in covered.requirements
+            for requirement in covered.requirements
         ),
         least_runs=covered.least.runs,
         least_is_exact=covered.least.is_exact,

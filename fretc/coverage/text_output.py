@@ -1,4 +1,4 @@
-"""What `fretc coverage` prints: each requirement with what no run has shown, then the runs."""
+"""Text output of `fretc coverage`: each requirement with its unseen situations, then the runs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from fretish.diagnostics.status_symbols import StatusSymbol
 Line = tuple[str, str | None]
 """A line and its colour."""
 _MOST_NAMED = 10
-"""Runs of the least set that are named, and runs that are listed: others are counted."""
+"""Maximum number of named runs of the least set, and of listed runs; others are counted."""
 
 
 def lines(
@@ -33,17 +33,17 @@ def lines(
     *,
     every: bool,
 ) -> Iterator[Line]:
-    """All of it.
+    """The lines of the output.
 
     Args:
-        covered: what is known.
-        titles: what a requirement is called, by its id; one without is called by its id.
-        directions: how a run comes by what was not seen, as far as is known.
-        every: list the situations that were seen, too.
+        covered: the coverage.
+        titles: requirement id → title; without a title, the id is printed.
+        directions: known directions to unseen situations.
+        every: also list the seen situations.
     """
-    for each in covered.requirements:
-        title = titles.get(each.id, each.id)
-        yield from _requirement(each, title, covered.runs, directions, every=every)
+    for requirement in covered.requirements:
+        title = titles.get(requirement.id, requirement.id)
+        yield from _requirement(requirement, title, covered.runs, directions, every=every)
     yield "", None
     yield from _runs(covered, every=every)
     yield from _least(covered)
@@ -80,7 +80,7 @@ def _situation(one: RecordedSituation, runs: tuple[str, ...]) -> Line:
 
 
 def sign_of(standing: CoverageStatus) -> StatusSymbol:
-    """How a standing looks."""
+    """The symbol of a status."""
     match standing:
         case CoverageStatus.SEEN:
             return signs.GOOD
@@ -98,7 +98,7 @@ def _standing(one: RecordedSituation, runs: tuple[str, ...]) -> str:
             many = f"seen in {_times(len(one.seen), 'run')}, first" if len(runs) > 1 else "seen"
             return f"{many} {_first(one.seen, runs)}"
         case CoverageStatus.PERHAPS:
-            return f"perhaps {_first(one.perhaps, runs)}, where something is unknown"
+            return f"perhaps {_first(one.perhaps, runs)}, where some values are unknown"
         case CoverageStatus.NEVER | CoverageStatus.NOT_MEASURED:
             return one.standing
         case _:
@@ -112,7 +112,7 @@ def _first(moments: Mapping[int, Moment], runs: tuple[str, ...]) -> str:
 
 
 def _runs(covered: Coverage, *, every: bool) -> Iterator[Line]:
-    """How many situations each run shows, and how many of them no other one shows."""
+    """Lines with the number of situations that each run shows, and that no other run shows."""
     shown: Counter[int] = Counter()
     alone: Counter[int] = Counter()
     for requirement in covered.requirements:
@@ -124,20 +124,20 @@ def _runs(covered: Coverage, *, every: bool) -> Iterator[Line]:
         return
     listed = covered.runs if every else covered.runs[:_MOST_NAMED]
     for place, name in enumerate(listed):
-        only = f", {alone[place]} of them in no other run" if alone[place] else ""
+        only = f", {alone[place]} of them that no other run shows" if alone[place] else ""
         yield f"{name}: {_times(shown[place], 'situation')}{only}", None
     if len(listed) < len(covered.runs):
         yield f"and {len(covered.runs) - len(listed):,} more runs: `-v` lists them", None
 
 
 def _least(covered: Coverage) -> Iterator[Line]:
-    """The least set of runs."""
+    """The line about the smallest set of runs."""
     least, runs = covered.least, covered.runs
     if len(runs) < 2 or not least.runs:
         return
     names = [runs[place] for place in least.runs[:_MOST_NAMED]]
     more = f" and {len(least.runs) - len(names)} more" if len(least.runs) > len(names) else ""
-    how = "no fewer do" if least.is_exact else "fewer might do"
+    how = "the smallest set" if least.is_exact else "a smaller set may exist"
     verb = "shows" if len(least.runs) == 1 else "show"
     yield (
         f"{len(least.runs)} of {_times(len(runs), 'run')} {verb} all that is seen ({how}): "
@@ -153,7 +153,7 @@ def totals(covered: Coverage, directions: Directions) -> Line:
         f"{_times(len(covered.requirements), 'requirement')}"
     )
     left = sum(1 for _ in unseen(covered, directions))
-    known = f"; {left:,} are left that a run can show" if directions else ""
+    known = f"; {left:,} are not seen yet that a run can show" if directions else ""
     sign = signs.GOOD if is_complete(covered, directions) else signs.UNUSED
     return f"{head}: {in_counts(covered.requirements)}{known}", sign.colour
 
@@ -161,8 +161,8 @@ def totals(covered: Coverage, directions: Directions) -> Line:
 def in_counts(requirements: Sequence[RequirementCoverage]) -> str:
     """`84 of 190 situations seen, 12 perhaps, 94 never`."""
     found = counts(requirements)
-    rest = [f"{found[each]:,} {each}" for each in [*CoverageStatus][1:] if found[each]]
-    blank = sum(not each.situations for each in requirements)
+    rest = [f"{found[status]:,} {status}" for status in [*CoverageStatus][1:] if found[status]]
+    blank = sum(not requirement.situations for requirement in requirements)
     rest += [f"{_times(blank, 'requirement')} not measured"] if blank else []
     seen = f"{found[CoverageStatus.SEEN]:,} of {found.total():,} situations seen"
     return ", ".join([seen, *rest])

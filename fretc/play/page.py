@@ -1,4 +1,4 @@
-"""The page itself: monitors in JavaScript, what is known of them, and the script that plays."""
+"""The HTML page of `fretc play`: monitors in JavaScript, their data, and the script."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ _GLYPHS: Mapping[str, str] = {
 _WORDS: Mapping[str, str] = {
     Verdict.VIOLATED: "violated, whatever follows",
     Verdict.SATISFIED: "satisfied; at this tick: whatever follows",
-    Verdict.PENDING: "pending: what follows decides",
-    "unknown": "unknown: it depends on unknown values",
-    Verdict.INCONCLUSIVE: "inconclusive: it would end with an open demand",
-    Verdict.VACUOUS: "vacuous: nothing was demanded",
+    Verdict.PENDING: "pending: the following ticks decide",
+    "unknown": "unknown: the verdict depends on unknown values",
+    Verdict.INCONCLUSIVE: "inconclusive: the run would end with an open obligation",
+    Verdict.VACUOUS: "vacuous: never triggered",
 }
 
 
@@ -59,7 +59,7 @@ def html(
     before: Mapping[str, str] | None = None,
     notes: Sequence[str] = (),
 ) -> str:
-    """The whole file; arguments as of `inset`."""
+    """The HTML page; arguments as for `inset`."""
     return inset(requirements, left_out, starts, before, notes).text
 
 
@@ -70,18 +70,18 @@ def inset(
     before: Mapping[str, str] | None = None,
     notes: Sequence[str] = (),
 ) -> Inset:
-    """The whole file, for another page to open.
+    """The HTML page, to be embedded in another page.
 
     Args:
-        requirements: at least one, of which JavaScript can be made, and all on one clock.
-        left_out: the ids of the others, and why they are.
-        starts: traces to begin with; those of more than `MOST` ticks are passed over.
-        before: the id of a requirement → that of the requirement that it was before.
-        notes: sentences about versions.
+        requirements: at least one; all can be translated to JavaScript, and have the same clock.
+        left_out: (id, reason) of each requirement that is not on the page.
+        starts: traces to start from; traces of more than `MOST` ticks are left out.
+        before: id of a requirement → id of its earlier version.
+        notes: sentences about versions and runs.
     """
     made, before = body(*requirements), before or {}
     now = [requirement for requirement in requirements if requirement.id not in before.values()]
-    known = [each for each in starts if 0 < each.ticks <= MOST]
+    known = [start for start in starts if 0 < start.ticks <= MOST]
     names = ", ".join(("REQUIREMENTS", "PROPOSITIONS", "VARIABLES", "init", "truths", "judge"))
     code = "\n".join(line for line in made.text.splitlines() if not line.lstrip().startswith("//"))
     monitor = f'"use strict";\nconst monitor = (() => {{\n{code}\nreturn {{ {names} }};\n}})();\n'
@@ -120,7 +120,7 @@ def inset(
 
 _PARTS = ("trace", "words", "grid", "gestures")
 _TITLED = 6
-"""Ids in the title."""
+"""Maximum number of ids in the title."""
 
 
 def _more(count: int) -> str:
@@ -204,7 +204,7 @@ def _requirement(
 
 
 def _tree(formula: f.Formula, propositions: Sequence[str]) -> list[Any]:
-    """A Boolean formula as operators and operands."""
+    """A Boolean formula as nested lists of operators and operands."""
     match formula:
         case f.Const(value):
             return [str(value).lower()]
@@ -230,15 +230,19 @@ def _tree(formula: f.Formula, propositions: Sequence[str]) -> list[Any]:
 
 
 def _variable(name: str, front: InputAdapter) -> dict[str, Any]:
-    own = [each for each in front.comparisons.values() if name in each.inputs]
+    own = [comparison for comparison in front.comparisons.values() if name in comparison.inputs]
     found = front.inputs.get(name)
-    unit = next((each.units[name][0] for each in own if name in each.units), "")
+    unit = next((comparison.units[name][0] for comparison in own if name in comparison.units), "")
     candidates: list[Any] = []
     if found is not None and found.words:
         candidates = [*found.words]
     elif found is not None and found.kind == NUMBER:
-        limits = [each[1] for one in own if (each := threshold(one)) and each[0] == name]
-        candidates = _candidates(limits or [each for one in own for each in numbers(one)])
+        limits = [
+            each[1] for comparison in own if (each := threshold(comparison)) and each[0] == name
+        ]
+        candidates = _candidates(
+            limits or [number for comparison in own for number in numbers(comparison)]
+        )
     return {
         "label": visible(name),
         "note": f"in {unit}" if unit else "",
@@ -247,14 +251,14 @@ def _variable(name: str, front: InputAdapter) -> dict[str, Any]:
 
 
 def _written(name: str, requirements: Sequence[FormalizedRequirement]) -> str:
-    """A comparison as the first sentence that has it writes it."""
+    """A comparison, as written in the first sentence that contains it."""
     return next(
         (found for requirement in requirements if (found := requirement.wordings.get(name))), name
     )
 
 
 def _limit(compared: CompiledComparison, places: Mapping[str, int]) -> tuple[int, float] | None:
-    """A threshold: the place of its variable, and the number."""
+    """A threshold: the index of its variable, and the number."""
     found = threshold(compared)
     value = _finite(found[1]) if found else None
     return (places[found[0]], value) if found and value is not None else None
@@ -269,22 +273,22 @@ def _finite(value: Fraction) -> float | None:
 
 
 def _candidates(limits: Sequence[Fraction]) -> list[float]:
-    """Numbers at, between and beside these: they make all patterns of comparisons with them."""
+    """Numbers at, between and beside the limits, which give all combinations of comparisons."""
     known = sorted({each for limit in limits if (each := _finite(limit)) is not None} or {0.0})
     between = [(a + b) / 2 for a, b in pairwise(known)]
     least, most = known[0] - _step(known[0]), known[-1] + _step(known[-1])
-    return [each for each in (most, *known, *between, least) if isfinite(each)]
+    return [number for number in (most, *known, *between, least) if isfinite(number)]
 
 
 def _step(value: float) -> float:
-    """A unit of the first digit."""
+    """A step of one unit of the first digit."""
     return float(10 ** floor(log10(abs(value)))) if value else 1.0
 
 
 def _groups(
     propositions: Sequence[str], front: InputAdapter, places: Mapping[str, int]
 ) -> Iterator[dict[str, list[int]]]:
-    """Comparisons that share variables, so that numbers of one bear upon the others."""
+    """Groups of comparisons that share variables."""
     groups: list[tuple[set[str], set[str]]] = []
     for name, compared in front.comparisons.items():
         variables, members = {*compared.inputs}, {name}

@@ -1,8 +1,8 @@
-"""Windows of recorded runs as traces to start from: a violation, and what led to it.
+"""Windows of recorded runs as traces to start from: a violation with its history.
 
-A page judges a window as if nothing had been before it. So a window begins where that makes no
-difference: the signals of the monitor are those of the whole run at each of its ticks. But for one:
-a demand that lasts from before the window may begin with it.
+The page judges a window without the ticks before it. So a window begins where these make no
+difference: at each tick of the window the monitor has the same outputs as in the whole run. The
+exception is an obligation that began earlier, which may begin with the window.
 """
 
 from __future__ import annotations
@@ -27,28 +27,28 @@ from monitors.kernel.verdicts import Signals
 from monitors.loading import load
 
 RUNS = 20
-"""Runs of an audit whose violations are traces; the others are counted."""
+"""Maximum number of runs whose violations become traces; the others are counted."""
 SHOWN = 20
-"""Violations of a requirement that are traces; the others are counted."""
+"""Maximum number of violations of a requirement that become traces; the others are counted."""
 _AROUND = 10
-"""Ticks before what leads to a violation, and after it."""
+"""Ticks to show before the history of a violation, and after the violation."""
 _AFTER = 200
-"""Ticks of a violation that lasts."""
+"""Maximum ticks of a long violation."""
 _BACK = (0, 10, 30, 100, 300, 1_000)
-"""How many ticks earlier a window may begin, where what was before would make a difference."""
+"""Numbers of ticks by which a window may begin earlier, if earlier ticks make a difference."""
 
 
 @dataclass(frozen=True, slots=True)
 class Recorded:
-    """What of a run is on a page."""
+    """The traces of recorded runs on a page."""
 
     starts: tuple[Start, ...]
     notes: tuple[str, ...]
-    """What is not, in words."""
+    """Sentences about what is left out."""
     findings: tuple[Diagnostic, ...] = ()
-    """What is wrong with the log."""
+    """Diagnostics about the log."""
     sha256: str = ""
-    """Of the one log that it is of."""
+    """SHA-256 of the log, if there is only one."""
 
 
 def of_log(
@@ -78,21 +78,23 @@ def of_log(
         notes += run.notes()
         violations += run.violations
     if not violations:
-        notes.append(f"{recording.name}: no whole tick of it violates a requirement")
+        notes.append(f"{recording.name}: no tick violates a requirement")
     if not recording.intact:
-        notes.append(f"{recording.name}: messages of it may be lost: what is not known is unknown")
+        notes.append(
+            f"{recording.name}: messages may be lost; values that depend on them are unknown"
+        )
     return Recorded(tuple(starts), tuple(notes), recording.findings, recording.sha256)
 
 
 def of_evidence(
     requirements: Sequence[FormalizedRequirement], plan: Plan, evidence: EvidenceSource
 ) -> Recorded:
-    """The violations of audited runs, as far as their logs are there as they were audited.
+    """The violations of audited runs whose logs are unchanged.
 
     Args:
         requirements: those that the plan audits are looked at.
-        plan: of the audit.
-        evidence: of it; the names of its logs are their paths.
+        plan: the plan of the audit.
+        evidence: the evidence of the audit; the names of its logs are their paths.
     """
     ids = {requirement.id for requirement in requirements}
     violated = dict.fromkeys(
@@ -105,19 +107,19 @@ def of_evidence(
     for name, sha256 in [*violated][:RUNS]:
         found = of_log(requirements, plan, path_of(name))
         if isinstance(found, Diagnostic):
-            notes.append(f"violations of {name} are not here: {found.message}")
+            notes.append(f"violations of {name} are left out: {found.message}")
         elif found.sha256 != sha256:
-            notes.append(f"violations of {name} are not here: it is not the log that was audited")
+            notes.append(f"violations of {name} are left out: the log differs from the audited one")
         else:
             starts += found.starts
             notes += found.notes
     if len(violated) > RUNS:
-        notes.append(f"{len(violated) - RUNS} more runs with violations are not here")
+        notes.append(f"{len(violated) - RUNS} more runs with violations are left out")
     return Recorded(tuple(starts), tuple(notes))
 
 
 class Run:
-    """One requirement over one run."""
+    """The violations of one requirement on one run."""
 
     def __init__(
         self,
@@ -132,15 +134,15 @@ class Run:
         self._ticks = len(timeline.times)
         (self._outcome,) = evaluate(self._monitor, columns, self._ticks)
         self._whole = self._signals(columns, self._ticks)
-        self._windows = [self._window(*each) for each in self._outcome.violations[:SHOWN]]
+        self._windows = [self._window(*violation) for violation in self._outcome.violations[:SHOWN]]
 
     @property
     def violations(self) -> int:
-        """How many stretches of ticks break it."""
+        """The number of violations."""
         return len(self._outcome.violations)
 
     def starts(self) -> Iterator[Start]:
-        """The windows, as traces."""
+        """The windows as traces."""
         for number, window in enumerate(self._windows, 1):
             if window is None:
                 continue
@@ -149,21 +151,21 @@ class Run:
             name = f"{self._id}, violation {number} of {self._name}"
             about = f"{name}: ticks {first} to {last} of the run; tick 0 here is at {begin:.3f} s"
             if not self._is_alike(first, last, 0):
-                about += ", and a demand from before begins with it"
+                about += "; an obligation from before this window starts at its first tick"
             yield Start("Recorded runs", name, about, (self._id,), (*self._rows(first, last),))
 
     def notes(self) -> Iterator[str]:
-        """What is not among them."""
+        """Sentences about violations that are left out."""
         for number, window in enumerate(self._windows, 1):
             if window is None:
-                what = f"violation {number} of {self._name} is not here"
+                what = f"violation {number} of {self._name} is left out"
                 yield f"{self._id}: {what}: what led to it takes more than {MOST} ticks"
         more = self.violations - SHOWN
         if more > 0:
-            yield f"{self._id}: {more} more violations of {self._name} are not here"
+            yield f"{self._id}: {more} more violations of {self._name} are left out"
 
     def _window(self, first: int, last: int) -> tuple[int, int] | None:
-        """The first and the last tick of a trace that shows a violation; None: it is too long."""
+        """First and last tick of a window that shows a violation; None if it would be too long."""
         end = min(self._ticks - 1, last + _AROUND, first + _AFTER)
         place = bisect_right(self._outcome.triggers, first)
         trigger = self._outcome.triggers[place - 1] if place else first
@@ -176,12 +178,12 @@ class Run:
         return None
 
     def _is_alike(self, first: int, last: int, older: int) -> bool:
-        """Whether the signals of the window alone are those of the whole run.
+        """Whether the monitor outputs on the window alone equal those on the whole run.
 
         Args:
             first: the first tick.
             last: the last one.
-            older: 1 where a trigger at the first tick may stand for earlier ones.
+            older: 1 if a trigger at the first tick may represent earlier triggers.
         """
         count = last - first + 1
         every = (1 << count) - 1
@@ -196,7 +198,7 @@ class Run:
         )
 
     def _signals(self, columns: Mapping[str, Column], ticks: int) -> tuple[int, ...]:
-        """Those of both rails, as columns."""
+        """The monitor outputs for the certain and the possible value, as columns."""
         every = (1 << ticks) - 1
         rails = [
             self._monitor.columns(every, **literals_of(self._monitor, columns, every, doubt))
@@ -205,7 +207,7 @@ class Run:
         return tuple(column & every for (signals,) in rails for column in signals)
 
     def _rows(self, first: int, last: int) -> Iterator[Ticks]:
-        """Equal ticks one after the other."""
+        """Consecutive equal ticks, with their count."""
         rows = [
             {name: column.at(tick) for name, column in self._columns.items()}
             for tick in range(first, last + 1)

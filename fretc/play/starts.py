@@ -1,6 +1,6 @@
-"""Traces that a page starts from: examples, tests, conflicts.
+"""Traces that the page can start from: examples, tests, conflicts.
 
-A value is of a variable or of a proposition; what a trace does not say is unknown.
+Traces have values of variables and propositions; a missing value is unknown.
 """
 
 from __future__ import annotations
@@ -17,30 +17,30 @@ from fretish.printer import sentence as printed
 
 Value = bool | int | float | str | None
 Ticks = tuple[int, dict[str, Value]]
-"""How many equal ticks there are one after the other, and their values."""
+"""(number of consecutive equal ticks, their values)."""
 MOST = 2_000
-"""Ticks of a trace in a page."""
+"""Maximum number of ticks of a trace on a page."""
 
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """A trace, and what it shows."""
+    """A trace, with a description."""
 
     group: str
     name: str
     about: str
     requirements: tuple[str, ...]
-    """The ids of those that it is about."""
+    """Ids of the requirements that the trace is about."""
     rows: tuple[Ticks, ...]
 
     @property
     def ticks(self) -> int:
-        """How long it is."""
+        """The length of the trace."""
         return sum(count for count, _ in self.rows)
 
 
 def of_examples(requirements: Sequence[FormalizedRequirement]) -> Iterator[Start]:
-    """The traces of `fretc explain`; what repeats comes twice."""
+    """The traces of `fretc explain`; a repeating part appears twice."""
     for requirement in requirements:
         if (requirement.ticks or 0) > MOST:
             continue
@@ -58,9 +58,13 @@ def of_examples(requirements: Sequence[FormalizedRequirement]) -> Iterator[Start
 
 
 def of_suite(suite: Suite, requirements: Sequence[FormalizedRequirement]) -> Iterator[Start]:
-    """The tests of requirements whose sentences are still the same."""
+    """The tests of requirements whose sentences have not changed."""
     fingerprints = {requirement.id: requirement.fingerprint for requirement in requirements}
-    same = {each.id for each in suite.requirements if fingerprints.get(each.id) == each.fingerprint}
+    same = {
+        requirement.id
+        for requirement in suite.requirements
+        if fingerprints.get(requirement.id) == requirement.fingerprint
+    }
     for test in suite.tests:
         if test.requirement in same:
             rows = tuple((row.count, dict(row.values)) for row in test.rows)
@@ -70,24 +74,24 @@ def of_suite(suite: Suite, requirements: Sequence[FormalizedRequirement]) -> Ite
 
 
 def changed(suite: Suite, requirements: Sequence[FormalizedRequirement]) -> tuple[str, ...]:
-    """The requirements that the tests are about as they were before."""
+    """The requirements that have changed since the tests were generated."""
     fingerprints = {requirement.id: requirement.fingerprint for requirement in requirements}
     return tuple(
-        each.id
-        for each in suite.requirements
-        if fingerprints.get(each.id, each.fingerprint) != each.fingerprint
+        requirement.id
+        for requirement in suite.requirements
+        if fingerprints.get(requirement.id, requirement.fingerprint) != requirement.fingerprint
     )
 
 
 def others(document: Document, requirements: Sequence[FormalizedRequirement]) -> tuple[str, ...]:
-    """The requirements of an analysis that are not those of the project, or have changed."""
+    """The requirements of an analysis that have changed, or are not in the project."""
     sentences = {requirement.id: printed(requirement.written) for requirement in requirements}
     members = document.requirements.items()
     return tuple(id for id, member in members if sentences.get(id) != member.sentence)
 
 
 def of_analysis(document: Document, changed: Sequence[str]) -> Iterator[Start]:
-    """The plays of conflicts, but of those that have changed; a loop comes three times."""
+    """The runs of conflicts between unchanged requirements; a loop appears three times."""
     for conflict in document.analysis.conflicts:
         if not {*changed}.isdisjoint(conflict.requirements):
             continue
@@ -99,10 +103,10 @@ def of_analysis(document: Document, changed: Sequence[str]) -> Iterator[Start]:
 
 
 def stale(path: str, why: str, again: str) -> Diagnostic:
-    """A warning: traces of a file are left out, because they are of something else."""
+    """A warning that traces of a file are left out because they are outdated."""
     return Diagnostic(
         Code.BAD_EVIDENCE,
         f"traces of `{path}` are left out: {why}",
-        help=f"make it again: `{again}`",
+        help=f"generate it again: `{again}`",
         severity=Severity.WARNING,
     )

@@ -1,7 +1,7 @@
-"""Requirements as they are and as they were: what has changed, and what tells both apart.
+"""Two versions of requirements: changes, and traces that distinguish the versions.
 
-Two sentences are compared with each other only where a tick is the same and all that both read
-means the same in the bindings: a run of the one is then a run of the other.
+Two sentences are compared only if the clock is the same and the names that both read have the same
+meaning in the bindings, so that both versions have the same runs.
 """
 
 from __future__ import annotations
@@ -24,29 +24,29 @@ class Side:
     """One version of a project."""
 
     requirements: Sequence[FormalizedRequirement]
-    """Those that a monitor can be made of."""
+    """The requirements for which a monitor can be generated."""
     refused: Mapping[str, str]
-    """The ids of the others, and why they are none."""
+    """Id of each other requirement → the reason."""
     declarations: Declarations | None
-    """With the propositions that sentences state."""
+    """The declarations, including propositions that sentences define."""
 
     @property
     def ids(self) -> tuple[str, ...]:
-        """Of all its requirements."""
+        """The ids of all requirements of this version."""
         return (*(requirement.id for requirement in self.requirements), *self.refused)
 
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """A requirement that is another sentence than before, over the same bindings."""
+    """A requirement whose sentence has changed, over the same bindings."""
 
     new: FormalizedRequirement
     old: FormalizedRequirement
-    """With an id of its own."""
+    """The earlier version, under a distinct id."""
     note: str
-    """What became of it, in words."""
+    """A sentence about the change."""
     start: Start | None
-    """A shortest trace that tells both apart; None: there is none, or none that a page takes."""
+    """A shortest distinguishing trace; None if there is none, or it is too long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,16 +55,16 @@ class Versions:
 
     pairs: tuple[Pair, ...] = ()
     notes: tuple[str, ...] = ()
-    """What became of the other requirements, in words."""
+    """Sentences about the other requirements."""
 
 
 def versions(new: Side, old: Side, seconds: float) -> Versions:
-    """Hold requirements against what they were.
+    """Compare requirements with an earlier version.
 
     Args:
-        new: as they are.
-        old: as they were; an only one is compared with an only one, whatever their ids are.
-        seconds: of a processor, for each pair.
+        new: the present version.
+        old: the earlier version; if both have a single requirement, ids are ignored.
+        seconds: CPU seconds for each pair.
     """
     ids, earlier = new.ids, old.ids
     names = {id: id for id in earlier}
@@ -79,17 +79,17 @@ def versions(new: Side, old: Side, seconds: float) -> Versions:
             continue
         unlike = _unlike(requirement, other, new.declarations, old.declarations)
         if unlike:
-            notes.append(f"{requirement.id}: {unlike}: its versions are not compared")
+            notes.append(f"{requirement.id}: {unlike}, so its versions are not compared")
         elif (requirement.fingerprint, requirement.ticks) == (other.fingerprint, other.ticks):
             same.append(requirement.id)
         else:
             pairs.append(_pair(requirement, _named(other, requirement.id, taken), seconds))
-    gone = "no monitor can be made of what it was"
+    gone = "no monitor can be generated from the earlier version"
     notes += [
         f"{id}: {gone}: {old.refused[names[id]]}" for id in ids if names.get(id) in old.refused
     ]
     groups = {
-        "the same as before": same,
+        "unchanged": same,
         "new": [id for id in ids if id not in names],
         "gone": [id for id in earlier if id not in ids],
     }
@@ -103,20 +103,20 @@ def _unlike(
     now: Declarations | None,
     then: Declarations | None,
 ) -> str:
-    """Why a run of one version is none of the other; empty: it is one."""
-    clocks = [clock(each.clock) if each else None for each in (now, then)]
+    """The reason why the versions have different runs, or ""."""
+    clocks = [clock(declarations.clock) if declarations else None for declarations in (now, then)]
     if clocks[0] != clocks[1]:
-        return "a tick is something else now"
+        return "the clock has changed"
     one, other = _meanings(new, now), _meanings(old, then)
     both = one.keys() & other.keys()
     changed = sorted(name for kind, name in both if one[kind, name] != other[kind, name])
-    return f"`{changed[0]}` means something else in the bindings now" if changed else ""
+    return f"`{changed[0]}` has another meaning in the bindings now" if changed else ""
 
 
 def _meanings(
     requirement: FormalizedRequirement, declarations: Declarations | None
 ) -> dict[tuple[str, str], Any]:
-    """What the bindings say of each name that a requirement reads; None: nothing."""
+    """(kind, name) → its table in the bindings, or None, for each name that a requirement reads."""
     found: dict[tuple[str, str], Any] = {
         ("proposition", name): None for name in requirement.watched
     }
@@ -127,7 +127,7 @@ def _meanings(
 
 
 def _named(requirement: FormalizedRequirement, id: str, taken: set[str]) -> FormalizedRequirement:
-    """Under an id of its own."""
+    """The requirement under an unused id."""
     name = f"{id} before"
     while name in taken:
         name += "'"
@@ -139,26 +139,28 @@ def _pair(new: FormalizedRequirement, old: FormalizedRequirement, seconds: float
     found = difference(new, old, seconds)
     if isinstance(found, Absence):
         if found.why:
-            note = f"changed; whether a run tells both apart is not known: {found.why}"
+            note = f"changed; whether a run distinguishes the versions is not known: {found.why}"
         else:
-            note = "written in another way; all finite runs without unknown values have the same"
-            note += " verdicts: proved"
+            note = (
+                "reworded; proved: both versions have the same verdict on every finite run without"
+            )
+            note += " unknown values"
             if _has_numbers(new) or _has_numbers(old):
-                note += ", of exact numbers; rounding of floats is not modelled"
+                note += "; the proof assumes exact numbers, without the rounding of floats"
         return Pair(new, old, f"{new.id}: {note}", None)
     word = found.word
     count = f"{word.ticks} tick{'' if word.ticks == 1 else 's'}"
-    about = f"{new.id}: a shortest trace that tells both versions apart has {count}"
-    about += f"; its values may not go together: {found.doubt}" if found.doubt else ""
+    about = f"{new.id}: a shortest trace that distinguishes the two versions has {count}"
+    about += f"; its values may not be consistent: {found.doubt}" if found.doubt else ""
     rows = tuple((row.count, dict(row.values)) for row in word.rows)
     start = Start("Versions", f"{new.id}, before and now", about, (new.id,), rows)
     if word.ticks > MOST:
-        return Pair(new, old, f"{about}, and this page takes {MOST}", None)
+        return Pair(new, old, f"{about}, and this page shows at most {MOST}", None)
     return Pair(new, old, about, start)
 
 
 def _has_numbers(requirement: FormalizedRequirement) -> bool:
-    """Whether it compares some, itself or by what the bindings say of its propositions."""
+    """Whether the requirement or the bindings of its propositions compare numbers."""
     declared = requirement.declarations.propositions if requirement.declarations else {}
     return bool(comparisons(requirement)) or any(
         declared[name].signals for name in requirement.watched if name in declared
@@ -168,7 +170,7 @@ def _has_numbers(requirement: FormalizedRequirement) -> bool:
 def side_by_side(
     versions: Versions, requirements: Sequence[FormalizedRequirement]
 ) -> Iterator[FormalizedRequirement]:
-    """Each requirement, and behind it what it was."""
+    """Each requirement, followed by its earlier version."""
     before = {pair.new.id: pair.old for pair in versions.pairs}
     for requirement in requirements:
         yield requirement

@@ -1,5 +1,5 @@
 """The traceability report: from each hazard to the verdicts of its requirements.
 
-`make` reads project, evidence, proofs, lock and signatures, `assembly` builds a `Report` of them,
-and `forms` writes it. A requirement is shown to hold only where current evidence shows it.
+`make` reads project, evidence, proofs, lock and signatures, `assembly` builds a `Report` from them,
+and `forms` writes it. Only current evidence can show that a requirement holds.
 """

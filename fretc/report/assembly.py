@@ -1,6 +1,6 @@
-"""The whole report as values, assembled from values: no file is read here.
+"""Assembles the `Report` from project, evidence, proofs and reviews; reads no file.
 
-`fretc.report.make` reads the files; `fretc.report.sections` has the parts.
+`fretc.report.make` reads the files; `fretc.report.sections` builds the parts.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ from fretc.report.sections.runs import Run, run_summaries, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.set_analysis.assembly import in_front, in_overall, set_analysis
 from fretc.report.situations import situations
-from fretc.report.traceability.acceptances import warnings
-from fretc.report.traceability.artefacts import joint_monitors, shared_products
-from fretc.report.traceability.lock import Lock, withdrawn_requirements
-from fretc.report.traceability.waivers import Waiver
+from fretc.traceability.acceptances import warnings
+from fretc.traceability.artefacts import joint_monitors, shared_products
+from fretc.traceability.lock import Lock, withdrawn_requirements
+from fretc.traceability.waivers import Waiver
 from fretc.verification.ajpf_results import merged
 from fretc.verification.reader import Proofs
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -69,18 +69,18 @@ def report(
     book: SignatureBook = NO_SIGNATURES,
     together: AnalyzedSet | None = None,
 ) -> tuple[Report, Details, tuple[Diagnostic, ...]]:
-    """The report, what it has in rows only, and diagnostics about its files.
+    """The report, the evidence behind its rows, and diagnostics about its files.
 
     Args:
-        project: with or without errors; the report shows what could not be formalized as such.
-        evidence: None where no run has been audited.
-        path: of the evidence file, whether it is there or not.
-        lock: None where nothing has been reviewed.
-        waivers: those that count today, by the requirement.
-        proofs: None where nothing was verified.
+        project: with or without errors; the report lists unformalized requirements.
+        evidence: None if no run was audited.
+        path: path of the evidence file, which need not exist.
+        lock: None if no requirement is reviewed.
+        waivers: requirement → waiver, for waivers that are valid today.
+        proofs: None if nothing was verified.
         ajpf: the results of AJPF.
-        book: who signed what.
-        together: None where nobody has asked whether all requirements can be kept together.
+        book: the checked signatures.
+        together: the file of `fretc analyze`; None if there is none.
     """
     briefs = ResultSummaries.of(evidence) if evidence else None
     runs_by_key = runs(briefs)
@@ -108,7 +108,9 @@ def report(
         )
         for assessment in assessed
     )
-    details = Details(evidence, project, {each.anchor: each for each in assessed}, runs_by_key)
+    details = Details(
+        evidence, project, {assessment.anchor: assessment for assessment in assessed}, runs_by_key
+    )
     longest = _longest_waits(assessed, sections, details)
     reservations = (
         *(line for view in sections for line in _reservations(view, longest)),
@@ -156,7 +158,7 @@ def report(
         not_shown=tuple(_not_shown(view) for view in worst_first(sections) if view.reasons),
         reservations=reservations,
         planned=tuple(plan for view in sections for plan in view.planned if view.status != RETIRED),
-        proofs=proof_views((one for one in all_proofs if one.requirement in SHARED), shared),
+        proofs=proof_views((proof for proof in all_proofs if proof.requirement in SHARED), shared),
         verification=phrases.place(proofs.file) if proofs else "",
         remarks=tuple(remark(diagnostic) for diagnostic in (*project.diagnostics, *checked)),
         hazards=hazard_views(project),
@@ -164,7 +166,9 @@ def report(
         orphans=orphans(project, assessed, briefs),
         reviewed=reviews.summary(assessed, book),
         changes=all_changes,
-        withdrawn=tuple(Withdrawal(one.review.requirement, one.text) for one in withdrawn),
+        withdrawn=tuple(
+            Withdrawal(withdrawal.review.requirement, withdrawal.text) for withdrawal in withdrawn
+        ),
         waivers=tuple(view.waiver for view in sections if view.waiver),
         signatures=signature_list,
         requirements=sections,
@@ -176,7 +180,7 @@ def report(
         analysis=analysis,
     )
     diagnostics = (
-        *(each for each in checked if each.accepted),
+        *(diagnostic for diagnostic in checked if diagnostic.accepted),
         *stale_evidence(assessed, briefs, path),
         *idle_waivers(assessed),
         *book.diagnostics(),
@@ -187,7 +191,7 @@ def report(
 
 def _confidence(evidence: EvidenceSource | None) -> float:
     estimations = evidence.probabilities if evidence else ()
-    return next((one.confidence for one in estimations), CONFIDENCE)
+    return next((estimation.confidence for estimation in estimations), CONFIDENCE)
 
 
 def _checks(
@@ -196,9 +200,9 @@ def _checks(
     lock: Lock | None,
     evidence: EvidenceSource | None,
 ) -> Sequence[Diagnostic]:
-    """What `fretc check` finds beside mistakes; reviews have a part of their own."""
-    found = warnings(project, [each.standing for each in assessed], lock, evidence)
-    return [each for each in found if each.accepted or each.code not in _OF_REVIEWS]
+    """The warnings of `fretc check`, without those about reviews."""
+    found = warnings(project, [assessment.standing for assessment in assessed], lock, evidence)
+    return [warning for warning in found if warning.accepted or warning.code not in _OF_REVIEWS]
 
 
 _OF_REVIEWS = (Code.CHANGED_SINCE_REVIEW, Code.NOT_REVIEWED)
@@ -211,7 +215,7 @@ def _not_shown(view: RequirementView) -> NotShown:
 def _longest_waits(
     assessed: Sequence[Assessment], sections: Sequence[RequirementView], details: Details
 ) -> Mapping[str, ResultView]:
-    """The result with the longest wait of each requirement that is shown and sets no bound."""
+    """Requirement → result with the longest latency, for shown requirements without a bound."""
     rows = [
         max(waiting, key=lambda row: row.latency_max_s or 0)
         for assessment, view in zip(assessed, sections, strict=True)
@@ -241,8 +245,8 @@ def _reservations(view: RequirementView, longest: Mapping[str, ResultView]) -> S
 
 
 def _claims(assessed: Sequence[Assessment], runs: int, selection: Selection | None) -> str:
-    active = [one for one in assessed if one.verdict != RETIRED]
-    drafts = sum(one.entry.status == "draft" for one in active)
+    active = [assessment for assessment in assessed if assessment.verdict != RETIRED]
+    drafts = sum(assessment.entry.status == "draft" for assessment in active)
     retired = len(assessed) - len(active)
     parts = [
         f"{phrases.times(len(active), 'requirement')} in force",
@@ -255,9 +259,9 @@ def _claims(assessed: Sequence[Assessment], runs: int, selection: Selection | No
 
 
 def _counts(assessed: Sequence[Assessment]) -> tuple[Count, ...]:
-    active = [one for one in assessed if one.verdict != RETIRED]
-    requirements = Counter(one.mark for one in assessed)
-    audits = Counter(audit.mark for one in active for audit in one.reviewed_audits)
+    active = [assessment for assessment in assessed if assessment.verdict != RETIRED]
+    requirements = Counter(assessment.mark for assessment in assessed)
+    audits = Counter(audit.mark for assessment in active for audit in assessment.reviewed_audits)
     marks = {*map(verdict_mark, _ALWAYS), *requirements, *audits}
     return tuple(
         Count(mark, requirements[mark], audits[mark])
@@ -273,11 +277,11 @@ _ALWAYS = (
     NOT_EXERCISED,
     kernel.SATISFIED,
 )
-"""Verdicts that have a row in the table of counts even where their count is 0."""
+"""Verdicts that have a row in the table of counts even if their count is 0."""
 
 
 def _assumptions(project: Project, runs: Sequence[Run]) -> tuple[str, ...]:
-    """The declared assumptions, then those of the audit that are no longer declared."""
+    """The declared assumptions, then assumptions of the audit that are no longer declared."""
     declared = project.declarations.assumptions if project.declarations else ()
     now = dict.fromkeys(declared)
     audited = (text for run in runs for text in run.facts.assumptions)

@@ -1,4 +1,4 @@
-"""Warnings about evidence that is out of date (F504) and waivers that cover nothing (F543)."""
+"""Warnings about outdated evidence (F504) and waivers without effect (F543)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fretc.audit.evidence.verdicts import WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.sections.matrix import unknown_ids
-from fretc.report.traceability.waivers import idle_waiver
+from fretc.traceability.waivers import idle_waiver
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
 
@@ -17,9 +17,9 @@ from fretish.diagnostics.source import Source
 def stale_evidence(
     assessments: Sequence[Assessment], briefs: ResultSummaries | None, path: str
 ) -> tuple[Diagnostic, ...]:
-    """F504 for requirements with evidence of something else, and for each id that is unknown.
+    """F504 for requirements with outdated evidence, and for unknown ids in the evidence.
 
-    Requirements whose evidence is suspect for one and the same reason share a message.
+    Requirements whose evidence is suspect for the same reason share a message.
     """
     again = f"audit again: `fretc audit LOG... -o {path}`"
     suspicions: dict[tuple[int, str], list[Assessment]] = {}
@@ -40,7 +40,7 @@ def stale_evidence(
     strange = [
         Diagnostic(
             Code.STALE_EVIDENCE,
-            f"there is evidence of {id}, which is not among the requirements",
+            f"there is evidence for {id}, which is not among the requirements",
             Source(path, "").span(),
             help=again,
             severity=Severity.WARNING,
@@ -51,14 +51,14 @@ def stale_evidence(
 
 
 def _suspicions(assessment: Assessment) -> tuple[int, str]:
-    """The number of runs in which a requirement is suspect, and why."""
+    """The number of runs in which a requirement is suspect, and the reason."""
     stale = [audit for audit in assessment.audits if audit.is_stale]
     reasons = dict.fromkeys(reason for audit in stale for reason in audit.suspicions)
     return len(stale), phrases.joined(list(reasons))
 
 
 def idle_waivers(assessments: Sequence[Assessment]) -> tuple[Diagnostic, ...]:
-    """F543 for each waiver of another verdict than the one that is there."""
+    """F543 for each waiver of another verdict than the present one."""
     return tuple(
         idle_waiver(assessment.waiver, assessment.verdict)
         for assessment in assessments

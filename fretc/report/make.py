@@ -1,6 +1,6 @@
 """The traceability report of a project and its files: evidence, proofs, lock, waivers, signatures.
 
-This module reads the files; `fretc.report.assembly` makes the report of what they say.
+This module reads the files; `fretc.report.assembly` builds the report.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from fretc.report.forms.json_text import json_pieces
 from fretc.report.model.views import Report
 from fretc.report.page.html import html
 from fretc.report.sections.details import Details
-from fretc.report.traceability.lock import read as read_lock
-from fretc.report.traceability.waivers import Waiver
-from fretc.report.traceability.waivers import read as read_waivers
+from fretc.traceability.lock import read as read_lock
+from fretc.traceability.waivers import Waiver
+from fretc.traceability.waivers import read as read_waivers
 from fretc.verification.ajpf_results import ajpf_proofs
 from fretc.verification.reader import read as read_proofs
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -30,19 +30,19 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 @dataclass(frozen=True, slots=True)
 class ReportBuild:
-    """A report, the diagnostics of the files, and what HTML, SARIF and others need beside them."""
+    """A report, the diagnostics of its files, and further inputs of the formats."""
 
     report: Report | None
-    """None where evidence, proofs, analysis, lock or signatures cannot be read.
+    """None if evidence, proofs, analysis, lock or signatures cannot be read.
 
-    Waivers and results of AJPF that cannot be read do not count; what they would have shown or
-    waived is then open in the report, and the diagnostics say why.
+    Unreadable waivers and results of AJPF are ignored: the report then shows the items as open, and
+    the diagnostics give the reason.
     """
     diagnostics: tuple[Diagnostic, ...]
     requirements: tuple[FormalizedRequirement, ...] = ()
-    """The formalized requirements; the HTML page draws what they mean."""
+    """The formalized requirements; the HTML page has a diagram of each."""
     details: Details | None = None
-    """What the report has in rows only; None where there is no report."""
+    """The evidence behind the rows of the report; None if there is no report."""
 
     @property
     def html(self) -> str | None:
@@ -73,15 +73,14 @@ def make(
     """Read the files and make the report.
 
     Args:
-        project: with or without errors; the report shows what could not be formalized as such.
-        evidence: path of a file or of a store; where there is none, nothing has been exercised.
-        lock: path of a lock; None: nothing has been reviewed.
+        project: with or without errors; the report lists unformalized requirements.
+        evidence: path of a file or of a store; if it does not exist, no requirement is exercised.
+        lock: path of a lock; None: no requirement is reviewed.
         waivers: path of a file of waivers; None: nothing is waived.
         verification: path of a file that `fretc verify` wrote; None: nothing was proved.
         ajpf: paths of results that the `run.py` of bundles wrote.
-        signers: path of a list of signers; None: no signature counts.
-        analysis: path of a file that `fretc analyze` wrote; None: nobody has asked whether all
-            requirements can be kept together.
+        signers: path of a list of signers; None: no signature is valid.
+        analysis: path of a file that `fretc analyze` wrote; None: there is no analysis.
     """
     audits = source(evidence)
     if isinstance(audits, Diagnostic) and audits.is_error:
@@ -102,7 +101,7 @@ def make(
         return ReportBuild(None, (signatures,))
     waivers_in_force, waiver_diagnostics = _waivers_in_force(project, waivers)
     proofs_of_ajpf, ajpf_diagnostics = ajpf_proofs(project.formalized, ajpf)
-    # A missing file of evidence is a note: the report shows that nothing has been exercised.
+    # A missing file of evidence is only a note: the report shows that nothing was exercised.
     present, notes = (None, (audits,)) if isinstance(audits, Diagnostic) else (audits, ())
     try:
         full_report, details, report_diagnostics = report(
@@ -129,7 +128,7 @@ def make(
 def _waivers_in_force(
     project: Project, path: str | None
 ) -> tuple[Mapping[str, Waiver], tuple[Diagnostic, ...]]:
-    """The waivers that count today, and diagnostics about all of them."""
+    """The waivers that are valid today, and diagnostics about all waivers."""
     if path is None:
         return {}, ()
     day = today()

@@ -1,4 +1,4 @@
-"""What the audited runs have exercised of each requirement, for its section and for the matrix."""
+"""Views of the situations that audited runs have shown, for sections and matrix."""
 
 from __future__ import annotations
 
@@ -14,23 +14,29 @@ from fretc.report.model.views import SituationsView
 def situations(
     assessed: Sequence[Assessment], evidence: EvidenceSource | None
 ) -> Mapping[str, SituationsView]:
-    """Of each requirement in force that has results, by its id.
+    """Requirement id → view of its situations, for requirements in force with results.
 
-    A result that is evidence of something else shows nothing of the requirement as it is now.
+    Suspect results are not counted.
 
     Args:
         assessed: all requirements.
-        evidence: that their audits are of; None: there is none.
+        evidence: the evidence; None if there is none.
     """
     if evidence is None:
         return {}
     places = {
-        one.id: {audit.place: run for run, audit in enumerate(one.audits) if not audit.is_stale}
-        for one in assessed
-        if one.audits and one.verdict != RETIRED
+        assessment.id: {
+            audit.place: run for run, audit in enumerate(assessment.audits) if not audit.is_stale
+        }
+        for assessment in assessed
+        if assessment.audits and assessment.verdict != RETIRED
     }
-    found = (each for each in of_requirements(evidence, places) if each.id in places)
-    return {each.id: _view(each) for each in found}
+    found = (
+        of_requirement
+        for of_requirement in of_requirements(evidence, places)
+        if of_requirement.id in places
+    )
+    return {coverage_of_one.id: _view(coverage_of_one) for coverage_of_one in found}
 
 
 def _view(one: RequirementCoverage) -> SituationsView:
@@ -40,6 +46,6 @@ def _view(one: RequirementCoverage) -> SituationsView:
     return SituationsView(
         f"{seen}/{every}",
         f"{seen} of {every} situations seen",
-        tuple(each.words for each in one.of(CoverageStatus.PERHAPS)),
-        tuple(each.words for each in one.of(CoverageStatus.NEVER)),
+        tuple(situation.words for situation in one.of(CoverageStatus.PERHAPS)),
+        tuple(situation.words for situation in one.of(CoverageStatus.NEVER)),
     )

@@ -1,5 +1,5 @@
 """Reproduction: evidence, proofs and analyses are computed again and compared.
 
-Input is files that fretc wrote, project, lock and manifest. Output says of each item whether it
-stands, differs or was not checked.
+Input is files that fretc wrote, project, lock and manifest. Output: for each item whether it is
+reproduced, differs or was not checked.
 """

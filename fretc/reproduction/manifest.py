@@ -1,6 +1,6 @@
-"""A manifest: which logs there must be, each with its SHA-256, as `sha256sum` writes them.
+"""A manifest: the list of required logs with their SHA-256, in the format of `sha256sum`.
 
-Evidence compared with it has each of these logs, with that hash, and no other one.
+Evidence agrees with a manifest if it has exactly these logs with these hashes.
 """
 
 from __future__ import annotations
@@ -22,31 +22,31 @@ from fretish.diagnostics.source import Source
 
 _LINE = re.compile(r"(?P<escape>\\?)(?P<sha256>[0-9a-fA-F]{64}) [ *](?P<path>.+)")
 _ESCAPES = {r"\\": "\\", r"\n": "\n", r"\r": "\r"}
-"""What `sha256sum` writes for such a character, in a line that begins with a backslash."""
+"""Escape sequences of `sha256sum` in a line that begins with a backslash."""
 
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """A whole file."""
+    """The content of a manifest."""
 
     file: str
     logs: Mapping[str, str]
-    """Name, as `_normal` gives it, → SHA-256."""
+    """Name, normalized by `_normal` → SHA-256."""
 
 
 def _normal(path: str) -> str:
-    """The same text for `logs/a.mcap` and `./logs//a.mcap`."""
+    """Normalize a path: `./logs//a.mcap` becomes `logs/a.mcap`."""
     return path if is_url(path) else os.path.normpath(path)
 
 
 def read(path: str) -> Manifest | tuple[Diagnostic, ...]:
-    """Read a manifest; F545 for each line that is none."""
+    """Read a manifest; F545 for each invalid line."""
     source = read_text(path, errors="surrogateescape")
     if isinstance(source, Diagnostic):
         return (source,)
     entries = list(_lines(source))
-    errors = [one for one in entries if isinstance(one, Diagnostic)]
-    logs = [one for one in entries if not isinstance(one, Diagnostic)]
+    errors = [entry for entry in entries if isinstance(entry, Diagnostic)]
+    logs = [entry for entry in entries if not isinstance(entry, Diagnostic)]
     if not entries:
         errors.append(_wrong(source, 0, 0, f"`{path}` names no log"))
     return tuple(errors) if has_errors(errors) else Manifest(path, dict(logs))
@@ -61,7 +61,7 @@ def _lines(source: Source) -> Iterator[tuple[str, str] | Diagnostic]:
         match = _LINE.fullmatch(text)
         if match is None:
             if text.strip() and not text.startswith("#"):
-                yield _wrong(source, start, end, "this is no line of `sha256sum`")
+                yield _wrong(source, start, end, "the line is not in the format of `sha256sum`")
         else:
             log = _unescaped(match["path"]) if match["escape"] else match["path"]
             name = _normal(name_of(log))
@@ -90,22 +90,22 @@ def _wrong(source: Source, start: int, end: int, what: str) -> Diagnostic:
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """The comparison of one run with the manifest, or of one log that is no run."""
+    """The comparison of one run with the manifest, or of one log without a run."""
 
     run: str
     differences: tuple[Recheck, ...]
-    """Empty where all of its bytes are those of the manifest."""
+    """The differences; empty if the hashes agree."""
 
 
 def matches(document: Document, manifest: Manifest, places: Mapping[str, str]) -> tuple[Match, ...]:
-    """Every run of evidence beside the manifest, then the logs that no run is of.
+    """Compare each run of evidence with the manifest; then list the logs without a run.
 
-    A log counts by its name. Of those whose name is no run's, one of the same hash counts.
+    Logs are matched by name. A log whose name matches no run is matched by its hash.
 
     Args:
-        document: the evidence; that its hashes are right is for others to say.
-        manifest: what it must have.
-        places: run → where its log is now.
+        document: the evidence; its hashes are checked elsewhere.
+        manifest: the required logs.
+        places: run → present path of its log.
     """
     unmatched = dict(manifest.logs)
     sha_of = {result.run: result.hashes.get("log") for result in document.results}
@@ -122,12 +122,12 @@ def matches(document: Document, manifest: Manifest, places: Mapping[str, str]) -
         Match(run, tuple(_differences(run, sha_of[run], named[run], parts[run], places.get(run))))
         for run in sha_of
     ]
-    why = "the manifest names it and the evidence has no result of it"
+    why = "the manifest names it, but the evidence has no result for it"
     return (*runs, *(Match(path, (differs(path, "", why),)) for path in unmatched))
 
 
 def _parts(run: str, place: str | None) -> Mapping[str, str | None]:
-    """Path of each file that a run is made of, as a manifest names it → where it is now."""
+    """Path of each file of a run in a manifest → its present path."""
     try:
         about = _folder(place) if place is not None and not is_url(place) else None
     except OSError:
@@ -143,7 +143,7 @@ def _parts(run: str, place: str | None) -> Mapping[str, str | None]:
 
 
 def _folder(place: str) -> Folder | Diagnostic | None:
-    """What lists the files of a run; None where it is one file."""
+    """The folder of a run with several files, or None."""
     if is_folder(place):
         return folder(place)
     return None if os.path.lexists(place) else split(place)
@@ -156,7 +156,7 @@ def _differences(
     parts: Mapping[str, str | None],
     place: str | None,
 ) -> Iterator[Recheck]:
-    """What is wrong with one run."""
+    """The differences between one run and the manifest."""
     if not listed:
         yield differs(run, "", "the manifest does not name it")
         return
@@ -167,6 +167,8 @@ def _differences(
             continue
         sha = claim if now == place and claim is not None else file_sha256(now) if now else None
         if sha is None:
-            yield unknown(run, "", "its hash cannot be taken, to be compared with the manifest")
+            yield unknown(
+                run, "", "its hash cannot be computed, so it cannot be compared with the manifest"
+            )
         elif sha != listed[path]:
             yield differs(run, "", f"the manifest has another hash for `{path}`")

@@ -1,4 +1,4 @@
-"""The outcome of making a thing again: it stands, it differs, or it was not checked."""
+"""The outcome of a recheck: reproduced, different, or not checked."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.status_symbols import StatusSymbol
 
 FILE, ALL_RUNS, PROOFS, TOGETHER = "the file", "all runs", "proofs", "all together"
-"""In the place of a run."""
+"""Names that are used instead of the name of a run."""
 
 
 class Finding(StrEnum):
-    """The outcome for one thing."""
+    """The outcome for one item."""
 
     STANDS = "stands"
     DIFFERS = "differs"
@@ -31,29 +31,29 @@ SIGNS: Mapping[Finding, StatusSymbol] = {
 
 @dataclass(frozen=True, slots=True)
 class Recheck:
-    """The comparison of one run and requirement with the evidence; or what is missing there."""
+    """The comparison of one item with the evidence."""
 
     run: str
     requirement: str
-    """Empty where it is about all of them."""
+    """The requirement; "" if the item is about all of them."""
     finding: Finding
     reasons: tuple[str, ...]
-    """Empty where it stands."""
+    """The reasons; empty if the item is reproduced."""
     claim: str = ""
-    """What is proved of the requirement; empty where it is about no proof."""
+    """The claim of a proof or analysis; "" for other items."""
 
 
 def differs(run: str, requirement: str, *reasons: str, claim: str = "") -> Recheck:
-    """The present thing differs."""
+    """An item that differs."""
     return Recheck(run, requirement, Finding.DIFFERS, reasons, claim)
 
 
 def unknown(run: str, requirement: str, *reasons: str, claim: str = "") -> Recheck:
-    """It could not be made again."""
+    """An item that could not be computed again."""
     return Recheck(run, requirement, Finding.UNKNOWN, reasons, claim)
 
 
 def counts(rechecks: Iterable[Recheck]) -> Mapping[Finding, int]:
-    """How many there are of each finding."""
-    number = Counter(one.finding for one in rechecks)
+    """The number of items by finding."""
+    number = Counter(recheck.finding for recheck in rechecks)
     return {finding: number[finding] for finding in Finding}

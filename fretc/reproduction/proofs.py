@@ -1,9 +1,8 @@
-"""Whether proofs still stand: each claim of `fretc verify` is proved again, and compared.
+"""Recheck of proofs: each claim of `fretc verify` is proved again and compared.
 
-Only what fretc makes itself is proved again, in the layers and by the provers that the file names,
-and in the language of the text that it is about.
-A claim about another text, or of a prover that is not installed, is not checked; so is what AJPF
-has said, which no command here asks again.
+Only claims about files that fretc generates are proved again, with the layers, provers and
+languages that the file of proofs names. Claims about other files, claims of a prover that is not
+installed, and results of AJPF are not checked.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from fretc.verification.verify import prove
 from fretish.diagnostics.diagnostic import Diagnostic
 
 AGENT = "agent"
-"""What claims about an agent of the user's own are filed under."""
+"""The name used as requirement of claims about a user's agent."""
 
 
 def prove_again(
@@ -38,11 +37,11 @@ def prove_again(
     Args:
         project: the requirements as they are now.
         proofs: the file.
-        limits: of each claim.
-        claimed: the requirements that are asked for.
-        progress: is called before each claim that takes its time.
+        limits: limits for each claim.
+        claimed: the selected requirements.
+        progress: called before each slow claim.
     """
-    records = [one for one in proofs.proofs if _is_asked_for(one, project, claimed)]
+    records = [proof for proof in proofs.proofs if _is_asked_for(proof, project, claimed)]
     proofs_now = _prove(project, records, limits, progress)
     if isinstance(proofs_now, Diagnostic):
         return proofs_now
@@ -57,37 +56,37 @@ def prove_again(
 def unproved_plans(
     project: Project, proofs: Sequence[Proof], claimed: Collection[str]
 ) -> Iterator[Recheck]:
-    """The repeatable methods that requirements plan and that no claim is of."""
+    """Planned repeatable methods without a claim in the file."""
     for requirement in project.requirements:
         for method in dict.fromkeys(requirement.verify):
             repeatable = method in METHODS and method != Layer.AJPF
-            own = [one for one in proofs if one.requirement in (requirement.id, *_SHARED)]
+            own = [proof for proof in proofs if proof.requirement in (requirement.id, *_SHARED)]
             if (
                 requirement.id in claimed
                 and repeatable
-                and not any(_is_of(one, method) for one in own)
+                and not any(_is_of(proof, method) for proof in own)
             ):
-                why = f"{requirement.id} plans `{method}` and no proof says anything of it"
+                why = f"{requirement.id} plans `{method}` but the file has no proof of it"
                 yield unknown(PROOFS, requirement.id, why)
 
 
 _SHARED = ("interceptor", AGENT)
-"""Claims that are about no single requirement."""
+"""Names used as requirement of claims about several requirements."""
 
 
 def _is_of(proof: Proof, method: str) -> bool:
-    """Whether it is a result of a planned method."""
+    """Whether the proof is a result of the planned method."""
     return method in (*ALL, proof.layer) or method == _prover(proof.engine)
 
 
 def _prover(engine: str) -> str:
-    """The one of `--with`; empty where it is none."""
+    """The prover of `--with` in the name of an engine, or ""."""
     name = engine.casefold().partition(" ")[0]
     return name if name in PROVERS else ""
 
 
 def _is_asked_for(record: Proof, project: Project, claimed: Collection[str]) -> bool:
-    """Whether a claim is about what is asked for; one about an unknown requirement always is."""
+    """Whether a claim is about a selected or an unknown requirement."""
     ids = {requirement.id for requirement in project.requirements}
     return record.requirement in claimed or record.requirement not in ids
 
@@ -98,7 +97,7 @@ def _is_asked_for(record: Proof, project: Project, claimed: Collection[str]) -> 
 def _prove(
     project: Project, records: Sequence[Proof], limits: Limits, progress: Progress
 ) -> Sequence[Proof] | Diagnostic:
-    """The present proofs of the requirements, by the layers and provers that the file names."""
+    """Prove the requirements again, with the layers and provers that the file names."""
     named = {record.requirement for record in records}
     own = [record for record in records if not _prover(record.engine)]
     layers = [layer for layer in Layer if any(record.layer == layer for record in own)]
@@ -111,7 +110,9 @@ def _prove(
     ]
     monitor_text, header = remade(own, project.formalized)
     plans_agent = {
-        each.id for each in project.requirements if {Layer.AGENT, Layer.AJPF} & {*each.verify}
+        requirement.id
+        for requirement in project.requirements
+        if {Layer.AGENT, Layer.AJPF} & {*requirement.verify}
     }
     of_agent = {record.requirement for record in own if record.layer is Layer.AGENT}
     request = Request(
@@ -136,19 +137,19 @@ def _key(record: Proof) -> tuple[str, ...]:
 
 def _beginning(proofs: Proofs) -> Iterator[Recheck]:
     if proofs.fretc != __version__:
-        yield differs(PROOFS, "", f"this is fretc {__version__}")
+        yield differs(PROOFS, "", f"the installed fretc is {__version__}")
     if not proofs.proofs:
-        yield unknown(PROOFS, "", f"`{proofs.file}` tells of no claim")
+        yield unknown(PROOFS, "", f"`{proofs.file}` contains no claim")
 
 
 def _compared(record: Proof, proofs_now: Sequence[Proof]) -> Recheck:
     requirement, claim = record.requirement, f"{record.layer}: {record.claim}"
-    now = next((one for one in proofs_now if _key(one) == _key(record)), None)
+    now = next((candidate for candidate in proofs_now if _key(candidate) == _key(record)), None)
     if now is None:
         return _absence(record, claim)
     others = record.artefacts.keys() - now.artefacts.keys()
     if others:
-        why = f"it is about `{min(others)}`, which is not made here"
+        why = f"it is about `{min(others)}`, which this check does not generate"
         return unknown(PROOFS, requirement, why, claim=claim)
     if now.result is Result.NOT_CHECKED:
         return unknown(PROOFS, requirement, now.detail, claim=claim)
@@ -157,31 +158,33 @@ def _compared(record: Proof, proofs_now: Sequence[Proof]) -> Recheck:
         return unknown(PROOFS, requirement, other, claim=claim)
     reasons = tuple(_differences(record, now))
     if record.result is Result.NOT_CHECKED and now.result is not Result.COUNTEREXAMPLE:
-        why = f"it was not checked, says the file; it is {now.result} now"
+        why = f"the file says that it was not checked; now it is {now.result}"
         return unknown(PROOFS, requirement, why, claim=claim)
     if reasons:
         return differs(PROOFS, requirement, *reasons, claim=claim)
     if record.layer == Layer.AJPF:
-        return unknown(PROOFS, requirement, "AJPF itself is not asked again", claim=claim)
+        return unknown(PROOFS, requirement, "AJPF itself was not run again", claim=claim)
     return Recheck(PROOFS, requirement, Finding.STANDS, (), claim)
 
 
 def _absence(record: Proof, claim: str) -> Recheck:
-    """A claim that was not made again."""
+    """The outcome for a claim that was not made again."""
     if record.layer == Layer.AJPF:
-        why = "the file of AJPF's result is not there"
+        why = "the file with AJPF's result is missing"
     elif record.layer == Layer.AGENT and record.requirement == AGENT:
-        why = "it is about an agent that is not made here"
+        why = "it is about an agent that this check does not generate"
     else:
-        return differs(PROOFS, record.requirement, "no such claim is made now", claim=claim)
+        return differs(
+            PROOFS, record.requirement, "fretc does not make this claim now", claim=claim
+        )
     return unknown(PROOFS, record.requirement, why, claim=claim)
 
 
 def _differences(before: Proof, now: Proof) -> Iterator[str]:
     if before.result != now.result:
-        yield f"it is {now.result}, and was {before.result}"
+        yield f"it is {now.result} now, and was {before.result}"
     if before.artefacts != now.artefacts:
-        yield "it is about other texts than those that are made now"
+        yield "it is about other files than those generated now"
     names = [name for name in sorted(plain(before) | plain(now)) if name not in _COMPARED]
     others = [name for name in names if getattr(before, name) != getattr(now, name)]
     if others:
@@ -202,4 +205,4 @@ def _left_out(records: Sequence[Proof], proofs_now: Sequence[Proof]) -> Iterator
     for record in proofs_now:
         if _key(record) not in keys and record.result is not Result.NOT_APPLICABLE:
             claim = f"{record.layer}: {record.claim}"
-            yield differs(PROOFS, record.requirement, "it is left out", claim=claim)
+            yield differs(PROOFS, record.requirement, "it is missing from the file", claim=claim)

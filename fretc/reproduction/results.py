@@ -1,8 +1,8 @@
-"""Whether evidence still stands: the hashes of its logs and its verdicts are made again.
+"""Recheck of evidence: the hashes of the logs and the verdicts are computed again.
 
-All results are made from the present logs and requirements, each log with the integrity that its
-results claim, and compared with the evidence exactly. Only two things may differ: places (of
-the bindings, and of lines in them), and whether a default is written out.
+All results are computed from the present logs and requirements, with the integrity level that the
+results claim, and compared exactly with the evidence. Only paths and line numbers of the bindings
+may differ, and whether a default is written out.
 """
 
 from __future__ import annotations
@@ -40,14 +40,14 @@ from fretish.parser import parse
 from fretish.printer import canonical
 
 Results = Mapping[tuple[str, str], Result]
-"""Run and requirement → result."""
+"""(run, requirement) → result."""
 
 
 def located(runs: Sequence[str], folder: str | None) -> dict[str, str]:
-    """Run → where its log is now: its path, or the file of that name below a folder.
+    """Run → present path of its log: its recorded path, or the file of that name in a folder.
 
-    A run whose log is not found is left out; of several files of one name the one whose path ends
-    most alike counts.
+    A run whose log is not found is left out. Of several files with the name, the one with the
+    longest common end of the path is used.
     """
     places: dict[str, str] = {}
     for run in runs:
@@ -65,7 +65,7 @@ def _below(folder: Path, log: str) -> str | None:
 
 
 def _common_parts(path: Path, log: Path) -> int:
-    """How many parts are the same, from the end."""
+    """The number of equal path components from the end."""
     pairs = zip(reversed(path.parts), reversed(log.parts), strict=False)
     return next((i for i, (a, b) in enumerate(pairs) if a != b), len(log.parts))
 
@@ -78,15 +78,15 @@ def recheck(
     scope: Scope,
     manifest: Manifest | None = None,
 ) -> tuple[Recheck, ...] | Diagnostic:
-    """Make every result of evidence again.
+    """Compute every result of evidence again and compare.
 
     Args:
         document: the evidence.
-        plan: what logs are judged by now.
-        places: run → where its log is now.
-        engine: where logs are audited.
-        scope: which requirements and runs it must have.
-        manifest: which logs it must have; None: there is no manifest.
+        plan: the present audit plan.
+        places: run → present path of its log.
+        engine: runs the audits.
+        scope: the required requirements and runs.
+        manifest: the required logs; None if there is no manifest.
 
     Returns:
         The recheck of the file itself, of each result in the order of the file, and of the
@@ -103,20 +103,26 @@ def recheck(
         *_beginning(document, plan, part=scope.part),
         *(_result(result, now) for result in document.results),
         *incomplete(document, scope, places, partial(_prints, plan)),
-        *(one for match in listed for one in match.differences),
+        *(difference for match in listed for difference in match.differences),
         *_log_findings(document, now),
         *_estimates_again(document, now, scope.claimed),
     )
 
 
 def _part(document: Document, scope: Scope) -> Document:
-    """The part of the evidence about the requirements that are asked for."""
+    """The part of the evidence about the selected requirements."""
     ids = {*scope.claimed}
     return replace(
         document,
-        requirements=tuple(each for each in document.requirements if each.id in ids),
-        results=tuple(each for each in document.results if each.requirement in ids),
-        probabilities=tuple(each for each in _probabilities(document) if each.requirement in ids),
+        requirements=tuple(
+            requirement for requirement in document.requirements if requirement.id in ids
+        ),
+        results=tuple(result for result in document.results if result.requirement in ids),
+        probabilities=tuple(
+            probability
+            for probability in _probabilities(document)
+            if probability.requirement in ids
+        ),
     )
 
 
@@ -127,7 +133,7 @@ def _probabilities(document: Document) -> tuple[Estimated, ...]:
 def _results_now(
     results_before: Sequence[Result], plan: Plan, places: Mapping[str, str], engine: Engine
 ) -> Results | Diagnostic:
-    """The results of each run whose log is found, looked at as closely as the evidence claims."""
+    """The present results of each run with a log, at the integrity level of the evidence."""
     claimed = {result.run: _integrity(result) for result in reversed(results_before)}
     results: dict[tuple[str, str], Result] = {}
     for integrity in Integrity:
@@ -138,7 +144,7 @@ def _results_now(
         audit = audit_logs(changed(plan, integrity=integrity), logs, engine)
         if isinstance(audit, Diagnostic):
             return audit
-        results_of_audit = {(one.run, one.requirement): one for one in audit.results}
+        results_of_audit = {(result.run, result.requirement): result for result in audit.results}
         results |= {
             (run, claim.id): results_of_audit[name_of(places[run]), claim.id]
             for run in runs
@@ -148,7 +154,7 @@ def _results_now(
 
 
 def _integrity(result: Result) -> Integrity:
-    """How closely its log was looked at, as a result claims."""
+    """The integrity level that a result claims."""
     checked, hashes = result.health.checked, result.hashes
     if "log" not in hashes and "log_summary" in hashes:
         return Integrity.INDEX
@@ -156,89 +162,91 @@ def _integrity(result: Result) -> Integrity:
 
 
 def _prints(plan: Plan, place: str) -> frozenset[str]:
-    """What tells the log from another one, however closely it is looked at."""
+    """The SHA-256 values of a log: of the whole file, and of its summary."""
     signals = tuple(plan.declarations.signals)
     levels = (Integrity.INDEX, Integrity.HASH)
     recordings = [read(place, plan.declarations, signals, level) for level in levels]
-    hashes = [one.sha256 for one in recordings if not isinstance(one, Diagnostic)]
+    hashes = [recording.sha256 for recording in recordings if not isinstance(recording, Diagnostic)]
     return frozenset(filter(None, (*hashes, file_sha256(place))))
 
 
 # The file as a whole ----------------------------------------------------------------------------
 
 _DOUBT = (0.5, 0.999)
-"""Confidences that an audit takes."""
+"""Confidence levels that an audit accepts: above the first, up to the second."""
 
 
 def _beginning(document: Document, plan: Plan, *, part: bool) -> Iterator[Recheck]:
-    """The head of the file, where it differs from the present; and whether there are results."""
+    """Compare the head of the file; also check that there are results."""
     claims = {claim.id: claim for claim in plan.claims}
     named = [requirement.id for requirement in document.requirements]
     bound = of_all({id: claims[id].basis[BINDINGS] for id in named if id in claims})
     if not document.results:
-        yield unknown(FILE, "", "it tells of no run")
+        yield unknown(FILE, "", "it contains no run")
     if document.fretc != __version__:
-        yield differs(FILE, "", f"this is fretc {__version__}")
+        yield differs(FILE, "", f"the installed fretc is {__version__}")
     if document.bindings.sha256 != bound and not part:
-        yield differs(FILE, "", "what the bindings say has changed")
+        yield differs(FILE, "", "the bindings have changed")
     for requirement in document.requirements:
         claim = claims.get(requirement.id)
         if claim is None:
-            yield differs(FILE, requirement.id, "it is not claimed any more")
+            yield differs(FILE, requirement.id, "it is no longer claimed")
         elif not _same_sentence(requirement, claim):
             yield differs(FILE, requirement.id, "the sentence has changed")
         elif requirement.situations != named_situations(claim):
-            yield differs(FILE, requirement.id, "its situations are others")
+            yield differs(FILE, requirement.id, "its situations have changed")
 
 
 def _same_sentence(before: Requirement, now: AuditedRequirement) -> bool:
-    """Whether the wording means the same; what its names stand for is in the hash alone."""
+    """Whether wording and hash of the sentence are equivalent to the present ones."""
     return before.sha256 == now.basis[SENTENCE] and _wording(before.sentence) == _wording(
         now.sentence
     )
 
 
 def _wording(sentence: str) -> str:
-    """The canonical one; as it is, where it is no sentence."""
+    """The canonical wording; the text itself if it is not a sentence."""
     tree = parse(Source("evidence", sentence).span())
     return sentence if isinstance(tree, Diagnostic) else canonical(tree)
 
 
 def _estimates_again(document: Document, now: _Now, ids: Collection[str]) -> Iterator[Recheck]:
-    """The estimate of each requirement with a probability, from the same runs."""
-    estimates_before = {one.requirement: one for one in _probabilities(document)}
-    count = Counter(one.requirement for one in _probabilities(document))
-    named = {*ids, *(one.id for one in document.requirements)}
+    """Compute the estimate of each requirement with a probability again, from the same runs."""
+    estimates_before = {
+        probability.requirement: probability for probability in _probabilities(document)
+    }
+    count = Counter(probability.requirement for probability in _probabilities(document))
+    named = {*ids, *(requirement.id for requirement in document.requirements)}
     runs = dict.fromkeys(result.run for result in document.results)
     for claim in now.plan.claims:
         if claim.chance is None or claim.id not in {*estimates_before, *named}:
             continue
         one = estimates_before.pop(claim.id, None)
         if one is None:
-            yield differs(ALL_RUNS, claim.id, "what all runs say of it is left out")
+            yield differs(ALL_RUNS, claim.id, "its estimate over all runs is missing from the file")
         elif count[claim.id] > 1:
             yield differs(ALL_RUNS, claim.id, "it appears twice")
         elif any(run not in now.places for run in runs):
-            yield unknown(ALL_RUNS, claim.id, "a log is not found")
+            yield unknown(ALL_RUNS, claim.id, "a log was not found")
         else:
             results = [now.results[run, claim.id] for run in runs]
             why = _estimate_difference(one, claim, results)
             finding = Finding.DIFFERS if why else Finding.STANDS
             yield Recheck(ALL_RUNS, claim.id, finding, (why,) if why else ())
     for id in estimates_before:
-        yield differs(ALL_RUNS, id, "no probability is claimed of it any more")
+        yield differs(ALL_RUNS, id, "a probability is no longer claimed for it")
 
 
 def _estimate_difference(
     before: Estimated, claim: AuditedRequirement, results: Sequence[Result]
 ) -> str:
-    """How an estimate differs from the present one; empty where it does not."""
+    """The difference between an estimate and the present one, or ""."""
     least, most = _DOUBT
     if not least < before.confidence <= most:
-        return f"its confidence is none above {least} and up to {most}"
+        return f"its confidence is not above {least} and at most {most}"
     (now,) = estimates([claim], [*map(brief, results)], before.confidence)
     if before.answer != now.answer:
-        return f"the answer is {now.answer}, and was {before.answer}"
+        return f"the answer is {now.answer} now, and was {before.answer}"
     others = _different_keys(plain(before), plain(now))
     return f"it differs in {', '.join(others)}" if others else ""
 
@@ -252,29 +260,29 @@ class _Now:
 
     plan: Plan
     places: Mapping[str, str]
-    """Run → where its log is."""
+    """Run → path of its log."""
     results: Results
     bindings: str
-    """What the evidence calls the file of the bindings."""
+    """The name of the bindings file in the evidence."""
     hashed: Collection[str]
-    """Runs that all of a manifest is compared with."""
+    """Runs whose bytes agree with a manifest."""
 
 
 def _result(before: Result, now: _Now) -> Recheck:
     run, requirement = before.run, before.requirement
     if run not in now.places:
-        return unknown(run, requirement, "its log is not found")
+        return unknown(run, requirement, "its log was not found")
     result = now.results.get((run, requirement))
     if result is None:
-        return differs(run, requirement, "it is not claimed any more")
+        return differs(run, requirement, "it is no longer claimed")
     reasons = tuple(_differences(before, result, now.plan))
     if reasons:
         return differs(run, requirement, *reasons)
     if "log" in before.hashes or run in now.hashed:
         return Recheck(run, requirement, Finding.STANDS, ())
     if "log_summary" in before.hashes:
-        return unknown(run, requirement, "its log was read by its index, and never hashed")
-    return unknown(run, requirement, "nothing tells its log from another one: it has no hash")
+        return unknown(run, requirement, "its log was read by its index and was not hashed")
+    return unknown(run, requirement, "its log cannot be identified: the evidence has no hash of it")
 
 
 def _differences(before: Result, now: Result, plan: Plan) -> Iterator[str]:
@@ -282,7 +290,7 @@ def _differences(before: Result, now: Result, plan: Plan) -> Iterator[str]:
         yield "the log has changed"
     yield from map(why, outdated(before.hashes, {kind: now.hashes[kind] for kind in KINDS}))
     if before.verdict != now.verdict:
-        yield f"the verdict is {now.verdict}, and was {before.verdict}"
+        yield f"the verdict is {now.verdict} now, and was {before.verdict}"
     others = _different_keys(plain(before), plain(now), _COMPARED_APART)
     healths = plain(before.health), plain(now.health)
     others.extend(f"health.{name}" for name in _different_keys(*healths, _FINDINGS))
@@ -297,11 +305,11 @@ def _differences(before: Result, now: Result, plan: Plan) -> Iterator[str]:
 
 _OF_LOG = ("log", "log_summary")
 _REASONS = (*_OF_LOG, *KINDS)
-"""Hashes whose difference has a reason of its own."""
+"""Hashes whose difference is reported with a specific reason."""
 _FINDINGS = ("findings",)
 """The findings of a log are about its run, not about one result of it."""
 _COMPARED_APART = {"run", "requirement", "verdict", "hashes", "health", "assumptions", "labels"}
-"""Fields that are compared in a way of their own."""
+"""Fields that are compared separately."""
 
 
 def _different_keys(
@@ -313,12 +321,12 @@ def _different_keys(
 
 
 def _letters(value: Mapping[str, object], key: str) -> str:
-    """Empty where it is not there, which is not the same as null."""
+    """The JSON text of a field; "" if the field is missing, in contrast to null."""
     return json.dumps(value[key], sort_keys=True) if key in value else ""
 
 
 def _same_labels(before: Result, now: Result, plan: Plan) -> bool:
-    """Whether the labels are the same; one of the path may be that of the path then."""
+    """Whether the labels are equal; a label from the path may be from the path at the audit."""
     own, other = before.labels or {}, now.labels or {}
     if own.keys() != other.keys():
         return False
@@ -332,7 +340,7 @@ def _same_labels(before: Result, now: Result, plan: Plan) -> bool:
 
 
 def _same_assumptions(before: Result, now: Result, plan: Plan) -> bool:
-    """Whether the same is assumed; a default may be implied, or written out in the bindings."""
+    """Whether the assumptions are equal; a default may be implicit or written in the bindings."""
     own, other = {*before.assumptions}, {*now.assumptions}
     defaults = _written_defaults(plan)[now.requirement] if now.clock else frozenset()
     return len(own) == len(before.assumptions) and own ^ other <= defaults
@@ -340,7 +348,7 @@ def _same_assumptions(before: Result, now: Result, plan: Plan) -> bool:
 
 @lru_cache(maxsize=4)
 def _written_defaults(plan: Plan) -> Mapping[str, frozenset[str]]:
-    """Requirement → the defaults of what it reads that the bindings may write out."""
+    """Requirement → the defaults of its inputs that the bindings may write out."""
     return {
         claim.id: frozenset(
             default.text
@@ -355,7 +363,7 @@ def _written_defaults(plan: Plan) -> Mapping[str, frozenset[str]]:
 
 
 def _log_findings(document: Document, now: _Now) -> Iterator[Recheck]:
-    """The findings of each run, whichever requirement they are about."""
+    """Compare the findings about each run, over all requirements."""
     results_of: dict[str, list[Result]] = {}
     for result in document.results:
         results_of.setdefault(result.run, []).append(result)
@@ -366,11 +374,11 @@ def _log_findings(document: Document, now: _Now) -> Iterator[Recheck]:
         bindings = now.plan.declarations.source.name
         findings = _findings(of_now[run], now.places[run], bindings)
         if any(_findings(result, run, now.bindings) != findings for result in results):
-            yield differs(run, "", "what is found of its log differs")
+            yield differs(run, "", "the findings about its log differ")
 
 
 def _findings(result: Result, log: str, bindings: str) -> list[OfLog | tuple[str, OfLog]]:
-    """Findings without the places of log and bindings, and without lines, which a comment moves."""
+    """Findings without paths and line numbers, which may change."""
 
     def same_place(finding: OfLog) -> OfLog | tuple[str, OfLog]:
         place = finding.file

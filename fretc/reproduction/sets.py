@@ -1,7 +1,7 @@
-"""Whether an analysis still stands: its questions are asked again, and the answers compared.
+"""Recheck of an analysis: its questions are answered again and the answers compared.
 
-What took too long then or now, or was stopped, is not checked; anything else that is not the same
-is a difference, and so is a conflict that is left out. Nothing but `seconds` is passed over.
+Questions that timed out or were stopped, then or now, are not checked. Any other change is a
+difference, also a missing conflict. Only `seconds` is not compared.
 """
 
 from __future__ import annotations
@@ -18,56 +18,62 @@ _REST = (
     "always", "never", "assumptions", "roles", "terms",
 )  # fmt: skip
 _OF_TIME = ("why", "complete", "open")
-"""What may be otherwise where a question took too long."""
+"""Fields that may differ if a question timed out."""
 
 
 def compared(document: Document, now: Analysis) -> Iterator[Recheck]:
-    """Each component, each conflict, and what else was found, compared with an analysis made now.
+    """Compare each component, each conflict and the other findings with a present analysis.
 
     Args:
         document: the evidence.
-        now: of the same requirements as they are now, under the assumptions that are there now.
+        now: a present analysis of the requirements, under the present assumptions.
     """
     before = document.analysis
     if document.as_fret:
-        yield unknown(TOGETHER, "", "it answers FRET's question, not whether they can be kept")
+        yield unknown(
+            TOGETHER, "", "it answers FRET's question, not whether the requirements are realizable"
+        )
     if {document.fretc, before.fretc} != {__version__}:
-        yield differs(TOGETHER, "", f"this is fretc {__version__}")
-    known = {each.requirements: each for each in now.components}
-    for each in before.components:
-        yield _component(each, known.get(each.requirements))
-    then = {each.requirements for each in before.components}
+        yield differs(TOGETHER, "", f"the installed fretc is {__version__}")
+    known = {component.requirements: component for component in now.components}
+    for component in before.components:
+        yield _component(component, known.get(component.requirements))
+    then = {component.requirements for component in before.components}
     for ids in (each for each in known if each not in then):
-        yield differs(TOGETHER, "", "it is left out", claim=", ".join(ids))
+        yield differs(TOGETHER, "", "it is missing from the file", claim=", ".join(ids))
     if len(then) != len(before.components):
         yield differs(TOGETHER, "", "a component appears twice")
     yield from _conflicts(before, now)
     others = [name for name in _REST if getattr(before, name) != getattr(now, name)]
-    claim = "what else is said of them"
+    claim = "other results"
     if others and not (before.open or now.open):
         yield differs(TOGETHER, "", f"it differs in {', '.join(others)}", claim=claim)
     elif others:
-        why = f"some questions have no answer, and {', '.join(others)} may differ for that"
+        why = f"some questions have no answer, so {', '.join(others)} may differ"
         yield unknown(TOGETHER, "", why, claim=claim)
     elif any(getattr(before, name) != getattr(now, name) for name in _OF_TIME):
-        why = f"other questions are open now: {_questions(now)}, and were: {_questions(before)}"
+        why = f"the open questions are now: {_questions(now)}; they were: {_questions(before)}"
         yield unknown(TOGETHER, "", why, claim=claim)
     else:
         yield Recheck(TOGETHER, "", Finding.STANDS, (), claim)
 
 
 def _questions(analysis: Analysis) -> str:
-    return "; ".join(f"{each.question} ({each.why})" for each in analysis.open) or "none"
+    return (
+        "; ".join(f"{question.question} ({question.why})" for question in analysis.open) or "none"
+    )
 
 
 def _component(before: Component, now: Component | None) -> Recheck:
     claim = ", ".join(before.requirements)
     if now is None or before.outputs != now.outputs:
-        return differs(TOGETHER, "", "they are no component of the set now", claim=claim)
+        return differs(TOGETHER, "", "these requirements are not a component now", claim=claim)
     if now.verdict is Verdict.NOT_CHECKED:
         return unknown(TOGETHER, "", now.why, claim=claim)
     if before.verdict is now.verdict and before.why != now.why:
-        return unknown(TOGETHER, "", f"`{now.why}` is why now, and was `{before.why}`", claim=claim)
+        return unknown(
+            TOGETHER, "", f"the reason is now `{now.why}`, and was `{before.why}`", claim=claim
+        )
     if before.verdict is now.verdict:
         return Recheck(TOGETHER, "", Finding.STANDS, (), f"{claim}: {now.verdict}")
     why = f"they are {now.verdict} now, and the file says {before.verdict}"
@@ -85,15 +91,15 @@ def _conflicts(before: Analysis, now: Analysis) -> Iterator[Recheck]:
             yield Recheck(TOGETHER, "", Finding.STANDS, (), claim)
         elif old is None:
             judge = differs if before.complete else unknown
-            yield judge(TOGETHER, "", "it is left out", claim=claim)
+            yield judge(TOGETHER, "", "it is missing from the file", claim=claim)
         elif new is None:
             judge = differs if now.complete else unknown
-            yield judge(TOGETHER, "", "there is no such conflict now", claim=claim)
+            yield judge(TOGETHER, "", "this conflict does not exist now", claim=claim)
         else:
-            yield differs(TOGETHER, "", "its play is another one", claim=claim)
+            yield differs(TOGETHER, "", "its counterexample run differs", claim=claim)
     if len(then) != len(before.conflicts):
         yield differs(TOGETHER, "", "a conflict appears twice")
 
 
 def _by_members(analysis: Analysis) -> dict[tuple[str, ...], Conflict]:
-    return {each.requirements: each for each in analysis.conflicts}
+    return {conflict.requirements: conflict for conflict in analysis.conflicts}

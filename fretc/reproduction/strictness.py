@@ -1,7 +1,7 @@
-"""What `--strict` demands beside the comparison: signatures, and a manifest of all runs.
+"""Additional demands of `--strict`: signatures, and a manifest of all runs.
 
-What is demanded and missing is a difference: evidence that anybody may have written, or of runs
-that nobody lists, is not shown to be the one that somebody stands for.
+An unmet demand is a difference: without a signature, anyone may have written the evidence, and
+without a manifest, nothing shows that its runs are the intended ones.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from fretc.reproduction.completeness import Scope
 from fretc.reproduction.outcome import FILE, Recheck, differs
 
 SIGNATURES = "signatures"
-"""In the place of a run."""
+"""Name that is used instead of the name of a run."""
 
 
 def unmet_demands(
@@ -28,25 +28,25 @@ def unmet_demands(
     *,
     is_listed: bool,
 ) -> Iterator[Recheck]:
-    """Each demand that is not met.
+    """A difference for each unmet demand.
 
     Args:
-        evidence: as it was read.
+        evidence: the evidence.
         scope: the requirements in force, and their reviews.
-        of_files: the signatures of the evidence and of the other files.
-        of_reviews: those of the reviews.
-        others: kind of each other file that there is (`report`, `proofs`, `analysis`) → its path.
-        is_listed: whether there is a manifest; that it names each run is compared elsewhere.
+        of_files: the signatures of the evidence and of other files.
+        of_reviews: the signatures of reviews.
+        others: kind of each other existing file (`report`, `proofs`, `analysis`) → its path.
+        is_listed: whether there is a manifest; its entries are compared elsewhere.
     """
     if not is_listed:
-        yield differs(FILE, "", "no `--manifest` lists its runs")
+        yield differs(FILE, "", "its runs are not listed in a `--manifest`")
     signing = of_files.agreed(evidence)
     if not signing.is_good:
         yield differs(SIGNATURES, "", f"the evidence is not signed: {signing.text}")
     reviews = scope.lock.reviews if scope.lock is not None else {}
     for id in scope.claimed:
         if id not in reviews:
-            yield differs(SIGNATURES, id, "nobody has reviewed it: `fretc.lock` has no review")
+            yield differs(SIGNATURES, id, "it is not reviewed: `fretc.lock` has no review of it")
             continue
         review = of_reviews.of(statement.review(reviews[id]), reviews[id].reviewer)
         if not review.is_good:

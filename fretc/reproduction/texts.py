@@ -1,4 +1,4 @@
-"""The text of a monitor in C, Rust or JavaScript that proofs are about, made again."""
+"""Monitors in C, Rust or JavaScript, generated again to recheck proofs about them."""
 
 from __future__ import annotations
 
@@ -15,18 +15,19 @@ from fretish.diagnostics.source import Source
 
 
 class Remade(NamedTuple):
-    """A monitor with its header, if it has one."""
+    """The file of a monitor, and its header if there is one."""
 
     monitor: Source | None
     header: Source | None
 
 
 def remade(records: Sequence[Proof], requirements: Sequence[FormalizedRequirement]) -> Remade:
-    """What fretc writes now for some requirements, byte for byte what the proofs are about.
+    """The monitor that fretc generates now and that equals the one that the proofs are about.
 
-    None where that is no such text, where there are several, and where its tool is not installed.
+    Both are None if no generated text has these hashes, if several have them, or if the compiler is
+    not installed.
     """
-    hashes = {name: value for each in records for name, value in _texts(each).items()}
+    hashes = {name: value for record in records for name, value in _texts(record).items()}
     of_monitor = [record for record in records if record.layer is Layer.MONITOR]
     found = {name: row for name in hashes if (row := language_of(name))}
     if len(found) != 1 or len(of_monitor) != len(records):
@@ -40,22 +41,22 @@ def remade(records: Sequence[Proof], requirements: Sequence[FormalizedRequiremen
 
 
 def other_build(before: Proof, now: Proof) -> str:
-    """Why proofs of one text cannot be compared: other tools made something else of it."""
+    """The reason why proofs of one text cannot be compared: other tools built another binary."""
     is_other = before.assumptions != now.assumptions and _texts(before) == _texts(now)
     if not is_other or not any(map(language_of, before.artefacts)):
         return ""
-    return f"it says that {'; '.join(before.assumptions)}"
+    return f"the file states: {'; '.join(before.assumptions)}"
 
 
 def _texts(record: Proof) -> Mapping[str, str]:
-    """Its artefacts, without what a compiler has made."""
+    """The artefacts of a proof without compiled ones."""
     return {name: value for name, value in record.artefacts.items() if not name.endswith(".so")}
 
 
 def _written(
     language: Row, records: Sequence[Proof], requirements: Sequence[FormalizedRequirement]
 ) -> Iterator[Mapping[str, str]]:
-    """The files of a monitor of all requirements, of those that the proofs are of, and of each."""
+    """Candidate file sets: one monitor for all requirements, for the proved ones, and for each."""
     target, ids = TARGETS[language.emit], {record.requirement for record in records}
     named = [requirement for requirement in requirements if requirement.id in ids]
     for group, one_file in (
@@ -64,4 +65,4 @@ def _written(
         *(([requirement], False) for requirement in named),
     ):
         files = target.emit(group, Options(one_file=one_file))
-        yield {each.path.name: each.text for each in reversed(files)}  # the first `lib.rs` counts
+        yield {file.path.name: file.text for file in reversed(files)}  # The first `lib.rs` wins.

@@ -15,7 +15,7 @@ from fretc.audit.many_logs import SEQUENTIAL, Audit, audit_logs
 from fretc.audit.plan import Plan, planned
 from fretc.coverage import mutation_output, mutation_record, record, text_output
 from fretc.coverage.coverage import Coverage, coverage
-from fretc.coverage.mutation import MutationResult, inquiry, survey
+from fretc.coverage.mutation import MutationResult, mutation_job, survey
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.docs.pages import FOLDER, is_current
 
@@ -48,7 +48,7 @@ def covered() -> Coverage:
 
 @cache
 def surveyed() -> MutationResult:
-    return survey(inquiry(*mission()), [LOG], 1, lambda _: None)
+    return survey(mutation_job(*mission()), [LOG], 1, lambda _: None)
 
 
 def titles() -> dict[str, str]:

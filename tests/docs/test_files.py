@@ -18,8 +18,8 @@ from compiler.files import settings
 from compiler.project import hazards
 from fretc.audit.store import tables
 from fretc.audit.store.register import types
-from fretc.report.traceability import lock, texts, waivers
-from fretc.report.traceability.chain import Node
+from fretc.traceability import lock, texts, waivers
+from fretc.traceability.chain import Node
 from fretish.bindings import declarations as d
 from fretish.bindings.tables import (
     clock,

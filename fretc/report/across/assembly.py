@@ -1,4 +1,4 @@
-"""The pictures of all runs, from the requirements and what the evidence says of each run."""
+"""Pictures over all runs: lanes, used bounds and maps, from assessments and evidence."""
 
 from __future__ import annotations
 
@@ -31,31 +31,37 @@ from fretc.report.sections.details import Details, Thresholds
 from fretc.report.sections.runs import run_key
 
 _ROWS, _MARKS = 180, 1_500
-"""Of the pictures of all requirements together."""
+"""Maximum rows and marks of the pictures of all requirements together."""
 PICTURED = 16
-"""The most requirements with pictures of their own in a page; `--json` has those of all."""
+"""Maximum number of requirements with their own pictures on a page; `--json` has all."""
 _FEWEST, _MOST = 3, 20
-"""Rows of one picture of a requirement."""
+"""Minimum and maximum rows of the picture of a requirement."""
 
 
 def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> Across:
     """The lanes of all requirements, and the lanes and the used bounds of the worst.
 
     Args:
-        details: requirements, runs and the evidence; those that are retired have no lanes.
-        worst: the anchors of the requirements, the worst first.
-        pictured: how many of these have pictures of their own.
+        details: requirements, runs and evidence; retired requirements have no lanes.
+        worst: the anchors of the requirements, worst first.
+        pictured: how many of these have their own pictures.
     """
     active = [a for a in details.assessments.values() if a.entry.status != "retired"]
     most = max(_FEWEST, min(_MOST, _ROWS // max(1, len(active))))
     marks = max(10 * _FEWEST, _MARKS // max(1, len(active)))
     in_force = {assessment.anchor for assessment in active}
     chosen = {*[anchor for anchor in worst if anchor in in_force][:pictured]}
-    several = [each for each in active if each.anchor in chosen and len(each.audits) > 1]
+    several = [
+        assessment
+        for assessment in active
+        if assessment.anchor in chosen and len(assessment.audits) > 1
+    ]
     tallies = _tallies(active, details)
     of_all = _plan_of_all(active, tallies, details)
-    plans = {each.anchor: _plan(each, details, most, marks) for each in several}
-    known = _known(details, [at for each in (of_all, *plans.values()) for at in each.places])
+    plans = {assessment.anchor: _plan(assessment, details, most, marks) for assessment in several}
+    known = _known(
+        details, [at for lane_plan in (of_all, *plans.values()) for at in lane_plan.places]
+    )
     uses_of = {
         each.anchor: uses(*_numbers(each, details, thresholds, most))
         for each, thresholds in details.thresholds(plans)
@@ -65,13 +71,13 @@ def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> 
         of_all.lanes(known),
         tuple(
             RequirementAcross(
-                each.id,
-                each.anchor,
-                plans[each.anchor].lanes(known) if each.anchor in plans else None,
-                uses_of.get(each.anchor),
+                assessment.id,
+                assessment.anchor,
+                plans[assessment.anchor].lanes(known) if assessment.anchor in plans else None,
+                uses_of.get(assessment.anchor),
             )
-            for each in active
-            if each.anchor in chosen
+            for assessment in active
+            if assessment.anchor in chosen
         ),
         maps,
         maps_left_out,
@@ -79,18 +85,18 @@ def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> 
 
 
 def _plan(assessment: Assessment, details: Details, most: int, marks: int) -> LanePlan:
-    """Of the runs that have anything to mark; the others are counted."""
+    """The lanes of the runs of a requirement that have marks; other runs are only counted."""
     of = _results(assessment, details)
     marked = with_marks(of)
     calm = len(of) - len(marked)
-    note = f"No lane: {phrases.times(calm, 'run')} with nothing of it." if calm else ""
+    note = f"No lane: {phrases.times(calm, 'run')} without such a tick." if calm else ""
     return plan(f"{assessment.id} in its runs", marked, most, marks, note)
 
 
 def _plan_of_all(
     active: Sequence[Assessment], tallies: Mapping[str, Tally], details: Details
 ) -> LanePlan:
-    """Of the worst runs: of all others nothing is held but their number."""
+    """The lanes of the worst runs over all requirements; other runs are only counted."""
     chosen = {*worst_runs(tallies)}
     left = [tally for run, tally in tallies.items() if run not in chosen]
     of = _of_runs(active, details, chosen)
@@ -99,10 +105,10 @@ def _plan_of_all(
 
 
 def _tallies(active: Sequence[Assessment], details: Details) -> Mapping[str, Tally]:
-    """Run → its worst verdict and what is counted, in the order of runs."""
+    """Run → its worst verdict and counts, in the order of the runs."""
     tallies: dict[str, Tally] = {}
-    for each in active:
-        for audit in each.reviewed_audits:
+    for assessment in active:
+        for audit in assessment.reviewed_audits:
             run, known = details.runs[run_key(audit.result)].anchor, _count(audit.result)
             before = tallies.get(run)
             tallies[run] = (
@@ -114,7 +120,7 @@ def _tallies(active: Sequence[Assessment], details: Details) -> Mapping[str, Tal
 
 
 def _courses(details: Details) -> Mapping[str, int]:
-    """Run → the place of the result that has its course."""
+    """Run → index of the result that contains the plot data of the run."""
     return {run.anchor: run.first for run in details.runs.values()}
 
 
@@ -124,44 +130,44 @@ def _courses(details: Details) -> Mapping[str, int]:
 def _maps(
     active: Sequence[Assessment], tallies: Mapping[str, Tally], details: Details
 ) -> tuple[tuple[RunMap, ...], str]:
-    """The maps of the worst runs, and how many runs have none; nothing else of those is read."""
+    """The maps of the worst runs, and a sentence about runs without a map."""
     judged = {
         details.runs[run_key(audit.result)].anchor
-        for each in active
-        for audit in each.reviewed_audits
+        for assessment in active
+        for audit in assessment.reviewed_audits
         if audit.result.ticks
     }
     ranked = [run for run in tallies if run in judged]
     ranked.sort(key=lambda run: worst_first(tallies[run]))
     results: dict[str, list[RunStretches]] = {run: [] for run in ranked[:MOST_MAPS]}
-    for one in _of_runs(active, details, results):
-        results[one.run].append(one)
+    for summary in _of_runs(active, details, results):
+        results[summary.run].append(summary)
     courses = _courses(details)
     drawn = [_map(of, courses[run], details) for run, of in results.items()]
-    maps = tuple(each for each in drawn if each is not None)
+    maps = tuple(picture for picture in drawn if picture is not None)
     if not maps:
         return (), ""
     left = left_out([tallies[run] for run in ranked[MOST_MAPS:]], "no map")
     unknown = len(drawn) - len(maps)
     verb = "has" if unknown == 1 else "have"
-    lost = f"{phrases.times(unknown, 'run')} {verb} no map, because no way is known."
+    lost = f"{phrases.times(unknown, 'run')} {verb} no map, because the path is not known."
     return maps, " ".join(filter(None, [left, lost if unknown else ""]))
 
 
 def _map(of: Sequence[RunStretches], first: int, details: Details) -> RunMap | None:
-    """The map of a run; None where the evidence has no way of it.
+    """The map of a run; None if the evidence has no path of the robot.
 
     Args:
-        of: all its results.
-        first: the place of the one that has its course.
+        of: all results of the run.
+        first: index of the result that contains the plot data of the run.
         details: the evidence.
     """
-    violated = [each.place for each in of if each.count[0]]
+    violated = [summary.place for summary in of if summary.count[0]]
     found = dict(details.evidence.details({first, *violated}) if details.evidence else ())
     course = found[first].course
     if not course or course.way is None:
         return None
-    return run_map(course.way, [RunResult(each, found.get(each.place)) for each in of])
+    return run_map(course.way, [RunResult(summary, found.get(summary.place)) for summary in of])
 
 
 # What the evidence says ------------------------------------------------------------------------
@@ -172,14 +178,14 @@ def _of_runs(
 ) -> list[RunStretches]:
     """The results of some runs, by their anchors, in the order of all runs."""
     places = {run.anchor: run.number for run in details.runs.values()}
-    found = [one for each in active for one in _results(each, details, runs)]
+    found = [result for assessment in active for result in _results(assessment, details, runs)]
     return sorted(found, key=lambda one: places[one.run])
 
 
 def _results(
     assessment: Assessment, details: Details, of: Collection[str] | None = None
 ) -> list[RunStretches]:
-    """Those of some runs, by their anchors; None: of all."""
+    """The results of a requirement in some runs, by their anchors; None: in all runs."""
     return [
         RunStretches(
             run.anchor,
@@ -206,7 +212,7 @@ def _count(result: ResultSummary) -> tuple[int, int, int]:
 def _numbers(
     assessment: Assessment, details: Details, thresholds: Thresholds, most: int
 ) -> tuple[list[RunNumbers], float | None, int, int]:
-    """The runs whose results are current, the time allowed, the rows, and the other runs."""
+    """Arguments of `uses`: current runs, allowed time, number of rows, number of suspect runs."""
     of = _results(assessment, details)
     current = [
         _run_numbers(audit, each, tuple(thresholds[audit.place]))
@@ -237,13 +243,13 @@ def _run_numbers(
 
 
 def _known(details: Details, places: Collection[int]) -> Mapping[int, Known]:
-    """What there is to see of some results."""
+    """Index of a result → its intervals and signals of words."""
     found = details.evidence.details(places) if details.evidence else ()
     return {place: (stretches(result), word_lanes(result)) for place, result in found}
 
 
 def word_lanes(result: Result) -> tuple[WordLane, ...]:
-    """The signals of words over the whole run; behind changes that are left out it is unknown."""
+    """The signals of words over the whole run; unknown after the last recorded change."""
     if not result.course or result.start_ns is None:
         return ()
     end = stretches(result).length

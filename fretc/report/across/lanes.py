@@ -1,7 +1,7 @@
-"""A timeline with a lane a run: violations, unknown stretches, open demands, and words.
+"""A timeline with one lane per run: violations, unknown and open intervals, signals of words.
 
-Each stretch of the evidence is in exactly one mark of its run, unless its run has no lane; runs
-without a lane are counted, and none of them is worse than one with a lane.
+Each interval of the evidence is in exactly one mark, unless its run has no lane. Runs without a
+lane are counted; none of them is worse than a run with a lane.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ from fretc.report.model.pictures import WordLane
 
 NO_COURSES: Mapping[str, int] = MappingProxyType({})
 MOST_LANES = 40
-"""Of the picture of all requirements."""
+"""Maximum number of lanes of the picture of all requirements."""
 _DETAIL, _COARSEST = 240, 4
-"""Marks nearer than this fraction of the picture are one; fewer where there are too many."""
+"""Marks nearer than 1/240 of the picture are merged; down to 1/4 if there are too many."""
 _MOST_MARKS = 1_200
-"""Of one picture, unless so many runs have one each."""
+"""Maximum number of marks per picture; exceeded only if there are more runs than that."""
 _NAMED = 3
-"""The most runs that the text names."""
+"""Maximum number of runs that the text names."""
 
 
 Known = tuple[Stretches, tuple[WordLane, ...]]
-"""What there is to see of a result: its stretches, and the signals of words of its run."""
+"""The intervals of a result, and the signals of words of its run."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunStretches:
-    """One requirement in one run."""
+    """Summary of the result of one requirement in one run, for a lane."""
 
     run: str
     """The anchor of the run."""
@@ -44,32 +44,32 @@ class RunStretches:
     section: str
     """The anchor of the requirement."""
     anchor: str
-    """That of the result."""
+    """The anchor of the result."""
     mark: Mark
     place: int
-    """Of the result in the evidence."""
+    """Index of the result in the evidence."""
     is_judged: bool
-    """Whether it has ticks: then it tells how long the run is."""
+    """Whether the result has ticks, which give the length of the run."""
     count: tuple[int, int, int]
-    """Violations, unknown stretches and open demands."""
+    """Numbers of violations, unknown intervals and open obligations."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """A run before its results are looked at: the worst verdict, and what is counted."""
+    """The worst verdict and the counts of a run."""
 
     mark: Mark
     count: tuple[int, int, int]
 
     def with_one(self, mark: Mark, count: tuple[int, int, int]) -> Tally:
-        """The same with one more result."""
+        """The tally with one more result."""
         worst = min(self.mark, mark, key=lambda each: each.severity)
         a, b, c = self.count
         return Tally(worst, (a + count[0], b + count[1], c + count[2]))
 
 
 def worst_runs(tallies: Mapping[str, Tally], most: int = MOST_LANES) -> Sequence[str]:
-    """The runs that have a lane, the worst where they are too many; else all, in their order."""
+    """The runs that get a lane: all in their order, or the worst if there are too many."""
     if len(tallies) <= most:
         return [*tallies]
     return sorted(tallies, key=lambda run: worst_first(tallies[run]))[:most]
@@ -77,13 +77,13 @@ def worst_runs(tallies: Mapping[str, Tally], most: int = MOST_LANES) -> Sequence
 
 @dataclass(frozen=True, slots=True)
 class _Lane:
-    """A run before its marks are made."""
+    """A lane without its marks."""
 
     results: tuple[RunStretches, ...]
     course: int | None = None
-    """The place of the result that has the signals of words; None: they are not to be shown."""
+    """Index of the result with the signals of words; None if these are not shown."""
     known: Mapping[int, Known] = field(default_factory=dict)
-    """Of those results that are read, by their places."""
+    """Index of a result → its data, for results that were read."""
 
     @property
     def first(self) -> RunStretches:
@@ -91,8 +91,8 @@ class _Lane:
 
     @property
     def mark(self) -> Mark:
-        """The worst of its results."""
-        return min((each.mark for each in self.results), key=lambda mark: mark.severity)
+        """The worst verdict of the results."""
+        return min((result.mark for result in self.results), key=lambda mark: mark.severity)
 
     @property
     def length(self) -> float:
@@ -100,9 +100,9 @@ class _Lane:
 
     @property
     def places(self) -> Iterator[int]:
-        """The results to read: those with something to mark or words, and one that was judged."""
-        judged = [each for each in self.results if each.is_judged]
-        yield from (each.place for each in (*judged[:1], *with_marks(self.results)))
+        """Indices of the results to read: those with marks or words, and one with ticks."""
+        judged = [result for result in self.results if result.is_judged]
+        yield from (result.place for result in (*judged[:1], *with_marks(self.results)))
         if self.course is not None:
             yield self.course
 
@@ -112,8 +112,8 @@ class _Lane:
 
     @property
     def count(self) -> tuple[int, int, int]:
-        """Violations, unknown stretches and open demands."""
-        violations, unknown, waiting = zip(*(each.count for each in self.results), strict=True)
+        """Numbers of violations, unknown intervals and open obligations."""
+        violations, unknown, waiting = zip(*(result.count for result in self.results), strict=True)
         return sum(violations), sum(unknown), sum(waiting)
 
 
@@ -125,26 +125,26 @@ def _ends(stretches: Stretches) -> Iterable[float]:
 
 @dataclass(frozen=True, slots=True)
 class LanePlan:
-    """Which runs have a lane, before it is read what there is to see of them."""
+    """The runs that get a lane, before their data is read."""
 
     title: str
     chosen: tuple[_Lane, ...]
     left: tuple[Tally | _Lane, ...]
     marks: int
-    """About how many marks there may be."""
+    """Approximate maximum number of marks."""
     note: str
-    """What else to say of runs without a lane."""
+    """A further sentence about runs without a lane."""
 
     @property
     def places(self) -> Iterator[int]:
-        """The results to read."""
+        """Indices of the results to read."""
         return (place for lane in self.chosen for place in lane.places)
 
     def lanes(self, known: Mapping[int, Known]) -> Lanes | None:
-        """The lanes; None where there is no time to show.
+        """The lanes; None if no run has a duration.
 
         Args:
-            known: what there is to see of these results, by their places.
+            known: index of a result → its data.
         """
         chosen = [replace(e, known={at: known[at] for at in e.places}) for e in self.chosen]
         end = max((lane.length for lane in chosen), default=0.0)
@@ -170,18 +170,18 @@ def plan(
     """Choose the runs that have a lane: all, or the worst.
 
     Args:
-        title: of the picture.
-        results: in the order of their runs.
-        most: lanes.
-        marks: about how many marks there may be.
-        note: what else to say of runs without a lane.
-        left: runs that have no lane in any case, none of them worse than the others.
-        courses: run → place of the result that has its signals of words.
-        ranked: whether the worst come first, though they are few.
+        title: title of the picture.
+        results: results in the order of their runs.
+        most: maximum number of lanes.
+        marks: approximate maximum number of marks.
+        note: a further sentence about runs without a lane.
+        left: runs that get no lane; none of them is worse than the others.
+        courses: run → index of the result with its signals of words.
+        ranked: whether to sort by verdict even if all runs get a lane.
     """
     grouped: dict[str, list[RunStretches]] = {}
-    for each in results:
-        grouped.setdefault(each.run, []).append(each)
+    for result in results:
+        grouped.setdefault(result.run, []).append(result)
     every = [_Lane(tuple(of), courses.get(run)) for run, of in grouped.items()]
     sort = ranked or len(every) > most
     ordered = sorted(every, key=worst_first) if sort else every
@@ -189,17 +189,17 @@ def plan(
 
 
 def with_marks(results: Sequence[RunStretches]) -> list[RunStretches]:
-    """Those that have something to mark."""
-    return [each for each in results if any(each.count)]
+    """The results that have marks."""
+    return [result for result in results if any(result.count)]
 
 
 def worst_first(lane: Tally | _Lane) -> tuple[tuple[int, bool], tuple[int, ...]]:
-    """The key that sorts runs."""
+    """Sort key of runs, worst first."""
     return lane.mark.severity, tuple(-count for count in lane.count)
 
 
 def _drawn(chosen: Sequence[_Lane], end: float, most: int) -> tuple[RunLane, ...]:
-    """The lanes, as coarse as it takes to have few marks."""
+    """The lanes, with marks merged until there are at most `most`."""
     detail = _DETAIL
     while True:
         drawn = tuple(_lane(lane, end / detail) for lane in chosen)
@@ -212,8 +212,8 @@ def _lane(lane: _Lane, nearest: float) -> RunLane:
     of = sorted(
         (
             mark
-            for each in with_marks(lane.results)
-            for mark in _marks(each, lane.known[each.place][0])
+            for result in with_marks(lane.results)
+            for mark in _marks(result, lane.known[result.place][0])
         ),
         key=lambda mark: (mark.start, mark.end),
     )
@@ -243,7 +243,7 @@ def _marks(each: RunStretches, stretches: Stretches) -> Iterable[LaneMark]:
 
 
 def _merged(marks: Sequence[LaneMark], nearest: float) -> list[LaneMark]:
-    """Marks in their order; those that overlap, or nearly, are one."""
+    """Sorted marks; overlapping or nearby marks are merged."""
     merged: list[LaneMark] = []
     last_end = -inf
     for mark in marks:
@@ -280,15 +280,15 @@ def _worded(mark: LaneMark) -> LaneMark:
 
 
 def left_out(left: Sequence[Tally | _Lane], what: str) -> str:
-    """How many runs have no lane or no map, and the worst verdict among them."""
+    """A sentence with the number of runs without a lane or map, and their worst verdict."""
     if not left:
         return ""
     worst = min((lane.mark for lane in left), key=lambda mark: mark.severity)
     counted = _counted(left)
     verb = "has" if len(left) == 1 else "have"
     return (
-        f"{phrases.times(len(left), 'run')} {verb} {what}, and none is worse than those with one: "
-        f"the worst is {worst.text}{f', with {counted}' if counted else ''}."
+        f"{phrases.times(len(left), 'run')} {verb} {what}; none of them is worse than the "
+        f"runs shown: the worst is {worst.text}{f', with {counted}' if counted else ''}."
     )
 
 
@@ -305,12 +305,12 @@ def _counted(lanes: Sequence[Tally | _Lane]) -> str:
 
 
 def _in_words(lanes: Sequence[_Lane]) -> str:
-    """Each of the worst runs with what it has, the others by their number."""
+    """A sentence with the counts of the worst runs and the number of other runs."""
     bad = sorted((lane for lane in lanes if any(lane.count)), key=worst_first)
     named = [f"{lane.first.label} ({lane.first.file}): {_counted([lane])}" for lane in bad[:_NAMED]]
     rest = _counted(bad[_NAMED:]) if len(bad) > _NAMED else ""
     more = f"{phrases.times(len(bad) - _NAMED, 'more run')}: {rest}" if rest else ""
     calm = len(lanes) - len(bad)
     parts = [*named, *([more] if more else [])]
-    none = f"{phrases.times(calm, 'run')}: none of it" if calm else ""
+    none = f"{phrases.times(calm, 'run')} without such a tick" if calm else ""
     return f"{'; '.join([*parts, *([none] if none else [])])}."

@@ -16,23 +16,23 @@ from fretc.report.pictures.plots import WIDTH, fitting, places
 _LEFT, _RIGHT = 196, 24
 _TOP, _AXIS, _ROW, _WORDS = 20, 26, 20, 15
 _KINDS = {"violated": (1, 7), "unknown": (9, 4), "open": (14, 3)}
-"""Of each kind of mark the place in its lane, and its height."""
+"""Kind of a mark → its offset in the lane, and its height."""
 _THINNEST = 2.5
 _LETTER = 5.8
 _NAME = 27
-"""Letters of a name that fit beside a lane."""
+"""Maximum number of characters of a name beside a lane."""
 _SHARES = 470
-"""The right end of the scale of shares; their words stand behind it."""
+"""The right end of the scale of shares; labels are to the right of it."""
 _BEYOND = 1.5
-"""The end of the scale of shares; what is above it stands there, with its number."""
+"""The end of the scale of shares; larger shares are drawn at the end, with their number."""
 
 _Place = Callable[[float], float]
-"""From seconds to their place."""
+"""Converts seconds into an x coordinate."""
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnMark:
-    """A mark of a lane with its link, and what it says."""
+    """A mark of a lane with its link and its text."""
 
     kind: str
     x: float
@@ -45,7 +45,7 @@ class DrawnMark:
 
 @dataclass(frozen=True, slots=True)
 class DrawnWord:
-    """A stretch of a lane of words."""
+    """An interval of a lane of words."""
 
     x: float
     width: float
@@ -64,7 +64,7 @@ class DrawnWords:
 
 @dataclass(frozen=True, slots=True)
 class DrawnRun:
-    """The lane of a run; `name` is as much of its name as fits."""
+    """The lane of a run; `name` is shortened to fit."""
 
     y: int
     name: str
@@ -78,7 +78,7 @@ class DrawnRun:
 
 @dataclass(frozen=True, slots=True)
 class DrawnLanes:
-    """The picture with a lane a run."""
+    """The picture with one lane per run."""
 
     id: str
     title: str
@@ -91,7 +91,7 @@ class DrawnLanes:
     axis: int
     row: int
     is_calm: bool
-    """Whether nothing was violated; the lanes of a requirement are then left out of print."""
+    """Whether nothing was violated; such a picture is not printed."""
     runs: tuple[DrawnRun, ...]
     ticks: tuple[tuple[float, str], ...]
 
@@ -101,8 +101,8 @@ def drawn_lanes(content: Lanes, id: str, anchors: Collection[str]) -> DrawnLanes
 
     Args:
         content: the lanes.
-        id: of the picture.
-        anchors: of the results, runs and pictures in the page; other links lead to a section.
+        id: id of the picture.
+        anchors: anchors on the page; other links lead to a section.
     """
     scale = (WIDTH - _LEFT - _RIGHT) / content.end
 
@@ -161,7 +161,7 @@ def _mark(mark: LaneMark, y: int, x: _Place, anchors: Collection[str]) -> DrawnM
 
 
 def _short(name: str) -> str:
-    """As much of a name as fits: its end, where names begin alike."""
+    """The name, shortened at its beginning, because names often begin alike."""
     return name if len(name) <= _NAME else f"…{name[1 - _NAME :]}"
 
 
@@ -170,7 +170,7 @@ def _short(name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Dot:
-    """What a run has used of one bound."""
+    """The share of one bound that a run used."""
 
     x: float
     letter: str
@@ -205,19 +205,19 @@ class DrawnUses:
     left: int
     right: int
     labels: int
-    """Where the words of each row begin."""
+    """The x coordinate of the labels of rows."""
     top: int
     axis: int
     row: int
     bound: float
     is_calm: bool
-    """Whether no bound was crossed; it is then left out of print."""
+    """Whether no bound was crossed; such a picture is not printed."""
     rows: tuple[DrawnRow, ...]
     ticks: tuple[tuple[float, str], ...]
 
 
 def drawn_uses(content: Uses, id: str, anchors: Collection[str]) -> DrawnUses:
-    """The layout of a ranking; arguments as of `drawn_lanes`."""
+    """The layout of a ranking; arguments as for `drawn_lanes`."""
     names = [_short(row.label) for row in content.rows]
     axis = _TOP + _ROW * len(content.rows) + 2
     return DrawnUses(
@@ -248,7 +248,7 @@ def _share(share: float) -> float:
 
 
 def _end(use: Use) -> float:
-    """A crossed bound is right of the bound, whatever its share is rounded to."""
+    """The end of a bar; a crossed bound always ends to the right of the bound."""
     if not use.is_crossed:
         return min(_share(use.share or 0.0), _share(1.0))
     return max(_share(_BEYOND if use.share is None else use.share), _share(1.0) + 7)
@@ -277,10 +277,10 @@ def _words_of(use: Use) -> str:
 # Maps ------------------------------------------------------------------------------------------
 
 _MAP, _EDGE, _FOOT = 360, 14, 30
-"""Width of a map, the room around it, and that of the scale bar below it."""
+"""Width of a map, its margin, and the height of the scale bar."""
 _TALLEST = 420
 _BAR = 0.25
-"""The scale bar is at most so much of the width."""
+"""Maximum length of the scale bar, as a fraction of the width."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -296,7 +296,7 @@ class DrawnPlace:
 
 @dataclass(frozen=True, slots=True)
 class DrawnMap:
-    """The map of a run: one metre is as long upwards as to the right."""
+    """The map of a run, with equal scales on both axes."""
 
     id: str
     title: str
@@ -304,7 +304,7 @@ class DrawnMap:
     mark: Mark
     link: str
     is_calm: bool
-    """Whether nothing was violated in its run."""
+    """Whether the run has no violation."""
     width: int
     height: int
     path: str
@@ -317,7 +317,7 @@ class DrawnMap:
 
 
 def drawn_map(content: RunMap, id: str, anchors: Collection[str]) -> DrawnMap:
-    """The layout of a map; arguments as of `drawn_lanes`."""
+    """The layout of a map; arguments as for `drawn_lanes`."""
     points = [point for line in content.lines for point in line]
     points += [(mark.x, mark.y) for mark in content.marks]
     xs, ys = zip(*points, strict=True)
@@ -357,7 +357,7 @@ def _places(
     at: Callable[[float, float], tuple[float, float]],
     anchors: Collection[str],
 ) -> Iterator[DrawnPlace]:
-    """The marks; one without room for its name says it where the reader points at it."""
+    """The marks of a map; a mark without room for its label only has a tooltip."""
     named: list[tuple[float, float]] = []
     for mark in marks:
         x, y = at(mark.x, mark.y)
@@ -370,9 +370,9 @@ def _places(
 
 
 def _link(mark: PlaceMark | LaneMark, anchors: Collection[str]) -> str:
-    """To the picture of the first violation, else to its result, else to its requirement."""
+    """The link of a mark: to a picture, else to a result, else to a requirement."""
     links = [f"picture-{mark.anchor}.{mark.number}" if mark.number else "", mark.anchor]
-    return next((one for one in links if one in anchors), mark.section)
+    return next((link for link in links if link in anchors), mark.section)
 
 
 def _line(

@@ -1,4 +1,4 @@
-"""The map of a run: the robot's way, and where each violation began."""
+"""The map of a run: the path of the robot, and where each violation began."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from fretc.report.model.across import PlaceMark, RunMap
 
 MOST_MAPS = 12
 _NEAR = 0.02
-"""Violations nearer than this part of the map are one mark."""
+"""Violations nearer than this fraction of the map are merged into one mark."""
 _NAMED = 3
 
 
 @dataclass(frozen=True, slots=True)
 class RunResult:
-    """A result of a run with a way, and what names it."""
+    """A result of a run with a path, and its names."""
 
     of: RunStretches
     result: Result | None
-    """None: it was not read, because it has no violation."""
+    """None if the result was not read, because it has no violation."""
 
 
 def run_map(way: Way, results: Sequence[RunResult]) -> RunMap | None:
-    """The map of a run; None where its way has no point.
+    """The map of a run; None if the path has no point.
 
     Args:
-        way: of the run.
-        results: all of it.
+        way: the path of the robot.
+        results: all results of the run.
     """
     lines = tuple(
         tuple(zip(map(float, way.x[first:end]), map(float, way.y[first:end]), strict=True))
@@ -42,18 +42,18 @@ def run_map(way: Way, results: Sequence[RunResult]) -> RunMap | None:
     points = [point for line in lines for point in line]
     if not points:
         return None
-    placed = [mark for one in results for mark in _marks(one, way)]
-    total = sum(one.of.count[0] for one in results)
+    placed = [mark for result in results for mark in _marks(result, way)]
+    total = sum(result.of.count[0] for result in results)
     marks = tuple(_worded(mark) for mark in _merged(placed, _NEAR * extent(points)))
     first = results[0].of
-    worst = min((one.of.mark for one in results), key=lambda mark: mark.severity)
+    worst = min((result.of.mark for result in results), key=lambda mark: mark.severity)
     unplaced = total - len(placed)
     text = _text(lines, way, total, unplaced)
     return RunMap(first.run, first.label, first.file, worst, lines, marks, unplaced, text)
 
 
 def extent(points: Iterable[tuple[float, float]]) -> float:
-    """The longer side of the box around some points; a metre at least."""
+    """The longer side of the bounding box of some points, at least one metre."""
     xs, ys = zip(*points, strict=True)
     return float(max(max(xs) - min(xs), max(ys) - min(ys), 1.0))
 
@@ -75,7 +75,7 @@ def _marks(one: RunResult, way: Way) -> Iterable[PlaceMark]:
 
 
 def _merged(marks: Iterable[PlaceMark], near: float) -> list[PlaceMark]:
-    """Each mark with those that are near it; the first one names the place."""
+    """Merge nearby marks; a merged mark is at the position of the first one."""
     merged: list[PlaceMark] = []
     for mark in marks:
         near_by = (n for n, m in enumerate(merged) if dist((m.x, m.y), (mark.x, mark.y)) < near)
@@ -102,9 +102,9 @@ def _text(
 ) -> str:
     (x, y), (u, v) = lines[0][0], lines[-1][-1]
     parts = [
-        f"The way of the robot from ({x:g}, {y:g}) to ({u:g}, {v:g}) in metres, within "
+        f"The path of the robot from ({x:g}, {y:g}) to ({u:g}, {v:g}) in metres, within "
         f"{phrases.value(float(way.error), 'm')}.",
-        f"It has {phrases.times(len(lines), 'part')}: between them the place is unknown."
+        f"It has {phrases.times(len(lines), 'part')}: between them the position is unknown."
         if len(lines) > 1
         else "",
         f"{phrases.times(way.lines_left_out, 'short part')} left out."
@@ -113,8 +113,8 @@ def _text(
         f"{phrases.times(violations, 'violation')}, each marked where it began."
         if violations and not unplaced
         else "",
-        f"{phrases.times(violations, 'violation')}, of which {phrases.whole(unplaced)} began where "
-        "the place is unknown, and have no mark."
+        f"{phrases.times(violations, 'violation')}, of which {phrases.whole(unplaced)} began "
+        "where the position is unknown, and have no mark."
         if unplaced
         else "",
         "No violation." if not violations else "",

@@ -1,9 +1,10 @@
-"""How much of each bound the runs of a requirement have used: of a deadline, and of thresholds.
+"""The share of each bound (deadline and thresholds) that the runs of a requirement used.
 
-A threshold counts as a bound only while no run that satisfies the requirement is beyond it: what a
-trigger compares is crossed in good runs, too. The share is the latency by the time allowed, and for
-a threshold 1 less the least distance to it by its own size (by the greatest value of all runs where
-the threshold is 0). Runs beyond a bound come first; what is unknown has no share, and is counted.
+A threshold counts as a bound only if no run that satisfies the requirement crosses it, because good
+runs cross the thresholds of triggers. The share of a deadline is latency / allowed time. The share
+of a threshold is 1 - (least distance / size of the threshold); if the threshold is 0, the greatest
+value of all runs replaces its size. Runs beyond a bound come first. Runs with an unknown share are
+counted.
 """
 
 from __future__ import annotations
@@ -21,13 +22,13 @@ from fretish.bindings.amounts import exact
 from monitors import kernel
 
 _LETTERS = "abcdefgh"
-"""Of the measures of one picture; others are counted."""
+"""Letters of the bounds in one picture; further bounds are counted."""
 _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class RunNumbers:
-    """What one run says of the bounds of a requirement."""
+    """The numbers of one run for the bounds of a requirement."""
 
     label: str
     file: str
@@ -37,17 +38,17 @@ class RunNumbers:
     triggers: int
     violations: int
     latency: float | None
-    """The longest, in seconds; None: there is no answer."""
+    """The longest latency in seconds; None if there is no answer."""
     thresholds: tuple[Threshold, ...]
 
     @property
     def is_good(self) -> bool:
-        """Whether it satisfies the requirement."""
+        """Whether the run satisfies the requirement."""
         return self.mark.word == kernel.SATISFIED
 
     @property
     def is_bad(self) -> bool:
-        """Whether it violates it."""
+        """Whether the run violates the requirement."""
         return self.mark.word == kernel.VIOLATED
 
 
@@ -57,13 +58,13 @@ _Key = tuple[str, str, str, float, str]
 def uses(
     runs: Sequence[RunNumbers], allowed: float | None, most: int, suspect: int = 0
 ) -> Uses | None:
-    """The ranking; None where less than two runs have anything to rank.
+    """The ranking of runs; None if fewer than two runs have a share.
 
     Args:
-        runs: those whose results are current, in their order.
-        allowed: seconds to the deadline of the response; None: there is none.
-        most: rows.
-        suspect: how many runs are left out, because their results are not current.
+        runs: runs with current results, in their order.
+        allowed: seconds to the deadline of the response; None if there is no deadline.
+        most: maximum number of rows.
+        suspect: number of runs that are left out because their results are suspect.
     """
     grouped = _grouped(runs)
     bounds = {key: bound for key, of in grouped.items() if (bound := _bound(of)) is not None}
@@ -88,7 +89,7 @@ def uses(
     )
     measures = tuple((letter, _named(key, allowed)) for key, letter in letters.items())
     return Uses(
-        "Share of the bounds that each run has used",
+        "How much of its bounds each run used",
         measures,
         tuple(shown),
         notes,
@@ -97,11 +98,11 @@ def uses(
 
 
 def _grouped(runs: Sequence[RunNumbers]) -> dict[_Key, list[tuple[RunNumbers, Threshold]]]:
-    """The thresholds of all runs, by what they compare."""
+    """The thresholds of all runs, grouped by comparison."""
     grouped: dict[_Key, list[tuple[RunNumbers, Threshold]]] = {}
     for run in runs:
-        for each in run.thresholds:
-            grouped.setdefault(_key(each), []).append((run, each))
+        for threshold in run.thresholds:
+            grouped.setdefault(_key(threshold), []).append((run, threshold))
     return grouped
 
 
@@ -111,16 +112,16 @@ def _key(each: Threshold) -> _Key:
 
 @dataclass(frozen=True, slots=True)
 class _Bound:
-    """What all runs say of one threshold."""
+    """The data of all runs for one threshold."""
 
     side: str | None
-    """The truth value that it keeps in runs that satisfy the requirement; None: there is none."""
+    """The truth value of the comparison in runs that satisfy the requirement; None if unknown."""
     scale: float
-    """That distances are parts of."""
+    """The value by which distances are divided."""
 
 
 def _bound(of: Sequence[tuple[RunNumbers, Threshold]]) -> _Bound | None:
-    """None where runs that satisfy the requirement are on both sides: then it is no bound of it."""
+    """The bound; None if runs that satisfy the requirement are on both sides of the threshold."""
     kept = {each.comparison for run, each in of if run.is_good and each.comparison is not None}
     if "crossed" in kept or len(kept) > 1 or not any(each.comparison for _, each in of):
         return None
@@ -129,7 +130,7 @@ def _bound(of: Sequence[tuple[RunNumbers, Threshold]]) -> _Bound | None:
 
 
 def _lettered(allowed: float | None, bounds: Mapping[_Key, object]) -> dict[_Key | None, str]:
-    """A letter for each measure; None is the latency."""
+    """Bound → letter; None is the latency."""
     keys: list[_Key | None] = [*([None] if allowed else []), *bounds]
     return dict(zip(keys, _LETTERS, strict=False))
 
@@ -149,12 +150,12 @@ def _row(
     *,
     worded: bool = False,
 ) -> UseRow:
-    """The row of a run; words only where they are asked for, since most rows are not shown."""
+    """The row of a run; texts only if `worded`, because most rows are not shown."""
     found = list(_of_latency(run, allowed, letters))
-    for each in run.thresholds:
-        key = _key(each)
-        if key in bounds and key in letters and each.comparison is not None:
-            found.append(_of_threshold(each, bounds[key], letters[key], worded=worded))
+    for threshold in run.thresholds:
+        key = _key(threshold)
+        if key in bounds and key in letters and threshold.comparison is not None:
+            found.append(_of_threshold(threshold, bounds[key], letters[key], worded=worded))
     found.sort(key=_most_used)
     return UseRow(run.label, run.file, run.mark, run.anchor, run.section, tuple(found))
 
@@ -219,7 +220,7 @@ def _reach(each: Threshold) -> float:
 
 
 def _worst(each: Threshold, side: str | None) -> float | None:
-    """The value nearest to the bound, or farthest beyond it; None where the side is not known."""
+    """The value nearest to the bound, or farthest beyond it; None if the side is unknown."""
     if side is None:
         return None
     is_upper = (each.operator in ("<", "<=")) == (side == "true")
@@ -244,14 +245,14 @@ def _left_out(left: Sequence[UseRow]) -> str:
     parts = [
         f"{phrases.whole(violated)} of them violated" if violated else "",
         f"{phrases.whole(crossed)} beyond a bound" if crossed else "",
-        f"the others used {percent(most)} at most" if most is not None and crossed else "",
-        f"they used {percent(most)} at most" if most is not None and not crossed else "",
+        f"the others used at most {percent(most)}" if most is not None and crossed else "",
+        f"they used at most {percent(most)}" if most is not None and not crossed else "",
     ]
     return f"{phrases.times(len(left), 'more run')}: {', '.join(filter(None, parts))}."
 
 
 def percent(share: float) -> str:
-    """`63 %`; never 100 for what is not, and digits only as far as they say something."""
+    """`63 %`; a share near 100 % is never rounded to `100 %`."""
     whole = f"{share * 100:.0f}"
     if share < 1 and float(whole) >= 100:
         return "just below 100 %"
@@ -261,11 +262,11 @@ def percent(share: float) -> str:
 
 
 def _unknown(rows: Sequence[UseRow]) -> str:
-    """Runs that say nothing of any bound: unknown, never triggered, or without an answer."""
+    """A sentence about runs without a share: unknown, never triggered, or without an answer."""
     if not rows:
         return ""
     named = [f"{row.label} ({row.mark.text})" for row in rows]
-    return f"Nothing is known of the use in {phrases.some(named)}."
+    return f"How much of the bound was used is not known in {phrases.some(named)}."
 
 
 def _not_bounds(keys: Sequence[_Key]) -> str:
@@ -275,8 +276,8 @@ def _not_bounds(keys: Sequence[_Key]) -> str:
         f"`{signal} {operator} {exact(bound, unit)}`" for _, signal, operator, bound, unit in keys
     ]
     return (
-        f"Not ranked, because runs that satisfy the requirement are on both sides, or nothing is "
-        f"known: {phrases.some(list(dict.fromkeys(named)))}."
+        "Not ranked, because runs that satisfy the requirement are on both sides of the "
+        f"bound, or no value is known: {phrases.some(list(dict.fromkeys(named)))}."
     )
 
 

@@ -1,7 +1,7 @@
 """`--csv`: a row for each requirement and run, for a spreadsheet.
 
-Numbers are numbers, in the unit that the head names, and texts are quoted, so that a program can
-tell them apart. A cell without a number is empty.
+Numbers have the unit that the header names. Texts are quoted, so that programs can distinguish them
+from numbers. A cell without a number is empty.
 
 Sources: RFC 4180 for the form; OWASP, CSV Injection, for texts that a spreadsheet would execute.
 """
@@ -29,7 +29,7 @@ Cell = str | int | float | None
 
 
 def csv_text(report: Report) -> str:
-    """The whole table, with its head."""
+    """The CSV table with its header."""
     stream = io.StringIO()
     writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC)
     writer.writerow(HEAD)
@@ -85,7 +85,7 @@ def _currency(mark: Mark) -> str:
 
 
 def _harmless(cell: Cell) -> Cell:
-    """No text is a formula; one that is a number, such as `-5`, is none."""
+    """The cell, escaped if a spreadsheet would execute it; numbers such as `-5` are unchanged."""
     if not isinstance(cell, str) or not cell.startswith(_EXECUTED) or _NUMBER.fullmatch(cell):
         return cell
     return f"'{cell}"

@@ -1,6 +1,6 @@
-"""The forms of the report, in one table: the option of each, and the function that writes it.
+"""Table of the formats of the report: the option and the writer of each.
 
-A function imports its form when the form is wanted, so that the table itself costs nothing.
+Writers are imported when they are used, to keep the start of a command fast.
 """
 
 from __future__ import annotations
@@ -23,31 +23,31 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """What a form is written from."""
+    """The input of the writer of a format."""
 
     report: Report
     project: Project
     details: Details
     """The evidence behind its rows."""
     diagnostics: Sequence[Diagnostic]
-    """Those of the report; the project has its own."""
+    """Diagnostics of the report, in addition to those of the project."""
     inset: Inset | None = None
-    """What the page has in it."""
+    """The page of `fretc play` to embed in the HTML page."""
 
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """A form of the report."""
+    """A format of the report."""
 
     name: str
-    """The name of its option."""
+    """The name of the option."""
     help: str
     text: Callable[[Subject], str | Iterable[str]]
-    """All of it, or in pieces where it may be too long for memory."""
+    """Writes the whole text, or pieces if it may not fit into memory."""
     default: str | None = None
-    """The file that it goes to where no file is given; None: then it is not written."""
+    """The default path of the file; None if the format is only written on request."""
     missing: Callable[[], Diagnostic | None] = lambda: None
-    """A diagnostic where a library that the form needs is not installed."""
+    """A diagnostic if a library for the format is not installed."""
 
 
 def _html(subject: Subject) -> str:
@@ -97,7 +97,7 @@ def _reqif(subject: Subject) -> str:
 
 
 def _missing_reqif() -> Diagnostic | None:
-    """F908, where the library that `--reqif` needs is not installed."""
+    """F908 if the library for `--reqif` is not installed."""
     return unless_installed("a report as ReqIF needs", ["reqif"], "reqif")
 
 

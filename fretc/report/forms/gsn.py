@@ -15,7 +15,7 @@ from fretc.report.sections.argument import Element, argument
 
 
 def gsn(report: Report) -> str:
-    """The whole file."""
+    """The argument as YAML."""
     head = f"# The argument of the report by fretc {report.fretc}; for gsn2x.\n"
     elements = {element.id: _attributes(element) for element in argument(report)}
     return head + yaml.safe_dump(elements, sort_keys=False, allow_unicode=True, width=100)

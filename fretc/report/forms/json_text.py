@@ -1,6 +1,6 @@
-"""`--json`: the report for programs, field by field, each result and each run in full.
+"""`--json`: the report for programs, with each result and each run in full.
 
-The results of all runs may be more than memory holds: they are read and written in turn.
+The results are read and written in groups, because they may not fit into memory.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from fretc.report.model.views import Report, RequirementView
 from fretc.report.sections.details import Details
 
 _AT_ONCE = 2_000
-"""The most results that are read at once, but for those of one requirement."""
+"""Maximum number of results that are read at once, unless one requirement has more."""
 
 
 def json_pieces(report: Report, details: Details) -> Iterator[str]:
-    """The whole file."""
+    """The JSON text in pieces."""
     anchors = [view.anchor for view in report.requirements]
     report = replace(report, across=across(details, anchors, len(anchors)))
     runs = (to_json(asdict(run), "    ") for run in details.run_views(report.runs))
@@ -41,10 +41,10 @@ def _requirements(views: Sequence[RequirementView], details: Details) -> Iterato
 
 
 def _groups(views: Sequence[RequirementView]) -> Iterator[list[RequirementView]]:
-    """The requirements in their order, with so many results together as are read at once."""
+    """The requirements in their order, in groups whose results are read at once."""
     group: list[RequirementView] = []
     for view in views:
-        if group and sum(len(each.results) for each in (*group, view)) > _AT_ONCE:
+        if group and sum(len(member.results) for member in (*group, view)) > _AT_ONCE:
             yield group
             group = []
         group.append(view)
@@ -52,12 +52,12 @@ def _groups(views: Sequence[RequirementView]) -> Iterator[list[RequirementView]]
 
 
 def _object(view: Any, written: Mapping[str, Iterable[str]], indent: str) -> Iterator[str]:
-    """A view, as `to_json` writes it where it is longer than a line.
+    """A view as a JSON object in the layout of `to_json`.
 
     Args:
         view: a dataclass.
-        written: the elements of those of its fields that are arrays of views.
-        indent: of the lines of the object.
+        written: field → elements, for fields that are arrays of views.
+        indent: indentation of the lines of the object.
     """
     inner = f"{indent}  "
     separator = f"{{\n{inner}"
@@ -80,7 +80,7 @@ def _array(elements: Iterable[str], indent: str) -> Iterator[str]:
 
 
 def _plain(value: Any) -> Any:
-    """A field without dataclasses."""
+    """The value of a field, with dataclasses converted to plain values."""
     if is_dataclass(value) and not isinstance(value, type):
         return asdict(value)
     if isinstance(value, tuple):

@@ -1,7 +1,7 @@
-"""`--junit`: a test case for each requirement and run, for a CI server; a suite for each run.
+"""`--junit`: a suite for each run with a test case for each requirement, for CI servers.
 
-A first suite, named after the project, has what no single run says: requirements that no run was
-compared with, probabilities, counterexamples, and what was reviewed and is claimed no more.
+A first suite, named after the project, has cases without a single run: requirements that were not
+audited, probabilities, counterexamples, and withdrawn requirements.
 
 Source: the JUnit schema of the Jenkins xUnit plugin, https://github.com/jenkinsci/xunit-plugin.
 """
@@ -22,7 +22,7 @@ from fretc.report.sections.proofs import is_refuted, refutations
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """A test case; `kind` is the element of its outcome, empty where it passes."""
+    """A test case; `kind` is the XML element of its outcome, "" if it passes."""
 
     name: str
     kind: str
@@ -31,13 +31,14 @@ class _Case:
 
 
 def junit(report: Report) -> str:
-    """The whole file; a case is a failure, or an error, where `--strict` would end with 1."""
+    """The JUnit XML; a case is a failure or an error if `--strict` would exit with 1."""
     root = ElementTree.Element("testsuites", name="fretc report")
-    withdrawn = {one.requirement for one in report.withdrawn}
+    withdrawn = {withdrawal.requirement for withdrawal in report.withdrawn}
     views = [view for view in report.requirements if view.id not in withdrawn]
     of_project = [_of_requirement(view) for view in views if _needs_own_case(view)]
     of_project += [
-        _Case(one.requirement, "failure", f"withdrawn: {one.text}") for one in report.withdrawn
+        _Case(withdrawal.requirement, "failure", f"withdrawn: {withdrawal.text}")
+        for withdrawal in report.withdrawn
     ]
     suite = _suite(root, report.project, of_project)
     _accepted(suite, report)
@@ -48,7 +49,7 @@ def junit(report: Report) -> str:
 
 
 def _by_run(views: Sequence[RequirementView]) -> dict[str, list[_Case]]:
-    """The cases of each run by its name; runs of one file have their labels, too."""
+    """Name of a run → its cases; runs of the same file are distinguished by their labels."""
     files = {result.run: result for view in views for result in view.results}
     names = Counter(result.run_file for result in files.values())
     cases: dict[str, list[_Case]] = {}
@@ -70,7 +71,7 @@ def _of_run(view: RequirementView, result: ResultRow) -> _Case:
 
 
 def _kind_of_run(view: RequirementView, result: ResultRow) -> str:
-    """A waiver covers what a run shows, and who is retired claims nothing."""
+    """The outcome of a run; waived and retired requirements pass."""
     kind = verdicts.junit(result.mark.word, suspect=result.mark.suspect)
     return "skipped" if kind and (_is_waived(view) or view.mark.word == RETIRED) else kind
 
@@ -80,13 +81,13 @@ def _is_waived(view: RequirementView) -> bool:
 
 
 def _needs_own_case(view: RequirementView) -> bool:
-    """Whether the cases of its runs do not say what is true of the requirement."""
+    """Whether the requirement needs a case in the first suite, beside the cases of its runs."""
     kinds = {_kind_of_run(view, result) for result in view.results}
     return view.probability is not None or _kind(view) not in kinds
 
 
 def _kind(view: RequirementView) -> str:
-    """The element for it; empty: it passes."""
+    """The XML element of the outcome of a requirement; "" if it passes."""
     if is_refuted(view):
         return "failure"
     return verdicts.junit(view.mark.word, suspect=view.mark.suspect)
@@ -99,7 +100,7 @@ def _of_requirement(view: RequirementView) -> _Case:
 
 
 def _reasons(view: RequirementView) -> Iterator[str]:
-    """The waiver and the verdict behind it, the worst of the runs first, then counterexamples."""
+    """Reasons of the outcome: waiver and its verdict, runs (worst first), counterexamples."""
     if view.waiver:
         yield f"{view.waiver.reason} (it is {view.waiver.covers.text})"
     yield from view.reasons
@@ -117,12 +118,12 @@ def _suite(root: ElementTree.Element, name: str, cases: Sequence[_Case]) -> Elem
 
 
 def _accepted(suite: ElementTree.Element, report: Report) -> None:
-    """The warnings that the project accepts, each with its reason."""
+    """Add the accepted warnings, each with its reason."""
     accepted = [remark for remark in report.remarks if remark.accepted]
     properties = ElementTree.SubElement(suite, "properties") if accepted else suite
-    for one in accepted:
-        name = valid(f"accepted {one.code}: {one.message}")
-        ElementTree.SubElement(properties, "property", name=name, value=valid(one.accepted))
+    for remark in accepted:
+        name = valid(f"accepted {remark.code}: {remark.message}")
+        ElementTree.SubElement(properties, "property", name=name, value=valid(remark.accepted))
 
 
 def _cases(suite: ElementTree.Element, classname: str, cases: Sequence[_Case]) -> None:

@@ -1,7 +1,7 @@
-"""`--markdown`: what a reviewer of a pull request wants to see first, on one screen.
+"""`--markdown`: a summary on one screen for the reviewer of a pull request.
 
-It is at most forty lines, whatever the size of the report. What is left out is counted, and none of
-it is worse than what is listed.
+The summary has at most forty lines. Omitted items are counted; none of them is worse than a listed
+one.
 
 Source: GitHub Flavored Markdown Spec 0.29, tables (extension).
 """
@@ -32,14 +32,14 @@ from fretish.diagnostics import status_symbols as signs
 
 _MARKUP = re.compile(r"([\\`*_{}\[\]()<>#+!|~&:@-])")
 _VIOLATED, _NOT_SHOWN, _CHANGED, _OTHERS = 8, 4, 4, 3
-"""The most lines of each list, and the most entries of a line that has several."""
+"""Maximum lines of each list, and maximum entries of a line with several."""
 _LONGEST = 240
-"""Characters of one text."""
+"""Maximum characters of one text."""
 T = TypeVar("T")
 
 
 def markdown(report: Report, details: Details) -> str:
-    """The whole comment."""
+    """The Markdown text."""
     return "".join(f"{line}\n" for line in _lines(report, details))
 
 
@@ -75,7 +75,7 @@ def _figures(report: Report, claimed: int, violated: int, not_shown: int) -> Ite
 
 
 def _list(heading: str, things: Sequence[T], line: Callable[[T], str], most: int) -> Iterator[str]:
-    """A heading with the number of all, the first ones, and how many more there are."""
+    """A heading with the total, the first items, and the number of omitted ones."""
     if not things:
         return
     yield f"### {heading}: {len(things)}"
@@ -95,11 +95,13 @@ def _claim(details: Details, view: RequirementView) -> str:
 
 
 def _worst(details: Details, view: RequirementView) -> tuple[str, str]:
-    """The worst run, with how many more there are, and its cause; else what no single run says."""
+    """The worst run with its cause, and the number of further runs; or the reason without a run."""
     open_ones = [result for result in view.results if not result.mark.shows]
     if view.mark.word not in BROKEN and is_refuted(view):
-        counterexamples = (f"{one.layer}: {one.claim}" for one in refutations(view))
-        plans = (f"{one.method}: {one.result}" for one in view.planned if one.refuted)
+        counterexamples = (
+            f"{refutation.layer}: {refutation.claim}" for refutation in refutations(view)
+        )
+        plans = (f"{plan.method}: {plan.result}" for plan in view.planned if plan.refuted)
         return " but for a counterexample", next(chain(counterexamples, plans))
     if not open_ones or view.probability is not None:
         return "", next(iter(view.reasons), view.mark.text)
@@ -110,14 +112,14 @@ def _worst(details: Details, view: RequirementView) -> tuple[str, str]:
 
 
 def _cause(details: Details, row: ResultRow) -> str:
-    """The reason of the verdict, and why: in words, or what the signals were."""
+    """The reason of the verdict, with the cause in words or the values of the signals."""
     (result,) = (view for _, view in details.results([row]))
     because = f" ({'; '.join(row.suspicions)})" if row.suspicions else ""
     return f"{row.reason}{_at_first(result)}{because}"
 
 
 def _at_first(result: ResultView) -> str:
-    """The first broken tick."""
+    """The values at the first violated tick."""
     first = next(iter(result.violations), None)
     if first is None:
         return ""
@@ -135,7 +137,7 @@ def _verdict(mark: Mark) -> str:
 
 
 def _changes(report: Report) -> list[str]:
-    """What has become of verdicts first, where something is violated now; then each change."""
+    """Changed verdicts first if there are new violations; then each change."""
     names = {view.id: view.name for view in report.requirements}
     followed = sorted(
         ((change, follows(change)) for change in report.changes if follows(change)),
@@ -162,30 +164,30 @@ def _change(name: str, texts: Sequence[str]) -> str:
 
 
 def _accepted(report: Report) -> Iterator[str]:
-    """The warnings that the project accepts, and why."""
+    """The accepted warnings with their reasons."""
     accepted = [
-        f"**{one.code}** {_plain(one.message)} ({_plain(one.accepted)})"
-        for one in report.remarks
-        if one.accepted
+        f"**{remark.code}** {_plain(remark.message)} ({_plain(remark.accepted)})"
+        for remark in report.remarks
+        if remark.accepted
     ]
     if accepted:
         yield f"Accepted warnings: {len(accepted)}: {_some(accepted)}"
 
 
 def _signatures(report: Report) -> Iterator[str]:
-    """Those that do not verify come first; reviews stand in the table, too."""
+    """Missing and invalid signatures; those that do not verify come first."""
     signed = sorted(
         report.signatures.signed,
         key=lambda one: (one.signature.mark != DOES_NOT_VERIFY, one.signature.is_good),
     )
     if signed:
-        bad = sum(not one.signature.is_good for one in signed)
+        bad = sum(not entry.signature.is_good for entry in signed)
         texts = [
-            f"{one.signature.mark.glyph} {one.kind} {_plain(one.name)}: "
-            f"{_plain(one.signature.text)}"
-            for one in signed
+            f"{entry.signature.mark.glyph} {entry.kind} {_plain(entry.name)}: "
+            f"{_plain(entry.signature.text)}"
+            for entry in signed
         ]
-        yield f"Signatures: {bad} of {len(signed)} are missing or not good: {_some(texts)}"
+        yield f"Signatures: {bad} of {len(signed)} are missing or invalid: {_some(texts)}"
 
 
 def _some(texts: Sequence[str]) -> str:
@@ -194,7 +196,7 @@ def _some(texts: Sequence[str]) -> str:
 
 
 def _plain(text: str) -> str:
-    """Text as text, on one line and no longer than one reads: no markup, no mention, no link."""
+    """A text on one line, shortened, without markup, mentions and links."""
     words = " ".join(text.split())
     short = words if len(words) <= _LONGEST else f"{words[: _LONGEST - 1]}…"
     return _MARKUP.sub(r"\\\1", phrases.visible(short))

@@ -56,10 +56,10 @@ _NEVER = datetime.fromtimestamp(0, UTC)
 
 
 def reqif(report: Report) -> str:
-    """The whole file: the same report gives the same bytes.
+    """The ReqIF XML; equal reports give equal bytes.
 
-    Everything in it was last changed at `SOURCE_DATE_EPOCH`, or where that is not set, at the
-    beginning of 1970: a time of its own would make two exports of the same report differ.
+    The time of change is `SOURCE_DATE_EPOCH`, or the beginning of 1970 if that is not set, so that
+    two exports of the same report are equal.
     """
     return str(ReqIFUnparser.unparse(_Exchange(report).bundle()))
 
@@ -161,7 +161,7 @@ class _Exchange:
         attributes: Mapping[str, Kind],
         values: Mapping[str, str],
     ) -> ReqIFSpecObject:
-        """What is empty is left out."""
+        """A specification object; empty values are left out."""
         attributes_ = [
             SpecObjectAttribute(
                 _KINDS[kind], _attribute(kind_of, name), _value(kind, name, values[name])
@@ -172,7 +172,7 @@ class _Exchange:
         return ReqIFSpecObject(id, attributes_, kind_of, last_change=self._changed)
 
     def _relations(self) -> Iterator[ReqIFSpecRelation]:
-        """From the child to each parent that is an object here."""
+        """A relation from each requirement to each of its parents in the file."""
         ids = [view.id for view in self._report.requirements]
         identifiers = {
             **dict(zip(reversed(ids), reversed(self._objects), strict=True)),
@@ -201,10 +201,10 @@ class _Exchange:
         )
 
     def _places(self) -> Iterator[ReqIFSpecHierarchy]:
-        """Each hazard with its requirements, then those without one.
+        """The hierarchy: each hazard with its requirements, then requirements without a hazard.
 
-        An object stands at one place only, since tools take it for one item (StrictDoc refuses a
-        second): a requirement below the first of its hazards. Relations tell of the others.
+        An object appears only once, because tools treat it as one item (StrictDoc refuses a second
+        one). A requirement appears below its first hazard; relations give the others.
         """
         anchors = [view.anchor for view in self._report.requirements]
         left = dict(zip(anchors, self._objects, strict=True))
@@ -231,7 +231,7 @@ class _Exchange:
 
 
 def _objects(report: Report) -> Iterator[str]:
-    """The identifier of each requirement, also of those that wrongly share an id."""
+    """The identifier of each requirement; distinct even for duplicate ids."""
     counts: Counter[str] = Counter()
     for view in report.requirements:
         counts[view.id] += 1
@@ -249,13 +249,13 @@ def _value(kind: Kind, name: str, text: str) -> str | list[str]:
 
 
 def _xhtml(text: str) -> str:
-    """Text as text; each line ends in a break, and in a line end for who reads only the text."""
+    """The text as XHTML, with a `<br/>` and a line end after each line."""
     lines = re.split(r"\r\n|[\r\n]", escape(valid(text.strip())))
     return "<xhtml:div>" + "<xhtml:br/>\n".join(lines) + "</xhtml:div>"
 
 
 def _data_type(kind: Kind, name: str) -> str:
-    """Words have one for each attribute."""
+    """The data type of an attribute; each enumeration has its own."""
     return name.lower() if kind is Kind.WORD else kind.value
 
 
@@ -268,5 +268,5 @@ def _word(name: str, word: str) -> str:
 
 
 def _name(id: str) -> str:
-    """Letters, digits, `-`, `.`, and `_` around a code point; different for different ids."""
+    """A valid XML id: other characters become `_` code point `_`; distinct for distinct ids."""
     return re.sub(r"[^A-Za-z0-9.-]", lambda match: f"_{ord(match[0]):x}_", id)

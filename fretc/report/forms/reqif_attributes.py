@@ -15,10 +15,10 @@ _LISTED = 50
 
 
 class Kind(StrEnum):
-    """How an attribute is held; the values name its data type.
+    """The data type of an attribute; the values are its name.
 
-    A string cannot hold the end of a line, and StrictDoc takes backslashes and what is not ASCII
-    in it for escapes: what people wrote is XHTML, as tools expect it of `ReqIF.Text`.
+    Texts of people are XHTML, as tools expect for `ReqIF.Text`: a string has no line ends, and
+    StrictDoc interprets backslashes and non-ASCII characters in strings as escapes.
     """
 
     ID = "string"
@@ -45,7 +45,7 @@ REQUIREMENT: Mapping[str, Kind] = {
     "FT finite": Kind.TEXT,
     "PT": Kind.TEXT,
     "Status": Kind.WORD,
-    "Coverage": Kind.ID,  # two of its words have a comma, which tools read as two values
+    "Coverage": Kind.ID,  # Tools would read the commas in two of its values as separators.
     "Verdict": Kind.WORD,
     "Currency": Kind.WORD,
     "Reasons": Kind.TEXT,
@@ -53,18 +53,18 @@ REQUIREMENT: Mapping[str, Kind] = {
     "Review": Kind.TEXT,
     "Fingerprint SHA-256": Kind.ID,
 }
-"""In the order in which tools show them."""
+"""Attributes of a requirement, in the order in which tools show them."""
 WORDS: Mapping[str, tuple[str, ...]] = {
     "Status": STATUSES,
     "Verdict": tuple(VERDICTS),
     "Currency": (CURRENT, SUSPECT),
 }
-"""Every word that an attribute of this kind may have."""
+"""Attribute → all its enumeration values."""
 _FORMULAS = {"FT": "Future time", "FT finite": "Future time, finite", "PT": "Past time"}
 
 
 def of_hazard(hazard: HazardView) -> Mapping[str, str]:
-    """The values of `HAZARD`; empty: there is none."""
+    """Attribute of `HAZARD` → text; "" if there is no value."""
     return {
         "ReqIF.ForeignID": hazard.id,
         "ReqIF.Name": " ".join(hazard.title.split()),
@@ -75,7 +75,7 @@ def of_hazard(hazard: HazardView) -> Mapping[str, str]:
 
 
 def of_requirement(view: RequirementView) -> Mapping[str, str]:
-    """The values of `REQUIREMENT`; empty: there is none."""
+    """Attribute of `REQUIREMENT` → text; "" if there is no value."""
     formulas = {formula.name: formula.text for formula in view.formulas}
     review = view.review
     return {
@@ -99,7 +99,7 @@ def of_requirement(view: RequirementView) -> Mapping[str, str]:
 
 
 def _waived(view: RequirementView) -> Iterator[str]:
-    """The waiver, and the verdict that it covers: a waiver hides nothing."""
+    """The waiver and the verdict that it covers."""
     waiver = view.waiver
     if waiver is not None:
         yield f"waived until {waiver.until} by {waiver.by}: {waiver.reason}"
@@ -107,7 +107,7 @@ def _waived(view: RequirementView) -> Iterator[str]:
 
 
 def _runs(view: RequirementView) -> Iterator[str]:
-    """How many have each verdict, what all say together, then each, those not satisfied first."""
+    """Numbers of runs by verdict, the estimate, then each run, unsatisfied ones first."""
     ordered = sorted(view.results, key=lambda result: result.mark.severity)
     counts = Counter(result.mark.text for result in ordered)
     yield "; ".join(f"{text} in {phrases.times(n, 'run')}" for text, n in counts.items())

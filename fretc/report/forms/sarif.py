@@ -1,4 +1,4 @@
-"""`--sarif`: what the runs show, for code scanning, each verdict with its currency."""
+"""`--sarif`: the verdicts as code scanning results."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def sarif(
     """One SARIF run.
 
     Args:
-        report: what it says.
-        details: the evidence behind it.
+        report: the report.
+        details: the evidence behind the report.
         requirements: all requirements of the project.
-        diagnostics: what there is to say of requirements and evidence.
-        failed: requirements of the project without a rule.
+        diagnostics: diagnostics about requirements and evidence.
+        failed: unformalized requirements of the project.
     """
     all_runs = list(_all_runs(report))
     return results.sarif(
@@ -36,14 +36,14 @@ def sarif(
 
 
 def _single_runs(report: Report, details: Details) -> Iterator[results.OneRun]:
-    """With verdict and currency as the report has them, in the order of the evidence."""
+    """The results of single runs, with the verdicts of the report, in the order of the evidence."""
     views = {view.id: view.results for view in report.requirements}
     for row, result in details.audited(row for rows in views.values() for row in rows):
         yield results.OneRun(bare(result), row.mark.word, row.suspicions)
 
 
 def _all_runs(report: Report) -> Iterator[results.AllRuns]:
-    """What all runs say of each requirement with a probability."""
+    """The estimate over all runs for each requirement with a probability."""
     for view in report.requirements:
         probability = view.probability
         if probability is not None:

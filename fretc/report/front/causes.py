@@ -1,4 +1,4 @@
-"""Why requirements are not shown, in groups; each of them is in at least one."""
+"""Groups of unshown requirements by cause; each requirement is in at least one group."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from fretc.report.model.views import Mark, RequirementView, RunSummary
 from monitors import kernel
 
 _NAMED = 8
-"""The most names of a line."""
+"""Maximum number of names in a line."""
 _DAMAGED = "damaged log"
 _CAUSES = {
     UNFORMALIZED: "not formalized",
@@ -35,7 +35,7 @@ _ORDER = (
 
 
 def link(view: RequirementView) -> Link:
-    """Its id, which leads to its section."""
+    """A link with the id of a requirement to its section."""
     return Link(view.id, view.title, view.anchor)
 
 
@@ -50,11 +50,11 @@ def causes(
     unshown: Sequence[RequirementView],
     runs: Sequence[RunSummary],
 ) -> tuple[FigureLine, ...]:
-    """A line for each cause, with the requirements that are not shown for it.
+    """A line for each cause, with the requirements that are not shown because of it.
 
     Args:
         active: all requirements in force.
-        unshown: those of them that are not shown, and not violated.
+        unshown: active requirements that are neither shown nor violated.
         runs: all audited runs.
     """
     damaged = [run for run in runs if not run.intact]
@@ -74,12 +74,12 @@ def _damage(runs: Sequence[RunSummary], requirements: int) -> FigureLine:
 
 
 def _is_hurt(run: str, mark: Mark, damaged: Collection[str]) -> bool:
-    """Whether a damaged run leaves a requirement open: it neither shows nor violates it."""
+    """Whether a damaged run neither shows nor violates a requirement."""
     return run in damaged and not mark.shows and mark.word not in BROKEN
 
 
 def _of(view: RequirementView, damaged: Collection[str]) -> Iterator[str]:
-    """The causes of one requirement; none where damaged logs alone are to blame."""
+    """The causes of one requirement; empty if damaged logs are the only cause."""
     word = view.mark.word
     if word in (WAIVED, UNFORMALIZED, NOT_EXERCISED):
         yield _CAUSES[word]

@@ -1,4 +1,4 @@
-"""The front page: facts, the decisive sentence, five figures, and whether to trust the logs.
+"""The front page: facts, headline, five figures, and whether the logs can be trusted.
 
 Each requirement in force is counted once: it is shown, violated, or not shown.
 """
@@ -29,7 +29,7 @@ from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Severity
 
 _CHANGES = 3
-"""The most changes that a figure names."""
+"""Maximum number of changes that a figure names."""
 
 
 def front(
@@ -43,17 +43,17 @@ def front(
     changes: Sequence[Change],
     notes: Sequence[str],
 ) -> Front:
-    """All of it.
+    """The view of the front page.
 
     Args:
-        title: what the requirements are of.
-        overall: the overall result; its headline stands where no violation is current.
-        sections: all requirements.
-        rows: of the matrix.
-        assessed: of each section, in the same order.
-        runs: in the order of the evidence.
-        views: of the runs, in any order.
-        changes: since the review.
+        title: title of the project.
+        overall: the overall result; its headline is used if no violation is current.
+        sections: views of all requirements.
+        rows: rows of the matrix.
+        assessed: the assessment of each section, in the same order.
+        runs: runs in the order of the evidence.
+        views: views of the runs, in any order.
+        changes: changes since the review.
         notes: sentences that qualify the figures.
     """
     active = [view for view in sections if view.status != RETIRED]
@@ -84,7 +84,7 @@ def _facts(
 ) -> Iterator[str]:
     yield phrases.times(len(active), "requirement")
     yield _runs(runs) if runs else "no run"
-    reviews = [one.standing.review for one in assessed]
+    reviews = [assessment.standing.review for assessment in assessed]
     dates = sorted(on for review in reviews if review and (on := _date(review.date)))
     yield f"reviewed on {days(dates[0], dates[-1])}" if dates else "not reviewed"
     yield f"fretc {__version__}"
@@ -133,7 +133,7 @@ def _shown(active: Sequence[RequirementView]) -> Figure:
 
 
 def _proved(active: Sequence[RequirementView], layer: Layer, what: str) -> FigureLine | None:
-    """Of how many requirements all claims of a layer are proved, as they are now."""
+    """A figure: the number of requirements whose current claims of a layer are all proved."""
     count = sum(is_proved_layer(view, layer) for view in active)
     if not count:
         return None
@@ -149,7 +149,7 @@ def _violated(active: Sequence[RequirementView], red: Sequence[RequirementView])
         for view in active
         if view not in red and any(result.mark.word in BROKEN for result in view.results)
     ]
-    lines += [line("a run violates, but waived or over all runs open", waived)] if waived else []
+    lines += [line("violated in a run, but waived or open over all runs", waived)] if waived else []
     kind = signs.BAD.kind if red or refuted else ""
     return Figure("violated", len(red), "violated", kind, "not-shown", tuple(lines))
 
@@ -165,7 +165,7 @@ def _changed(active: Sequence[RequirementView], changes: Sequence[Change]) -> Fi
     words = "changed since the review"
     unreviewed = [link(view) for view in active if view.review.signature is None]
     if active and len(unreviewed) == len(active) and not changes:
-        nothing = FigureLine("nothing has been reviewed", (), 0)
+        nothing = FigureLine("no requirement is reviewed", (), 0)
         return Figure("changed", None, words, "", "changes", (nothing,))
     lines = [
         FigureLine(f"{change.requirement}: {'; '.join(change.lines[:2]) or 'verdicts'}", (), 0)
@@ -186,7 +186,7 @@ def _changed(active: Sequence[RequirementView], changes: Sequence[Change]) -> Fi
 
 
 def _trust(runs: Sequence[RunSummary], names: Mapping[str, str]) -> Iterator[str]:
-    """Two lines: damage and errors; hashes and findings."""
+    """Two lines about the logs: damage and errors; hashes and findings."""
     if not runs:
         return
     total = phrases.times(len(runs), "log")
@@ -196,7 +196,7 @@ def _trust(runs: Sequence[RunSummary], names: Mapping[str, str]) -> Iterator[str
         f"{len(damaged)} of {total} damaged or not readable: {phrases.some(damaged)}"
         if damaged
         else f"no damage found in {'the log' if len(runs) == 1 else f'any of {total}'}",
-        f"errors in {phrases.some(wrong)}, to be read before the verdicts" if wrong else "",
+        f"errors in {phrases.some(wrong)}, read them before the verdicts" if wrong else "",
     ]
     yield f"{capital('; '.join(filter(None, parts)))}."
     unknown = sum(not run.sha256 for run in runs)
@@ -204,7 +204,7 @@ def _trust(runs: Sequence[RunSummary], names: Mapping[str, str]) -> Iterator[str
     found = [
         names[run.anchor]
         for run in runs
-        if run.intact and not _errors(run) and not all(each.accepted for each in run.findings)
+        if run.intact and not _errors(run) and not all(finding.accepted for finding in run.findings)
     ]
     more = f"other findings in {phrases.some(found, 4)}" if found else "no other findings"
     yield f"{hashes}; {more}."
@@ -215,6 +215,6 @@ def _wrong(run: RunSummary, names: Mapping[str, str]) -> str:
 
 
 def _errors(run: RunSummary) -> list[str]:
-    """The codes of its errors, each once."""
-    errors = (each.code for each in run.findings if each.severity == Severity.ERROR.value)
+    """The codes of the errors of a run, without duplicates."""
+    errors = (finding.code for finding in run.findings if finding.severity == Severity.ERROR.value)
     return list(dict.fromkeys(errors))

@@ -1,4 +1,4 @@
-"""Groups of runs: by scenario, else by folder, else by their names without a last number."""
+"""Groups of runs: by scenario, else by folder, else by name without its number."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from fretc.report.model.front import ColumnRun, RunGroup
 from fretc.report.sections.runs import Run, alike, file_names, inner_paths
 
 _NUMBERED = re.compile(r"([^\W\d](?:\D*[^\W\d_])?)[-_ .]?\d+")
-"""`safety-off-2`: a name in letters, and one number. A date is no such name."""
+"""`safety-off-2`: a name with a number at its end; dates do not match."""
 
 
 def run_groups(runs: Sequence[Run]) -> tuple[RunGroup, ...]:
-    """The runs in groups, in the order in which groups and runs come first.
+    """The runs in groups, in the order of first appearance.
 
     Args:
-        runs: in the order of the evidence.
+        runs: runs in the order of the evidence.
     """
     paths = inner_paths([run.facts.run for run in runs])
     names = file_names(paths)
@@ -32,7 +32,7 @@ def run_groups(runs: Sequence[Run]) -> tuple[RunGroup, ...]:
 def _groups(
     runs: Sequence[Run], paths: Sequence[Sequence[str]], names: Sequence[str]
 ) -> Sequence[str]:
-    """The group of each run; all of them empty where there are none."""
+    """The group of each run; all "" if there are no groups."""
     scenarios = [_scenario(run) for run in runs]
     if all(scenarios):
         return scenarios
@@ -50,7 +50,7 @@ def _scenario(run: Run) -> str:
 
 
 def _shared(names: Sequence[str]) -> str:
-    """What the names of several runs begin with, up to a separator."""
+    """The common prefix of names, up to a separator."""
     prefix = names[0][: alike(names)] if len(names) > 1 else ""
     return re.sub(r"[^-_ ./]*\Z", "", prefix)
 

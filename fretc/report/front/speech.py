@@ -1,4 +1,4 @@
-"""Names, counts, dates and durations as a person says them."""
+"""Counts, dates and durations in words."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from fretc.report.model import phrases
 
 _WORDS = "no one two three four five six seven eight nine ten eleven twelve".split()
 _DATED = 946_684_800
-"""1 January 2000, in seconds: a clock that begins at 0 gives no date."""
+"""1 January 2000 in seconds; earlier times are not dates, because the clock began at 0."""
 
 
 def number(count: int) -> str:
@@ -22,7 +22,7 @@ def capital(text: str) -> str:
 
 
 def day(ns: int | None) -> date | None:
-    """The UTC day of a time; None where the clock knows no date."""
+    """The UTC day of a time; None if the clock has no date."""
     if ns is None or ns // 10**9 < _DATED:
         return None
     try:

@@ -1,4 +1,4 @@
-"""The decisive sentence: what is violated, in which runs, and where it fails only."""
+"""The headline: violated requirements, and the runs or groups in which they fail."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from fretc.report.model.views import RequirementView
 from monitors import kernel
 
 _NAMED = 2
-"""Up to this number the headline names the requirements; else it counts them."""
+"""Up to this number the headline names the requirements; otherwise it counts them."""
 _SENTENCES, _GROUPS = 4, 3
-"""The most sentences about violations, and the most groups that one of them names."""
+"""Maximum sentences about violations, and maximum groups that a sentence names."""
 
 
 def is_red(view: RequirementView) -> bool:
-    """Whether its verdict tells of a violation that no waiver covers."""
+    """Whether the requirement is violated or refuted without a waiver."""
     return view.mark.word in BROKEN
 
 
 def broken_runs(view: RequirementView) -> frozenset[str]:
-    """The anchors of the runs that violate it."""
+    """The anchors of the runs that violate the requirement."""
     return frozenset(result.run for result in view.results if result.mark.word in BROKEN)
 
 
 def headline(views: Sequence[RequirementView], runs: int) -> str:
-    """How many are violated: `Five requirements are violated, in six of 16 runs`.
+    """The number of violated requirements: `Five requirements are violated, in six of 16 runs`.
 
     Args:
-        views: those that are violated, at least one.
+        views: violated requirements, at least one.
         runs: the number of all runs.
     """
     count = len(views)
@@ -47,7 +47,7 @@ def headline(views: Sequence[RequirementView], runs: int) -> str:
 
 
 def _where(broken: int, runs: int, *, several: bool) -> str:
-    """Of several requirements a run need not violate each."""
+    """The runs with violations, in words; a run need not violate every requirement."""
     if broken < runs:
         return f", in {number(broken)} of {number(runs)} runs"
     if runs == 1:
@@ -56,7 +56,7 @@ def _where(broken: int, runs: int, *, several: bool) -> str:
 
 
 def sentences(views: Sequence[RequirementView], groups: Sequence[RunGroup]) -> Iterator[str]:
-    """Where violated requirements fail, those that fail in the same runs together."""
+    """Sentences that say where requirements fail; those that fail in the same runs share one."""
     same: dict[frozenset[str], list[RequirementView]] = {}
     for view in views:
         if broken := broken_runs(view):
@@ -74,7 +74,7 @@ def sentences(views: Sequence[RequirementView], groups: Sequence[RunGroup]) -> I
 
 
 def where(broken: frozenset[str], groups: Sequence[RunGroup]) -> str:
-    """`only in safety-off (2 of 2 runs)`, where few of the groups have it; else the runs."""
+    """`only in safety-off (2 of 2 runs)` if few groups are affected; otherwise the runs."""
     runs = [run for group in groups for run in group.runs]
     if len(broken) == len(runs):
         return "in every run" if len(runs) > 1 else "in the one run"
@@ -96,10 +96,14 @@ def where(broken: frozenset[str], groups: Sequence[RunGroup]) -> str:
 def _unknown(
     views: Sequence[RequirementView], broken: frozenset[str], groups: Sequence[RunGroup]
 ) -> str:
-    """In how many other runs it is not known whether one of them fails, too."""
+    """The number of other runs in which the verdict is unknown, in words."""
     runs = {run.anchor for group in groups for run in group.runs} - broken
     unknown = set[str]()
     for view in views:
         decided = {r.run for r in view.results if r.mark.word != kernel.NO_DATA}
         unknown |= runs - decided
-    return f"; in {phrases.times(len(unknown), 'other run')} it is not known" if unknown else ""
+    return (
+        f"; the verdict is not known in {phrases.times(len(unknown), 'other run')}"
+        if unknown
+        else ""
+    )

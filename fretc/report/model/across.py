@@ -1,6 +1,6 @@
-"""All runs in one picture: a lane a run, and how much of each bound a run has used.
+"""Views of the pictures over all runs: lanes, used bounds, and maps.
 
-Times are seconds from the first tick of a run; texts say the same as the pictures.
+Times are seconds from the first tick of a run. Texts describe the pictures.
 """
 
 from __future__ import annotations
@@ -13,21 +13,21 @@ from fretc.report.model.pictures import WordLane
 
 @dataclass(frozen=True, slots=True)
 class LaneMark:
-    """Stretches of one kind that lie side by side; `anchor` is that of the result of the first."""
+    """Adjacent intervals of one kind; `anchor` is the anchor of the first result."""
 
     kind: str
     """`violated`, `unknown` or `open`."""
     start: float
     end: float
     count: int
-    """Of stretches; of open demands at the end."""
+    """Number of intervals, or of open obligations at the end."""
     requirements: tuple[str, ...]
-    """Those of the stretches, each once, that of the first one first."""
+    """Ids of the requirements of the intervals, in order of appearance."""
     anchor: str
     section: str
     """The anchor of the first requirement."""
     number: int
-    """Of the first violation in its result, from 1; 0: it is none."""
+    """Number of the first violation in its result, from 1; 0 if the mark is not a violation."""
     text: str
 
 
@@ -46,7 +46,7 @@ class RunLane:
 
 @dataclass(frozen=True, slots=True)
 class Lanes:
-    """A lane a run; `left_out` counts the runs without a lane, none of which is worse."""
+    """One lane per run; `left_out` counts the runs without a lane, none of which is worse."""
 
     title: str
     end: float
@@ -57,18 +57,18 @@ class Lanes:
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """How much of a bound a run has used; `measure` is the letter of the bound in its picture."""
+    """The share of a bound that a run used; `measure` is the letter of the bound."""
 
     measure: str
     share: float | None
-    """1 is all of it; None: it was crossed, and nothing says by how much."""
+    """1 is the whole bound; None if the bound was crossed by an unknown amount."""
     is_crossed: bool
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class UseRow:
-    """One run, with what it has used of each bound, the most used first."""
+    """The used shares of one run, the largest first."""
 
     label: str
     file: str
@@ -80,20 +80,20 @@ class UseRow:
 
 @dataclass(frozen=True, slots=True)
 class Uses:
-    """The runs of a requirement by what they used of its bounds, the most used first."""
+    """The runs of a requirement, ranked by the used share of its bounds."""
 
     title: str
     measures: tuple[tuple[str, str], ...]
-    """Letter and bound."""
+    """(letter, name) of each bound."""
     rows: tuple[UseRow, ...]
     notes: tuple[str, ...]
-    """What has no row, and why."""
+    """Sentences about runs and bounds without a row."""
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class RequirementAcross:
-    """All runs of one requirement."""
+    """The pictures of all runs of one requirement."""
 
     requirement: str
     anchor: str
@@ -103,7 +103,7 @@ class RequirementAcross:
 
 @dataclass(frozen=True, slots=True)
 class PlaceMark:
-    """Where violations began that lie side by side; fields as of `LaneMark`."""
+    """Position where nearby violations began; fields as in `LaneMark`."""
 
     x: float
     y: float
@@ -117,7 +117,7 @@ class PlaceMark:
 
 @dataclass(frozen=True, slots=True)
 class RunMap:
-    """The way of the robot in one run, in metres, with each violation where it began."""
+    """The path of the robot in one run, in metres, with the start of each violation."""
 
     anchor: str
     label: str
@@ -126,17 +126,17 @@ class RunMap:
     lines: tuple[tuple[tuple[float, float], ...], ...]
     marks: tuple[PlaceMark, ...]
     unplaced: int
-    """Violations that began where the place of the robot is unknown."""
+    """Number of violations that began at an unknown position."""
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Across:
-    """All runs of all requirements, and those of each."""
+    """The pictures over all runs, for all requirements together and for each."""
 
     lanes: Lanes | None
     requirements: tuple[RequirementAcross, ...]
     maps: tuple[RunMap, ...]
-    """Of the runs with a way, the worst first."""
+    """Maps of runs with a path, worst first."""
     maps_left_out: str
-    """How many runs with a way have no map; empty: none."""
+    """A sentence about runs without a map, or ""."""

@@ -1,4 +1,4 @@
-"""Each requirement with its audits, its review and its waiver, and the verdict that follows."""
+"""`Assessment`: a requirement with audits, review and waiver, and the resulting verdict."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ from fretc.audit.measurements.trials import NO_TRIALS
 from fretc.report.model.audits import ProbabilityAudit, SingleAudit
 from fretc.report.model.suspicions import AboutResults, about_estimation, since_review
 from fretc.report.model.views import Mark, verdict_mark
-from fretc.report.traceability.artefacts import Product, monitors, products
-from fretc.report.traceability.chain import chains
-from fretc.report.traceability.lock import Lock, ReviewedRequirement, standings
-from fretc.report.traceability.waivers import Waiver
+from fretc.traceability.artefacts import Product, monitors, products
+from fretc.traceability.chain import chains
+from fretc.traceability.lock import Lock, ReviewedRequirement, standings
+from fretc.traceability.waivers import Waiver
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.documents import RequirementEntry
@@ -43,27 +43,27 @@ COVERAGE = (
     UNFORMALIZED, UNBOUND, NOT_GENERATED, NOT_EXERCISED, EXERCISED_OPEN, EXERCISED_PASS,
     EXERCISED_FAIL, SUSPECT, WAIVED, RETIRED,
 )  # fmt: skip
-"""How far a requirement has come; the last three hold whatever else is known of it."""
+"""The steps from sentence to passing run; see `Assessment.coverage`."""
 
 
 @dataclass(frozen=True)
 class Assessment:
-    """One requirement and all that its verdict rests on."""
+    """One requirement and all inputs of its verdict."""
 
     entry: RequirementEntry
     anchor: str
     requirement: FormalizedRequirement | None
     diagnostic: Diagnostic | None
-    """Why there is no requirement; None where there is one."""
+    """Why the requirement is not formalized; None if it is."""
     audits: tuple[SingleAudit, ...]
-    """One for each run, without regard to the review."""
+    """The audit of each run, without regard to the review."""
     products: tuple[Product, ...]
     standing: ReviewedRequirement
     waiver: Waiver | None
-    """The waiver that counts today."""
+    """The waiver that is valid today."""
     is_bound: bool
     probability: ProbabilityAudit | None = None
-    """Of a sentence with a probability: the answer of all runs, in place of their verdicts."""
+    """The answer over all runs, if the sentence has a probability; it replaces their verdicts."""
 
     @property
     def id(self) -> str:
@@ -72,18 +72,18 @@ class Assessment:
 
     @cached_property
     def reviewed_audits(self) -> tuple[SingleAudit, ...]:
-        """The audits beside the review: none shows a requirement that changed since it."""
+        """The audits, suspect if the requirement has changed since its review."""
         review = since_review(self.standing)
         return tuple(audit.since(review) for audit in self.audits) if review else self.audits
 
     @property
     def verdict(self) -> str:
-        """`waived` where a waiver covers the verdict; else the verdict."""
+        """`waived` if a waiver covers the verdict; otherwise the verdict."""
         return WAIVED if self._is_waived else self.unwaived
 
     @cached_property
     def unwaived(self) -> str:
-        """The verdict without regard to a waiver: the worst of the runs, or why there is none."""
+        """The verdict without regard to a waiver: the worst of the runs, or why there is no run."""
         if self.entry.status == RETIRED:
             return RETIRED
         words = [word for word, _ in self._verdicts] or [NOT_EXERCISED]
@@ -92,10 +92,10 @@ class Assessment:
 
     @cached_property
     def suspicions(self) -> tuple[str, ...]:
-        """Why the verdict is not that of the requirement as it is now and as it was accepted.
+        """The reasons why the verdict is not about the present, reviewed requirement.
 
-        One current run that violates a requirement is enough: then the violation is current. Any
-        other verdict is suspect where one of its runs is, or where the review is.
+        A violation is current if one violating run is current. Any other verdict is suspect if one
+        of its runs or the review is suspect.
         """
         word = self.unwaived
         if word == RETIRED:
@@ -108,12 +108,12 @@ class Assessment:
 
     @property
     def is_shown(self) -> bool:
-        """Whether the evidence shows that the requirement holds, as it is now."""
+        """Whether current evidence shows that the requirement holds."""
         return self.mark.shows
 
     @property
     def is_broken(self) -> bool:
-        """Whether the evidence shows that it does not hold, and no waiver covers that."""
+        """Whether the evidence shows a violation that no waiver covers."""
         return self.verdict in BROKEN
 
     @property
@@ -122,7 +122,7 @@ class Assessment:
 
     @property
     def _verdicts(self) -> list[tuple[str, tuple[str, ...]]]:
-        """Each verdict that counts towards the requirement's, with its suspicions."""
+        """The verdicts that determine the verdict of the requirement, with their suspicions."""
         runs = [(audit.verdict, audit.suspicions) for audit in self.audits]
         if self.probability is None:
             return runs
@@ -134,7 +134,7 @@ class Assessment:
 
     @property
     def coverage(self) -> str:
-        """How far along the chain from sentence to passing run it is: one of `COVERAGE`."""
+        """The last completed step from sentence to passing run: one of `COVERAGE`."""
         verdict = self.verdict
         if verdict in (RETIRED, WAIVED, UNFORMALIZED):
             return verdict
@@ -173,18 +173,18 @@ def assessments(
     proofs: Sequence[Proof] = (),
     analyzed: AnalyzedSet | None = None,
 ) -> tuple[Assessment, ...]:
-    """Every requirement of the project, in its order.
+    """The assessment of each requirement of the project, in its order.
 
     Args:
         project: with or without errors.
-        briefs: of the evidence; None where no run has been audited.
-        lock: None where nothing has been reviewed.
-        waivers: those that count today, by the requirement.
+        briefs: results of the evidence; None if no run was audited.
+        lock: None if no requirement is reviewed.
+        waivers: requirement → waiver, for waivers that are valid today.
         proofs: the results of verification.
-        analyzed: whether all can be kept together; None: nobody has asked.
+        analyzed: the file of `fretc analyze`; None if there is none.
     """
     requirements = {id(requirement.entry): requirement for requirement in project.formalized}
-    diagnostics = {id(each.requirement): each.diagnostic for each in project.failed}
+    diagnostics = {id(failed.requirement): failed.diagnostic for failed in project.failed}
     results = briefs.by_requirement if briefs else {}
     products_of = {id: products(requirement) for id, requirement in requirements.items()}
     basis_of = bases(project, monitors=monitors(products_of))
@@ -231,10 +231,10 @@ def _probability(
         return None
     stale = [reason for audit in audits for reason in audit.suspicions]
     if requirement is None or requirement.sentence.probability is None:
-        reasons = dict.fromkeys((*stale, "the sentence gives no probability now"))
+        reasons = dict.fromkeys((*stale, "the sentence has no probability now"))
         return ProbabilityAudit(estimation, tuple(reasons))
     results = [audit.result for audit in audits]
-    runs = [(each.content, each.intact, each.trials or NO_TRIALS) for each in results]
+    runs = [(result.content, result.intact, result.trials or NO_TRIALS) for result in results]
     doubts = about_estimation(estimation, requirement.sentence.probability, runs)
     return ProbabilityAudit(estimation, tuple(dict.fromkeys((*stale, *doubts))))
 
@@ -245,7 +245,7 @@ def _is_bound(requirement: FormalizedRequirement, declarations: Declarations | N
 
 
 def _anchor(id: str, taken: Sequence[str]) -> str:
-    """`req-R1`: letters, digits, `-`, `_` and `.` only, and different from all others."""
+    """A unique anchor such as `req-R1`, of letters, digits, `-`, `_` and `.`."""
     plain = "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "-" for c in id)
     anchor, number = f"req-{plain}", 1
     while anchor in taken:

@@ -1,4 +1,4 @@
-"""The audits of one requirement: a result from each run, or a probability from all of them."""
+"""The audits of one requirement: a result for each run, or a probability over all runs."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from monitors import kernel
 
 @dataclass(frozen=True, slots=True)
 class SingleAudit:
-    """The result of one run, and why it does not count, if it does not."""
+    """The result of one run, and the reasons why it is suspect."""
 
     result: ResultSummary
     suspicions: tuple[str, ...]
     place: int = 0
-    """Of the result in the evidence."""
+    """Index of the result in the evidence."""
 
     @property
     def verdict(self) -> str:
-        """The verdict of the result; `violated` wherever the result lists a violation."""
+        """The verdict of the result; `violated` if the result lists a violation."""
         violations = self.result.violations and self.result.trials is None
         return kernel.VIOLATED if violations else self.result.verdict
 
     @property
     def is_stale(self) -> bool:
-        """Whether the result is evidence of something else."""
+        """Whether the result is about another version."""
         return bool(self.suspicions)
 
     @property
@@ -36,17 +36,17 @@ class SingleAudit:
         return verdict_mark(self.verdict, suspect=self.is_stale)
 
     def since(self, review: tuple[str, ...]) -> SingleAudit:
-        """The same beside a review: no run shows a requirement that changed since it.
+        """The audit, with the reasons why it is suspect since a review.
 
         Args:
-            review: what has changed since it; empty where it stands.
+            review: what has changed since the review; "" if nothing has.
         """
         return SingleAudit(self.result, review, self.place) if review and self.mark.shows else self
 
 
 @dataclass(frozen=True, slots=True)
 class ProbabilityAudit:
-    """The answer of all runs about a probability, and why it does not count, if it does not."""
+    """The answer of all runs about a probability, and the reasons why it is suspect."""
 
     estimation: Estimated
     suspicions: tuple[str, ...]

@@ -1,9 +1,9 @@
 """The cause of a violation in words, where it follows from the evidence of its first tick.
 
-`the last sample of `clearance` was 304 ms old, 300 ms are allowed`; `vx` was 0.52 m/s, at most
-0.5 m/s is allowed`. Nothing is said of what the evidence leaves open: of a value that is too near
-its bound for the rounding of samples, of `for 200 ms` that may be over or not, of `pre`, of several
-samples in one tick, and of signals whose age is not known.
+Examples: `the last sample of `clearance` was 304 ms old, 300 ms are allowed`; `vx` was 0.52 m/s, at
+most 0.5 m/s is allowed`. No cause is given if the evidence does not determine it: for a value too
+near its bound for the rounding of samples, for `for 200 ms`, for `pre`, for several samples in one
+tick, and for signals of unknown age.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ from fretish.printer import expression
 from fretish.units import base_name, unit
 
 _NEAR = 1e-6
-"""A difference of this part of the bound may come from the rounding of 32-bit samples."""
+"""A relative difference up to this may come from the rounding of 32-bit samples."""
 _MOST = 4
-"""The most causes of one violation that are said."""
+"""Maximum number of causes for one violation."""
 C = TypeVar("C")
 
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """A proposition at the first broken tick, and why it is what it is."""
+    """A proposition at the first violated tick, and why it has its value."""
 
     proposition: str
     value: bool
@@ -50,9 +50,9 @@ class Cause:
 
 
 def falsity(violation: Violation, requirement: FormalizedRequirement | None) -> str:
-    """`` `stopped` was false from 3.2 s to 4.1 s, it had to be true by 3.4 s``.
+    """`` `stopped` was false from 3.2 s to 4.1 s, but had to be true by 3.4 s``.
 
-    Empty where the timing or the scope of the sentence does not say that.
+    Empty if the timing or scope of the sentence does not determine the response at that tick.
     """
     if requirement is None or _is_indirect(requirement):
         return ""
@@ -67,11 +67,11 @@ def falsity(violation: Violation, requirement: FormalizedRequirement | None) -> 
             if trigger.tick < violation.first_tick - horizon:
                 return ""
             when, due = _when(trigger.seconds, last), phrases.seconds(deadline.seconds)
-            return f"`{missing}` was false {when}, it had to be true by {due}"
+            return f"`{missing}` was false {when}, but had to be true by {due}"
         case s.Always() | s.For() | s.Immediately():
-            return f"`{missing}` was false {_when(first, last)}, it had to be true"
+            return f"`{missing}` was false {_when(first, last)}, but had to be true"
         case s.Never():
-            return f"`{missing}` was true {_when(first, last)}, it had to be false"
+            return f"`{missing}` was true {_when(first, last)}, but had to be false"
         case s.Next() | s.Finally() | s.Eventually() | s.After() | s.Until() | s.Before():
             return ""
         case _:
@@ -79,7 +79,7 @@ def falsity(violation: Violation, requirement: FormalizedRequirement | None) -> 
 
 
 def _is_indirect(requirement: FormalizedRequirement) -> bool:
-    """Whether a broken tick does not say what the response was: a negated scope, a chance."""
+    """Whether a violated tick does not determine the response: negated scope, or probability."""
     sentence = requirement.sentence
     negated = sentence.scope is not None and sentence.scope.kind.negates
     return negated or sentence.probability is not None
@@ -97,12 +97,12 @@ def _when(first: float, last: float) -> str:
 def causes(
     violation: Violation, result: Result, requirement: FormalizedRequirement | None
 ) -> tuple[Cause, ...]:
-    """Why the response was not what it had to be; nothing where the evidence leaves that open.
+    """Why the response did not have the required value; empty if the evidence leaves that open.
 
     Args:
-        violation: of a result.
-        result: of the run, in declared units.
-        requirement: that the result was judged by; None: it is not known.
+        violation: a violation of the result.
+        result: the result of the run, in declared units.
+        requirement: the requirement that was judged; None if unknown.
     """
     if requirement is None or requirement.declarations is None or _is_indirect(requirement):
         return ()
@@ -115,7 +115,7 @@ def causes(
 
 
 def _wanted(timing: s.Timing) -> bool | None:
-    """What the response had to be at a broken tick; None: the tick does not say that."""
+    """The required value of the response at a violated tick; None if undetermined."""
     match timing:
         case s.Within() | s.Always() | s.For() | s.Immediately():
             return True
@@ -128,14 +128,14 @@ def _wanted(timing: s.Timing) -> bool | None:
 
 
 def in_words(found: Sequence[Cause]) -> str:
-    """All of them, as one part of a sentence."""
+    """The causes as one clause of a sentence."""
     texts = list(dict.fromkeys(cause.text for cause in found))
     more = len(texts) - _MOST
     return "; ".join([*texts[:_MOST], *([f"{more} more"] if more > 0 else [])])
 
 
 def _against(tree: e.Expression, *, wanted: bool, at: _Tick) -> list[Cause] | None:
-    """Why a part of a sentence is not as it is wanted; None where it may be."""
+    """Why a part of the sentence does not have the wanted value; None if it may have it."""
     match tree:
         case e.Name() | e.Comparison():
             name = variable(tree.id) if isinstance(tree, e.Name) else atom(tree)
@@ -157,12 +157,12 @@ def _of_proposition(proposition: Proposition, wanted: bool, at: _Tick) -> list[C
     if proposition.on_unknown is not (not wanted) or not _is_unknown(tree, at):
         return None
     why = phrases.joined([at.why_unknown(name) for name in proposition.signals])
-    counts = f"{why}, and `{proposition.name}` counts as {str(not wanted).lower()} then"
+    counts = f"{why}, so `{proposition.name}` counts as {str(not wanted).lower()}"
     return [Cause(proposition.name, not wanted, counts)]
 
 
 def _decides(aggregate: Aggregate, *, value: bool) -> bool:
-    """Whether the last sample of a tick having this value gives it to the tick."""
+    """Whether a last sample with this value determines the value of the tick."""
     return aggregate == Aggregate.LAST or aggregate == (Aggregate.ANY if value else Aggregate.ALL)
 
 
@@ -180,14 +180,14 @@ def _is_unknown(tree: e.Expression, at: _Tick) -> bool:
 
 
 def _texts(tree: e.Expression, *, wanted: bool, at: _Tick) -> list[str] | None:
-    """Why a truth value is not as it is wanted; None where it may be."""
+    """Why an expression does not have the wanted truth value; None if it may have it."""
     match tree:
         case e.Name(id):
             value = at.value(id)
             if value not in (0, 1) or bool(value) == wanted:
                 return None
             now, needed = ("true", "false") if value else ("false", "true")
-            return [f"`{id}` was {now}, it had to be {needed}"]
+            return [f"`{id}` was {now}, but had to be {needed}"]
         case e.Comparison():
             return _of_comparison(tree, wanted, at)
         case e.Persistence(arg):
@@ -226,12 +226,12 @@ def _of_comparison(tree: e.Comparison, wanted: bool, at: _Tick) -> list[str] | N
 
 
 def _written(tree: e.Expression) -> str:
-    """As in the bindings, where `mode` needs no quotes."""
+    """The expression as written in the bindings."""
     return tree.id if isinstance(tree, e.Name) else expression(tree)
 
 
 def _holds(op: str, left: float, right: float) -> bool | None:
-    """Whether the comparison holds; None where rounding could decide."""
+    """Whether the comparison holds; None if rounding could decide."""
     if isnan(left) or isnan(right):
         return None
     if isfinite(left) and isfinite(right):
@@ -253,7 +253,7 @@ def _holds(op: str, left: float, right: float) -> bool | None:
 def _measured(
     left: e.Expression, right: e.Expression, needed: str, sides: tuple[float, float], at: _Tick
 ) -> str:
-    """What was measured, and what is allowed: in the unit in which that is written."""
+    """The measured value and the allowed one, in the unit of the sentence."""
     name = f"`{_written(left)}`"
     if isinstance(right, e.Number | e.Quantity):
         written = unit(right.unit) if isinstance(right, e.Quantity) else None
@@ -265,7 +265,7 @@ def _measured(
     other = f"`{_written(right)}`"
     shown, factor = at.unit_of(left, right)
     if not shown:
-        return f"{name} was on the other side of {other}: {needed.format(other)}"
+        return f"{name} was on the wrong side of {other}: {needed.format(other)}"
     value, bound = (_over(side, factor) for side in sides)
     measured, limit = phrases.value(value, shown, [bound]), phrases.value(bound, shown, [value])
     return f"{name} was {measured}, {needed.format(f'{other}, {limit},')}"
@@ -280,7 +280,7 @@ def _over(number: float, factor: Fraction) -> float:
 
 @dataclass(frozen=True, slots=True)
 class _Tick:
-    """What the monitor saw at the first tick of a violation, as far as the evidence says."""
+    """The monitor's inputs at the first tick of a violation, as far as the evidence has them."""
 
     violation: Violation
     result: Result
@@ -288,7 +288,7 @@ class _Tick:
     values: dict[str, float | str | None] = field(default_factory=dict)
 
     def value(self, name: str) -> float | str | None:
-        """A number in its declared unit, or a word; `_UNKNOWN`; None: the evidence does not say."""
+        """A number in its declared unit, a word, `_UNKNOWN`; None if not in the evidence."""
         if name not in self.values:
             signal = self.declarations.signals.get(name)
             self.values[name] = None if signal is None else self._value(name, signal)
@@ -341,7 +341,7 @@ class _Tick:
         )
 
     def number(self, tree: e.Expression) -> float | None:
-        """In base units; None where it is not a number, or not known."""
+        """The number in base units; None if it is not a number, or unknown."""
         names = {name.id for name in e.names(tree)}
         values = {name: self.value(name) for name in names}
         numbers = {n: v for n, v in values.items() if isinstance(v, float | int)}
@@ -360,7 +360,7 @@ class _Tick:
         return None if isnan(number) else number
 
     def unit_of(self, *trees: e.Expression) -> tuple[str, Fraction]:
-        """The unit that all signals of some simple terms have; empty where there is none."""
+        """The common unit of the signals of some simple terms, or ""."""
         names = [name.id for tree in trees for name in e.names(tree)]
         simple = all(len([*e.parts(tree)]) <= 2 for tree in trees)
         units = {self.declarations.signals[name].unit for name in names}
@@ -371,7 +371,7 @@ class _Tick:
 
 
 _UNKNOWN = "\0unknown"
-"""No word of a signal: those are printable."""
+"""A marker that differs from all words of signals, which are printable."""
 
 
 def _float(number: Fraction) -> float:
@@ -382,7 +382,7 @@ def _float(number: Fraction) -> float:
 
 
 def _duration(milliseconds: float, limit: float) -> str:
-    """`304 ms`, `1.2 s`: with the digits that show on which side of the limit it is."""
+    """`304 ms`, `1.2 s`: with enough digits to differ from the limit."""
     if max(milliseconds, limit) < 1000:
         return phrases.value(round(milliseconds, 6), "ms", [limit])
     return phrases.value(round(milliseconds / 1e3, 9), "s", [limit / 1e3])
@@ -393,11 +393,11 @@ def _duration(milliseconds: float, limit: float) -> str:
 
 class _Explain(Protocol[C]):
     def __call__(self, tree: e.Expression, /, *, wanted: bool) -> list[C] | None:
-        """Why a part is not as it is wanted; None where it may be."""
+        """Why a part does not have the wanted value; None if it may have it."""
 
 
 def _composed(tree: e.Expression, wanted: bool, explain: _Explain[C]) -> list[C] | None:
-    """Why something that is made of truth values is not as it is wanted."""
+    """Why a Boolean combination does not have the wanted value."""
     match tree:
         case e.Truth(value):
             return [] if value != wanted else None
@@ -407,10 +407,10 @@ def _composed(tree: e.Expression, wanted: bool, explain: _Explain[C]) -> list[C]
             return _composed(e.Or((e.Not(left), right)), wanted, explain)
         case e.And(args) | e.Or(args):
             found = [explain(arg, wanted=wanted) for arg in args]
-            certain = [one for one in found if one is not None]
+            certain = [explanation for explanation in found if explanation is not None]
             one_is_enough = isinstance(tree, e.And) == wanted
             if not certain or (len(certain) < len(found) and not one_is_enough):
                 return None
-            return [cause for one in certain for cause in one]
+            return [cause for explanation in certain for cause in explanation]
         case _:
             return None

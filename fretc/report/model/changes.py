@@ -1,4 +1,4 @@
-"""The views of what has changed since a review."""
+"""Views of the changes since a review."""
 
 from __future__ import annotations
 
@@ -10,62 +10,62 @@ from monitors import kernel
 
 @dataclass(frozen=True, slots=True)
 class ChangeText:
-    """One thing that is not as it was reviewed, before and after."""
+    """One change since a review, with both texts."""
 
     what: str
     before: str | None
-    """As it was written; empty: it was not there; None: not known."""
+    """Text at the review; "" if there was none; None if unknown."""
     after: str | None
     text: str
-    """On one line: only what differs, where that is one word."""
+    """The change on one line; only the differing word, if there is only one."""
     segments: tuple[tuple[str, str], ...]
-    """Both texts as one: `same`, `before` or `after`, and the words; none where one is unknown."""
+    """Word difference: (`same`, `before` or `after`, text); empty if one text is unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChangeGroup:
-    """One change, and every requirement whose review it touches: `(id, anchor)` of each."""
+    """One change, and `(id, anchor)` of each requirement whose review it affects."""
 
     change: ChangeText
     requirements: tuple[tuple[str, str], ...]
     links: int
-    """The links that it makes suspect."""
+    """Number of links that the change makes suspect."""
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """The changes of a requirement since its review; `verdicts` are run, then and now."""
+    """The changes of a requirement since its review; `verdicts` are (run, before, now)."""
 
     requirement: str
     title: str
     anchor: str
     state: str
     by: str
-    """Who reviewed it, and when."""
+    """Reviewer and date."""
     texts: tuple[ChangeText, ...]
     lines: tuple[str, ...]
     """Each change on one line."""
     contradictions: tuple[str, ...]
-    """What has stayed as it was, and says something else now."""
+    """Unchanged texts that contradict the changed ones."""
     consequences: tuple[str, ...]
-    """What became of verdicts, in words, the worst first."""
+    """Changed verdicts in words, worst first."""
     suspicion: str
-    """How many links are suspect, and why; empty where none is."""
+    """Number of suspect links with the causes; "" if there are none."""
     verdicts: tuple[tuple[str, str, str], ...]
 
 
 def follows(change: Change) -> tuple[str, ...]:
-    """What became of verdicts, and what contradicts the changes; how a requirement is gone."""
+    """Changed verdicts, contradictions, and how a requirement was withdrawn."""
     own = change.lines[len(change.texts) :]
     return (*own, *change.consequences, *change.contradictions)
 
 
 def only_change(group: ChangeGroup, changes: Sequence[Change]) -> Change | None:
-    """The requirement that nothing but this change touches, and that no other is touched by."""
+    """The requirement, if this change affects only it and it has no other change."""
     own = [change for change in changes if change.texts == (group.change,)]
     return own[0] if len(group.requirements) == len(own) == 1 else None
 
 
 def new_violations(change: Change) -> int:
-    """The runs that violate it now, and did not at its review."""
+    """Number of runs that violate the requirement now, but did not at its review."""
     return sum(now == kernel.VIOLATED for _, _, now in change.verdicts)

@@ -1,4 +1,4 @@
-"""The views of the front page: facts, the decisive sentence, five figures, runs in their groups."""
+"""Views of the front page: facts, headline, five figures, groups of runs."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A name that leads to its section; `title` says more."""
+    """A name with a link to its section; `title` is a tooltip."""
 
     name: str
     title: str
@@ -25,21 +25,21 @@ class FigureLine:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A number with its word; `kind` is the class of its colour, empty where it has none."""
+    """A number with its label; `kind` is the class of its colour, or ""."""
 
     name: str
     count: int | None
-    """None: nothing can be counted; the lines say why."""
+    """None if nothing can be counted; the lines give the reason."""
     words: str
     kind: str
     anchor: str
-    """Where it is explained."""
+    """Anchor of the section with the explanation."""
     lines: tuple[FigureLine, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class ColumnRun:
-    """A run as it is named in the matrix: `short` is the name without that of its group."""
+    """A column of the matrix: `short` is the name of the run without the name of its group."""
 
     anchor: str
     name: str
@@ -48,7 +48,7 @@ class ColumnRun:
 
 @dataclass(frozen=True, slots=True)
 class RunGroup:
-    """The runs of one scenario or folder; the name is empty where runs have no groups."""
+    """The runs of one scenario or folder; the name is "" if runs have no groups."""
 
     name: str
     runs: tuple[ColumnRun, ...]
@@ -65,5 +65,5 @@ class Front:
     figures: tuple[Figure, ...]
     trust: tuple[str, ...]
     notes: tuple[str, ...]
-    """What else has to be known before the figures are believed."""
+    """Sentences that qualify the figures."""
     groups: tuple[RunGroup, ...]

@@ -10,7 +10,7 @@ from fretc.report.model.assessments import Assessment
 from fretc.report.model.suspicions import changed_since, since_review
 
 _GROUPS = 3
-"""The most reasons that a headline names; it counts the others."""
+"""Maximum number of reasons that a headline names; others are counted."""
 
 
 def violated(assessments: Sequence[Assessment]) -> str:
@@ -26,7 +26,7 @@ def violated(assessments: Sequence[Assessment]) -> str:
 
 
 def outdated(assessments: Sequence[Assessment]) -> str:
-    """Suspect requirements that are not violated, with the reasons; empty where there is none."""
+    """Suspect requirements that are not violated, with the reasons; "" if there are none."""
     stale = [
         assessment
         for assessment in assessments
@@ -36,7 +36,7 @@ def outdated(assessments: Sequence[Assessment]) -> str:
 
 
 def _groups(stale: Sequence[Assessment]) -> list[str]:
-    """A phrase for each verdict and reason, the worst first."""
+    """A phrase for each verdict and reason, worst first."""
     ordered = sorted(stale, key=lambda assessment: (assessment.mark.severity, _reasons(assessment)))
     groups = [
         (list(same), reasons)
@@ -53,7 +53,7 @@ def _groups(stale: Sequence[Assessment]) -> list[str]:
 
 
 def _reasons(assessment: Assessment) -> tuple[str, ...]:
-    """Its suspicions; what has changed since its review has sentences of its own."""
+    """The suspicions of a requirement, without changes since its review."""
     standing = assessment.standing
     if standing.review is None:
         return assessment.suspicions

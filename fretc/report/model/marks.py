@@ -1,4 +1,4 @@
-"""The mark of a verdict: a word and a sign, for every form of a report."""
+"""The mark of a verdict: a word and a symbol, for all formats of a report."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from fretish.diagnostics.status_symbols import StatusSymbol
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A verdict for a reader: a word, a sign, and `kind`, the class of its colour."""
+    """A verdict for a reader: a word, a symbol, and `kind`, the class of its colour."""
 
     word: str
     glyph: str
     kind: str
     suspect: bool = False
-    """The currency of the verdict: whether something that it rests on has changed."""
+    """Whether an input of the verdict has changed."""
 
     @property
     def text(self) -> str:
-        """`violated`, or `violated, suspect`: verdict and currency."""
+        """`violated`, or `violated, suspect`."""
         return f"{self.word}, {SUSPECT}" if self.suspect else self.word
 
     @property
     def shows(self) -> bool:
-        """Whether the verdict shows its requirement; a suspect verdict never does."""
+        """Whether the verdict shows that the requirement holds; a suspect verdict never does."""
         return shows(self.word, suspect=self.suspect)
 
     @property
     def severity(self) -> tuple[int, bool]:
-        """The key that sorts verdicts, the worst first."""
+        """Sort key of verdicts, worst first."""
         return severity(self.word, suspect=self.suspect)
 
 

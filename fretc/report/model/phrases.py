@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath, PureWindowsPath
 
 from fretc.logs.storage.log_names import path_of
-from fretc.report.traceability.chain import Node
+from fretc.traceability.chain import Node
 from fretish.bindings import amounts
 from fretish.bindings.amounts import duration as duration
 from fretish.bindings.amounts import exact_duration as exact_duration
@@ -60,7 +60,7 @@ def size(count: int | None) -> str:
 
 
 def place(path: str) -> str:
-    """A path without places of one machine: of an absolute path only the last part."""
+    """A path independent of the machine: only the last part of an absolute path."""
     if PurePosixPath(path).is_absolute():
         return PurePosixPath(path).name or path
     if path_of(path) == path and (PureWindowsPath(path).drive or path.startswith("\\")):
@@ -69,7 +69,7 @@ def place(path: str) -> str:
 
 
 def thing(node: Node) -> str:
-    """A thing of the chain from hazard to review: `artefact r1_monitor.py`, `the clock`."""
+    """The name of a node for a reader: `artefact r1_monitor.py`, `the clock`."""
     return "the clock" if node.kind == "clock" else f"{node.kind} {place(node.name)}"
 
 

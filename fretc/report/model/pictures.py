@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class SpanMark:
-    """A stretch of time on a lane of a timeline, and how many events it stands for."""
+    """An interval on a lane of a timeline, and the number of events in it."""
 
     start: float
     end: float
@@ -28,7 +28,7 @@ class Lane:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A signal while it is known; a point is `(seconds, least, greatest)`, up to the next."""
+    """A signal while it is known; a point `(seconds, least, greatest)` holds up to the next one."""
 
     points: tuple[tuple[float, float, float], ...]
     end: float
@@ -59,7 +59,7 @@ class Panel:
 
 @dataclass(frozen=True, slots=True)
 class WordLane:
-    """A signal of words over a timeline: from, to, and the word; None: unknown."""
+    """A signal of words over a timeline: (from, to, word); None if unknown."""
 
     signal: str
     words: tuple[tuple[float, float, str | None], ...]
@@ -75,7 +75,7 @@ class Flag:
 
 @dataclass(frozen=True, slots=True)
 class Timeline:
-    """A picture of a stretch of a run; `text` says the same in words."""
+    """A picture of an interval of a run; `text` describes it."""
 
     title: str
     start: float
@@ -87,7 +87,7 @@ class Timeline:
     flags: tuple[Flag, ...] = ()
     broken: SpanMark | None = None
     cause: str = ""
-    """Why it is violated, in words; empty where it is not."""
+    """Cause of the violation in words; "" without a violation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +107,7 @@ class Histogram:
     unit: str
     bins: tuple[Bin, ...]
     bound: float | None
-    """The limit of the values; None where there is none."""
+    """The limit of the values, or None."""
     bound_label: str
     text: str
     crossed: int = 0

@@ -1,4 +1,4 @@
-"""Why a verdict does not count: suspicions about a result, about a probability, since a review.
+"""Suspicions: reasons why a result, a probability or a verdict since a review is out of date.
 
 Each suspicion is a phrase. A verdict without suspicions is current.
 """
@@ -12,29 +12,29 @@ from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import Recorded, ResultSummary
 from fretc.audit.measurements.confidence_intervals import SUPPORTED
 from fretc.audit.measurements.trials import Trials
-from fretc.report.traceability.chain import outdated
-from fretc.report.traceability.changes import in_words
-from fretc.report.traceability.lock import Review, ReviewedRequirement
+from fretc.traceability.chain import outdated
+from fretc.traceability.changes import in_words
+from fretc.traceability.lock import Review, ReviewedRequirement
 from fretish import syntax
 from monitors import kernel
 
 
 class AboutResults:
-    """Why results of one requirement do not count; what many have in common is compared once."""
+    """Reasons why results of one requirement are suspect; common inputs are compared only once."""
 
     def __init__(self, basis: Basis, audited_by: str, *, formalized: bool = True) -> None:
-        """Begin with what a verdict would rest on now.
+        """Store the present inputs of a verdict.
 
         Args:
-            basis: of the requirement.
+            basis: fingerprints of the present inputs.
             audited_by: the version of fretc that wrote the evidence.
-            formalized: whether the sentence is.
+            formalized: whether the sentence is formalized.
         """
         self._basis, self._audited_by, self._formalized = basis, audited_by, formalized
         self._outdated: dict[Recorded, tuple[str, ...]] = {}
 
     def of(self, result: ResultSummary) -> tuple[str, ...]:
-        """Why the result of one run does not count."""
+        """The reasons why the result of one run is suspect."""
         recorded = result.rests_on
         if recorded not in self._outdated:
             self._outdated[recorded] = tuple(self._changes(recorded))
@@ -43,15 +43,15 @@ class AboutResults:
     def _changes(self, recorded: Recorded) -> Iterator[str]:
         if self._formalized:
             yield from map(why, outdated(recorded, self._audited_by, self._basis))
-        elif recorded[KINDS.index(MONITOR)] == self._basis[MONITOR]:  # there was none, either
-            yield "the sentence cannot be formalized, and could not at the audit"
+        elif recorded[KINDS.index(MONITOR)] == self._basis[MONITOR]:  # no monitor then either
+            yield "the sentence cannot be formalized now, and could not be formalized at the audit"
         else:
-            yield "the sentence could be formalized at the audit, and cannot be now"
+            yield "the sentence could be formalized at the audit, but cannot be formalized now"
 
 
 def _about_log(result: ResultSummary) -> Iterator[str]:
     if result.verdict in (kernel.SATISFIED, kernel.VACUOUS) and not result.intact:
-        yield "the log is damaged, and a damaged log cannot show this"
+        yield "the log is damaged, so it cannot show that the requirement holds"
     if result.verdict == kernel.SATISFIED and result.violations:
         yield "the evidence contradicts itself: it lists violations"
 
@@ -61,12 +61,12 @@ def about_estimation(
     probability: syntax.Probability,
     runs: Sequence[tuple[str, bool, Trials]],
 ) -> Iterator[str]:
-    """Why an estimation from all runs does not count: it does not agree with its runs.
+    """The reasons why an estimate over all runs is suspect.
 
     Args:
-        estimation: what the evidence says of all runs together.
-        probability: that of the sentence.
-        runs: of each run the identity of its content, whether its log is intact, its trials.
+        estimation: the estimate in the evidence.
+        probability: the probability in the sentence.
+        runs: for each run its content hash, whether its log is intact, and its trials.
     """
     if (estimation.operator, estimation.bound) != (probability.op, probability.digits):
         yield "the evidence is about another probability"
@@ -77,18 +77,21 @@ def about_estimation(
     )
     triggers = estimation.triggers
     if sums != (triggers.answered, triggers.failed, triggers.open):
-        yield "the evidence contradicts itself: its runs do not add up to what it says of all"
+        yield (
+            "the evidence contradicts itself: its results for single runs do not add up to "
+            "its result over all runs"
+        )
     elif estimation.answer == SUPPORTED and not all(intact for intact, _ in contents):
-        yield "a log is damaged, and no damaged log supports a probability"
+        yield "a log is damaged, so it cannot support a probability"
 
 
 def since_review(standing: ReviewedRequirement) -> tuple[str, ...]:
-    """What has changed since the review, in one phrase; empty where the review stands."""
+    """The changes since the review in one phrase; "" if the review is valid."""
     if standing.review is None or not standing.is_suspect:
         return ()
     return (f"{changed_since(standing.review)}: {in_words(standing.changes)}",)
 
 
 def changed_since(review: Review) -> str:
-    """That something has changed since a review, without what it is."""
+    """The phrase for any change since a review."""
     return f"something has changed since the review of {review.date}"

@@ -1,4 +1,4 @@
-"""The views: what a reader gets of each part of the report. Templates and `--json` print them.
+"""The views of the parts of the report, which templates and `--json` print.
 
 The names of classes and fields are those of `report.schema.json`. No view contains markup. Times
 are seconds from the first tick of a run, ticks count from 0, intervals include both ends.
@@ -16,7 +16,7 @@ from fretc.report.model.marks import Mark as Mark
 from fretc.report.model.marks import sign_mark as sign_mark
 from fretc.report.model.marks import verdict_mark as verdict_mark
 from fretc.report.model.pictures import Histogram, Timeline
-from fretc.report.traceability.artefacts import Product
+from fretc.traceability.artefacts import Product
 from fretish.documents import named
 
 SCHEMA = "fretc-report-1"
@@ -24,7 +24,7 @@ SCHEMA = "fretc-report-1"
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """A diagnostic; `place` is `file:line:column`, empty where it has none."""
+    """A diagnostic; `place` is `file:line:column`, or ""."""
 
     code: str
     severity: str
@@ -32,7 +32,7 @@ class Remark:
     place: str = ""
     help: str = ""
     accepted: str = ""
-    """Why the project accepts it; empty: it does not."""
+    """The reason why the project accepts the diagnostic, or ""."""
 
 
 # 1: the runs -----------------------------------------------------------------------------------
@@ -130,18 +130,18 @@ class SituationsView:
     """How much of a requirement the runs have exercised."""
 
     share: str
-    """`7/11`; empty where they were not measured."""
+    """`7/11`; "" if situations were not measured."""
     text: str
     """`7 of 11 situations seen`."""
     perhaps: tuple[str, ...]
-    """Those that were perhaps seen, in words."""
+    """Situations that were perhaps seen, in words."""
     never: tuple[str, ...]
-    """Those that were not."""
+    """Situations that were not seen, in words."""
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A requirement and a hazard that it traces to; `hazard` is empty where it traces to none."""
+    """A requirement and a hazard above it; `hazard` is "" if there is none."""
 
     hazard: str
     hazard_title: str
@@ -152,14 +152,14 @@ class Row:
     anchor: str
     mark: Mark
     runs: int
-    """How many runs have the verdict; of a waived one, that behind the waiver."""
+    """Number of runs with the verdict (if waived: with the verdict behind the waiver)."""
     limit: str
-    """Why no run can violate it; empty where one can."""
+    """The reason why no run can violate the requirement, or ""."""
     proof: Mark | None
-    """What is proved of it: the closed loop, or its monitor; None: neither."""
+    """Mark of a proof of the closed loop or of the monitor, or None."""
     review: Mark
     situations: SituationsView | None
-    """None where no run has been audited."""
+    """None if no run was audited."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +175,7 @@ class HazardView:
 
 @dataclass(frozen=True, slots=True)
 class Orphans:
-    """The places where the chain from hazard to verdict has no link, in words."""
+    """The missing links of the chain from hazard to verdict, in words."""
 
     hazards: tuple[str, ...]
     requirements: tuple[str, ...]
@@ -185,7 +185,7 @@ class Orphans:
 
 @dataclass(frozen=True, slots=True)
 class Withdrawal:
-    """A requirement that was reviewed and is claimed no more; `text` says how."""
+    """A reviewed requirement that is no longer in force; `text` is the explanation."""
 
     requirement: str
     text: str
@@ -193,7 +193,7 @@ class Withdrawal:
 
 @dataclass(frozen=True, slots=True)
 class SignatureView:
-    """Whether the right person has signed something, and who has."""
+    """The state of a signature, and its signers."""
 
     mark: Mark
     text: str
@@ -202,7 +202,7 @@ class SignatureView:
 
 @dataclass(frozen=True, slots=True)
 class Signed:
-    """A line of the table of signatures: a thing that can be signed, or a signature that fails."""
+    """A line of the table of signatures: a signable item, or an invalid signature."""
 
     kind: str
     name: str
@@ -212,28 +212,28 @@ class Signed:
 
 @dataclass(frozen=True, slots=True)
 class Signatures:
-    """The table of signatures, and the keys that count."""
+    """The table of signatures, and the trusted keys."""
 
     file: str
-    """The file of signers; empty where there is none: then no signature counts."""
+    """The list of signers; "" if there is none, so that no signature is valid."""
     signers: tuple[str, ...]
     signed: tuple[Signed, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class ReviewView:
-    """The review of a requirement, and whether it still stands."""
+    """The review of a requirement, and whether it is still valid."""
 
     mark: Mark
     by: str
     comment: str
     changes: tuple[str, ...]
     signature: SignatureView | None
-    """None: there is no review."""
+    """None if there is no review."""
 
     @property
     def text(self) -> str:
-        """The words of both marks: `reviewed, unauthenticated`."""
+        """Both marks in words: `reviewed, unauthenticated`."""
         marks = (self.mark, *([self.signature.mark] if self.signature else []))
         return ", ".join(mark.word for mark in marks)
 
@@ -256,7 +256,7 @@ class WaiverView:
 
 @dataclass(frozen=True, slots=True)
 class ProofView:
-    """The result of `fretc verify` for one claim, and why it does not count, if it does not."""
+    """The result of `fretc verify` for one claim, and the reasons why it is suspect."""
 
     requirement: str
     layer: str
@@ -271,7 +271,7 @@ class ProofView:
 
 @dataclass(frozen=True, slots=True)
 class Formula:
-    """A formula, and the traces that it is read over."""
+    """A formula, and the traces on which it is evaluated."""
 
     name: str
     over: str
@@ -280,7 +280,7 @@ class Formula:
 
 @dataclass(frozen=True, slots=True)
 class SignalView:
-    """Where the numbers of a proposition come from."""
+    """A signal that a proposition reads."""
 
     name: str
     path: str
@@ -303,7 +303,7 @@ class PropositionView:
 
 @dataclass(frozen=True, slots=True)
 class Parent:
-    """A parent of a requirement; `anchor` is empty where the parent has no section."""
+    """A parent of a requirement; `anchor` is "" if the parent has no section."""
 
     id: str
     title: str
@@ -328,7 +328,7 @@ class Latency:
 
 @dataclass(frozen=True, slots=True)
 class ViolationView:
-    """A stretch of ticks that violates the requirement; `values` are `(signal, value)`."""
+    """An interval of violating ticks; `values` are `(signal, value)`."""
 
     start: str
     end: str
@@ -338,7 +338,7 @@ class ViolationView:
     missing: str
     values: tuple[tuple[str, str], ...]
     causes: tuple[str, ...]
-    """Why the response was not as demanded; empty where the evidence leaves it open."""
+    """Why the response was wrong; empty if the evidence leaves that open."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -354,7 +354,7 @@ class ThresholdView:
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """The first of many lines, and how many there are in all."""
+    """The first of many lines, and their total number."""
 
     lines: tuple[str, ...]
     total: int
@@ -362,14 +362,14 @@ class Listing:
 
 @dataclass(frozen=True, slots=True)
 class ResultRow:
-    """The result of one run in numbers; `fretc.report.sections.details` reads the rest of it."""
+    """The result of one run in numbers; `fretc.report.sections.details` reads its events."""
 
     place: int
-    """Of the result in the evidence, from 0."""
+    """Index of the result in the evidence, from 0."""
     number: int
-    """Among those of its requirement, from 1."""
+    """Number of the result among the results of its requirement, from 1."""
     requirement: str
-    """The anchor of its requirement."""
+    """The anchor of the requirement."""
     run: str
     run_label: str
     run_file: str
@@ -379,7 +379,7 @@ class ResultRow:
     triggers: int
     answers: int
     at_once: int
-    """Of the answers, those at the tick of their trigger."""
+    """Number of answers at the tick of their trigger."""
     open: int
     violations_total: int
     latency_median_s: float | None
@@ -387,18 +387,18 @@ class ResultRow:
 
     @property
     def anchor(self) -> str:
-        """Its own."""
+        """The anchor of the result."""
         return result_anchor(self.requirement, self.number)
 
 
 def result_anchor(requirement: str, number: int) -> str:
-    """The anchor of a result of a requirement, by the anchor of that; numbered from 1."""
+    """The anchor of a result, from the anchor of its requirement and its number from 1."""
     return f"{requirement.replace('req-', 'result-', 1)}.{number}"
 
 
 @dataclass(frozen=True, slots=True)
 class ResultView:
-    """The result of one run; with suspicions it is evidence of something else."""
+    """The result of one run; it is suspect if `suspicions` is not empty."""
 
     anchor: str
     run: str
@@ -429,11 +429,11 @@ class BoundsView:
 
 @dataclass(frozen=True, slots=True)
 class ProbabilityView:
-    """The answer of all runs about a probability; `text` is its picture in words."""
+    """The estimate of a probability over all runs; `text` describes its picture."""
 
     mark: Mark
     suspicions: tuple[str, ...]
-    """Why the answer does not count; empty where it counts."""
+    """The reasons why the estimate is suspect."""
     stated: str
     bound: float
     reason: str
@@ -452,7 +452,7 @@ class RequirementView:
     title: str
     mark: Mark
     suspicions: tuple[str, ...]
-    """Why its verdict is not current; empty where it is."""
+    """The reasons why the verdict is suspect."""
     status: str
     source: str
     text: str
@@ -462,7 +462,7 @@ class RequirementView:
     meaning: str
     error: Remark | None
     diagram: str
-    """The picture of its meaning in words; empty where there is none."""
+    """The description of the diagram of its meaning; "" if there is none."""
     formulas: tuple[Formula, ...]
     propositions: tuple[PropositionView, ...]
     clock: str
@@ -473,27 +473,27 @@ class RequirementView:
     artefacts: tuple[Product, ...]
     proofs: tuple[ProofView, ...]
     exercise: str
-    """How often all runs together have triggered it, in words."""
+    """Number of triggers over all runs, in words."""
     histograms: tuple[Histogram, ...]
-    """Empty until `fretc.report.sections.details` reads them, for a form that has them."""
+    """Empty until `fretc.report.sections.details` reads them, for formats that need them."""
     probability: ProbabilityView | None
-    """None where the sentence has no probability, or the evidence has no estimation."""
+    """None if the sentence has no probability, or the evidence has no estimate."""
     results: tuple[ResultRow, ...]
-    """Of all runs, in rows; the JSON form has each in full, as a `ResultView`."""
+    """The results of all runs in rows; `--json` has each in full, as a `ResultView`."""
     reasons: tuple[str, ...]
-    """Why it is not shown; empty where it is."""
+    """Why the requirement is not shown; empty if it is."""
     limit: str
-    """Why no run can violate it, in one sentence; empty where one can."""
+    """A sentence that says why no run can violate the requirement, or ""."""
     coverage: str
-    """How far along the chain it is; one of `fretc.report.model.assessments.COVERAGE`."""
+    """The last completed step; one of `fretc.report.model.assessments.COVERAGE`."""
     situations: SituationsView | None
-    """None where no run has been audited."""
+    """None if no run was audited."""
     review: ReviewView
     waiver: WaiverView | None
 
     @property
     def name(self) -> str:
-        """As a person calls it: `No contact (R14)`."""
+        """Title and id: `No contact (R14)`."""
         return named(self.id, self.title)
 
 
@@ -515,7 +515,7 @@ class Command:
 
 @dataclass(frozen=True, slots=True)
 class Hash:
-    """A line of the manifest."""
+    """A line of the table of hashes."""
 
     kind: str
     name: str
@@ -530,12 +530,12 @@ REALIZABLE, UNREALIZABLE = "can be kept together", "cannot be kept together"
 
 @dataclass(frozen=True, slots=True)
 class PlayLane:
-    """A variable in a play; `role` is empty where it is not one variable's."""
+    """A variable in a run; `role` is "" if the lane is not a single variable."""
 
     name: str
     role: str
     values: tuple[str, ...]
-    """One for each column: `0` and `1` are truth values."""
+    """The value in each column; `0` and `1` are truth values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -545,12 +545,12 @@ class Play:
     ticks: tuple[str, ...]
     lanes: tuple[PlayLane, ...]
     loop: int | None
-    """The column to which the last one leads back for ever; None: the play ends in a breach."""
+    """The column to which the last one loops back; None if the run ends in a violation."""
 
 
 @dataclass(frozen=True, slots=True)
 class SetMember:
-    """A requirement as it was analyzed; `anchor` is empty where it is no more."""
+    """An analyzed requirement; `anchor` is "" if it no longer exists."""
 
     requirement: str
     anchor: str
@@ -559,7 +559,7 @@ class SetMember:
 
 @dataclass(frozen=True, slots=True)
 class SetComponent:
-    """Requirements that share outputs, and whether they can be kept together."""
+    """Requirements that share outputs, and whether they are realizable."""
 
     mark: Mark
     members: tuple[SetMember, ...]
@@ -569,7 +569,7 @@ class SetComponent:
 
 @dataclass(frozen=True, slots=True)
 class SetConflict:
-    """Requirements that cannot be kept together, or no longer after a run, and that run."""
+    """Requirements that are unrealizable together, from the start or after the given run."""
 
     members: tuple[SetMember, ...]
     because: str
@@ -578,41 +578,41 @@ class SetConflict:
 
 @dataclass(frozen=True, slots=True)
 class SetAnalysis:
-    """Can these requirements be kept together? What `fretc analyze` has found."""
+    """The result of `fretc analyze` for all requirements together."""
 
     file: str
     fretc: str
-    """The version that analyzed."""
+    """The version of fretc that made the analysis."""
     mark: Mark
     headline: str
     suspicions: tuple[str, ...]
-    """Why it is not of the requirements as they are now; empty where it is."""
+    """The reasons why the analysis is suspect."""
     left_out: tuple[str, ...]
-    """Requirements in force that it says nothing of, since they have no formula."""
+    """Requirements in force that were not analyzed, because they have no formula."""
     components: tuple[SetComponent, ...]
     conflicts: tuple[SetConflict, ...]
     complete: bool
-    """Whether these are all minimal conflicts."""
+    """Whether all minimal conflicts are listed."""
     clashes: tuple[SetConflict, ...]
     """Real-time inconsistencies."""
     remarks: tuple[str, ...]
-    """What is redundant, never triggered, kept by every run or by none."""
+    """Remarks on requirements that are redundant, never triggered, always or never satisfied."""
     assumptions: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     terms: tuple[str, ...]
-    """What all of it rests on."""
+    """The conditions of all results."""
     open: tuple[str, ...]
-    """Questions without an answer, and why."""
+    """Questions without an answer, with the reason."""
 
     @property
     def is_good(self) -> bool:
-        """Whether all requirements in force, as they are now, can be kept together."""
+        """Whether all present requirements in force are realizable together."""
         return self.mark.word == REALIZABLE and not self.mark.suspect and not self.left_out
 
     @property
     def is_broken(self) -> bool:
-        """Whether they cannot."""
+        """Whether the requirements are unrealizable together."""
         return self.mark.word == UNREALIZABLE
 
 
@@ -629,25 +629,25 @@ class Report:
     overall: Overall
     front: Front
     runs: tuple[RunSummary, ...]
-    """Runs with errors first; the JSON form has each with its topics, as a `RunView`."""
+    """Runs with errors first; `--json` has each with its topics, as a `RunView`."""
     claims: str
     counts: tuple[Count, ...]
     not_shown: tuple[NotShown, ...]
     reservations: tuple[str, ...]
     planned: tuple[Planned, ...]
     proofs: tuple[ProofView, ...]
-    """Proofs about the interceptor and the agent, which no single requirement has."""
+    """Proofs about the interceptor and the agent."""
     verification: str
-    """The file with all proofs; empty where there is none."""
+    """The file with all proofs, or ""."""
     remarks: tuple[Remark, ...]
     hazards: tuple[HazardView, ...]
     matrix: tuple[Row, ...]
     orphans: Orphans
     reviewed: str
-    """The number of reviews, and whether they stand, in sentences."""
+    """Sentences with the number of reviews and whether they are valid."""
     changes: tuple[Change, ...]
     withdrawn: tuple[Withdrawal, ...]
-    """Requirements that were reviewed and are claimed no more."""
+    """Reviewed requirements that are no longer in force."""
     waivers: tuple[WaiverView, ...]
     signatures: Signatures
     requirements: tuple[RequirementView, ...]
@@ -655,9 +655,8 @@ class Report:
     commands: tuple[Command, ...]
     manifest: tuple[Hash, ...]
     across: Across
-    """With pictures of some requirements, the worst; the JSON form has those of all."""
-    """All runs in one picture each: their violations, and what they used of the bounds."""
+    """Pictures over all runs, here of the worst requirements; `--json` has those of all."""
     change_groups: tuple[ChangeGroup, ...]
-    """Each change since the review once, with the requirements that it touches."""
+    """The distinct changes since the review, each with the affected requirements."""
     analysis: SetAnalysis | None
-    """Whether all requirements can be kept together; None: nobody has asked."""
+    """The analysis of all requirements; None if there is none."""

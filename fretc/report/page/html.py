@@ -1,4 +1,4 @@
-"""The report as one HTML file: the template places texts and pictures that are ready."""
+"""The report as one HTML file; the template only places finished texts and pictures."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ from fretc.report.set_analysis.drawing import DrawnPlay
 from fretc.report.set_analysis.drawing import drawing as play_drawing
 
 _MOST_CHANGES, _MOST_RUNS = 100, 20
-"""The most changes in a list, and the most runs of one requirement with another verdict."""
+"""Maximum listed changes, and maximum listed runs with a changed verdict per requirement."""
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 
 
 @dataclass(frozen=True, slots=True)
 class Inset:
-    """A page that the report has in it, and opens at a requirement when it is asked for."""
+    """A page embedded in the report, which a button opens at a requirement."""
 
     text: str
     requirements: frozenset[str]
-    """The ids of those that it is about."""
+    """Ids of the requirements on the embedded page."""
     scripts: tuple[str, ...]
-    """The hash sources of its scripts: a page within a page keeps to the policies of both."""
+    """The hash sources of its scripts, because the policies of both pages apply."""
     style: str
 
 
@@ -49,13 +49,13 @@ def html(
     requirements: Sequence[FormalizedRequirement] = (),
     inset: Inset | None = None,
 ) -> str:
-    """The whole file.
+    """The HTML page.
 
     Args:
-        report: all parts.
-        details: the evidence behind its rows.
-        requirements: formalized requirements; the page draws what they mean.
-        inset: the page of `fretc play`; None: the report has none.
+        report: the report.
+        details: the evidence behind the rows of the report.
+        requirements: formalized requirements; the page has a diagram of each.
+        inset: the page of `fretc play`; None if it is not embedded.
     """
     choice = selection(report, details)
     page = slimmed(report, choice)
@@ -75,7 +75,9 @@ def html(
         argument=visible_texts(_argument(report)),
         plays=visible_texts(_plays(report)),
         across=visible_texts(_across(report, choice, _links(choice))),
-        changes=visible_texts({each.anchor: asdict(each) for each in page.changes if each.anchor}),
+        changes=visible_texts(
+            {change.anchor: asdict(change) for change in page.changes if change.anchor}
+        ),
         consequences=visible_texts(_consequences(page.changes)),
         most=_MOST_CHANGES,
         most_runs=_MOST_RUNS,
@@ -86,17 +88,17 @@ def html(
 
 
 def _consequences(changes: Sequence[Change]) -> list[dict[str, Any]]:
-    """The requirements of which something follows, those with the most violations first."""
+    """The changes with consequences, those with the most new violations first."""
     found = [
-        {**asdict(each), "new_violations": new_violations(each), "follows": follows(each)}
-        for each in changes
-        if follows(each)
+        {**asdict(change), "new_violations": new_violations(change), "follows": follows(change)}
+        for change in changes
+        if follows(change)
     ]
     return sorted(found, key=lambda each: -int(each["new_violations"]))
 
 
 def hash_source(text: str) -> str:
-    """As a Content-Security-Policy names an inline script or style.
+    """The hash of an inline script or style, as a Content-Security-Policy source.
 
     Source: Content Security Policy Level 3, section 2.3.1, hash-source.
     """
@@ -104,7 +106,7 @@ def hash_source(text: str) -> str:
 
 
 def _pictures(choice: Selection) -> dict[str, list[dict[str, Any]]]:
-    """The timelines of each result with details, by its anchor."""
+    """Anchor of a result with details → its timelines."""
     return {
         result.anchor: [
             asdict(drawing(timeline, f"picture-{result.anchor}.{number}"))
@@ -116,7 +118,7 @@ def _pictures(choice: Selection) -> dict[str, list[dict[str, Any]]]:
 
 
 def _plays(report: Report) -> dict[str, list[dict[str, Any] | None]]:
-    """The pictures of the plays of conflicts, and of clashes."""
+    """The pictures of the runs of conflicts and of inconsistencies."""
     if report.analysis is None:
         return {}
     parts = {"conflict": report.analysis.conflicts, "clash": report.analysis.clashes}
@@ -131,12 +133,12 @@ def _plays(report: Report) -> dict[str, list[dict[str, Any] | None]]:
 
 
 def _play(conflict: SetConflict, id: str, *, breaks: bool) -> DrawnPlay | None:
-    names = joined([each.requirement for each in conflict.members])
+    names = joined([member.requirement for member in conflict.members])
     return play_drawing(conflict.play, id, f"A run with {names}", breaks=breaks)
 
 
 def _links(choice: Selection) -> frozenset[str]:
-    """Where links of pictures can lead: to what the page has of pictures, results and runs."""
+    """The anchors of pictures, results and runs on the page, to which pictures can link."""
     return choice.anchors | {
         f"picture-{result.anchor}.{number}"
         for section in choice.by_anchor.values()
@@ -146,22 +148,24 @@ def _links(choice: Selection) -> frozenset[str]:
 
 
 def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[str, Any]:
-    """The pictures of all runs; those of some requirements, the worst first, by their anchors."""
+    """The pictures over all runs, for all requirements and for the worst ones by their anchors."""
     everything = report.across.lanes
     return {
         "lanes": everything and asdict(drawn_lanes(everything, "across-lanes", links)),
         "maps": [
-            asdict(drawn_map(each, f"map-{each.anchor}", links)) for each in report.across.maps
+            asdict(drawn_map(run_map, f"map-{run_map.anchor}", links))
+            for run_map in report.across.maps
         ],
         "maps_left_out": report.across.maps_left_out,
         "requirements": {
-            each.anchor: {
-                "lanes": each.lanes
-                and asdict(drawn_lanes(each.lanes, f"lanes-{each.anchor}", links)),
-                "uses": each.uses and asdict(drawn_uses(each.uses, f"uses-{each.anchor}", links)),
+            requirement.anchor: {
+                "lanes": requirement.lanes
+                and asdict(drawn_lanes(requirement.lanes, f"lanes-{requirement.anchor}", links)),
+                "uses": requirement.uses
+                and asdict(drawn_uses(requirement.uses, f"uses-{requirement.anchor}", links)),
             }
-            for each in report.across.requirements
-            if not choice.by_anchor[each.anchor].is_short
+            for requirement in report.across.requirements
+            if not choice.by_anchor[requirement.anchor].is_short
         },
     }
 
@@ -178,7 +182,7 @@ def _histograms(choice: Selection, details: Details) -> dict[str, list[dict[str,
 
 
 def _rows(matrix: Picture) -> dict[str, str]:
-    """The first row of each requirement in the matrix, where it has rows of requirements."""
+    """Anchor of a requirement → anchor of its first row in the matrix, if it has such rows."""
     lines = (line for block in matrix.blocks for line in block.lines if line.id)
     return {line.row.anchor: line.id for line in lines}
 
@@ -186,7 +190,7 @@ def _rows(matrix: Picture) -> dict[str, str]:
 def _diagrams(
     page: Report, requirements: Sequence[FormalizedRequirement]
 ) -> Mapping[str, dict[str, Any]]:
-    """A drawing of what each sentence means, by its anchor; it escapes its own texts."""
+    """Anchor of a requirement → diagram of its meaning, with escaped texts."""
     rules_by_key = {
         (requirement.id, requirement.fingerprint): requirement for requirement in requirements
     }
@@ -215,7 +219,7 @@ def _argument(report: Report) -> dict[str, Any]:
 
 
 def _nested(flat: Sequence[Placement]) -> list[dict[str, Any]]:
-    """Each element with how many lists open before it and close after it."""
+    """Each element with the number of lists that open before it and close after it."""
     items = []
     for i, each in enumerate(flat):
         after = flat[i + 1].depth if i + 1 < len(flat) else 0
@@ -234,7 +238,7 @@ def _nested(flat: Sequence[Placement]) -> list[dict[str, Any]]:
 
 
 def _scales(page: Report) -> dict[str, dict[str, Any]]:
-    """The scale of each probability, by its anchor."""
+    """Anchor of a requirement → scale of its probability."""
     return {
         view.anchor: asdict(scale(view.probability, f"picture-{view.anchor}"))
         for view in page.requirements
@@ -243,7 +247,7 @@ def _scales(page: Report) -> dict[str, dict[str, Any]]:
 
 
 def visible_texts(value: Any) -> Any:
-    """The same value with escapes for characters that hide or turn text."""
+    """The value with escapes for characters that hide or reverse text."""
     match value:
         case str():
             return visible(value)

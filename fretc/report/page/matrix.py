@@ -1,7 +1,7 @@
-"""The matrix as a picture: a row for each requirement under each hazard, a column for each run.
+"""The matrix: a row for each requirement under each hazard, a column for each run.
 
-Above `MOST` cells the picture is of hazards and groups of runs, with the worst mark of each and
-its count; the reader opens a part of it. `marks` is where verdicts come from, for both.
+Above `MOST` cells, the matrix has a cell for each hazard and group of runs, with the worst
+mark and its count; the reader opens a part of it.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ from fretc.report.model.views import Mark, Report, RequirementView, Row
 from fretc.report.sections.matrix import FACTS
 
 MOST = 10_000
-"""The most cells of a picture that has all of them."""
+"""Maximum number of cells of a full matrix."""
 TITLED = 2_000
-"""The most cells that say their requirement and run in a title of their own."""
+"""Maximum number of cells with a tooltip that names requirement and run."""
 _PART = 100
-"""The most requirements, and the most runs, that share a cell of the small picture's axis."""
+"""Maximum number of requirements, and of runs, per cell of the small matrix."""
 _LISTED = 40
-"""The most lines of what is not satisfied, of one hazard."""
+"""Maximum number of listed unsatisfied requirements per hazard."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """The verdict of a requirement in a run; `anchor` leads to its details."""
+    """The verdict of a requirement in a run; `anchor` is the anchor of its details."""
 
     mark: Mark
     anchor: str
@@ -37,22 +37,22 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A row of the picture; None where a run has no result of the requirement."""
+    """A row of the matrix; a cell is None if the run has no result for the requirement."""
 
     id: str
     row: Row
     order: int
     words: str
-    """The verdicts that are in it, for the filter."""
+    """The verdicts in the row, for the filter."""
     cells: tuple[Cell | None, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """A cell of the small picture: how many cells of each mark it stands for, the worst first."""
+    """A cell of the small matrix: number of cells by mark, worst first."""
 
     place: str
-    """Which requirements and runs: `0.10.0.100`, first and end of both."""
+    """Range of requirements and of runs: `0.10.0.100` is (first, end) of both."""
     marks: tuple[tuple[Mark, int], ...]
     text: str
     """`12 violated, 488 satisfied`."""
@@ -60,7 +60,7 @@ class Tally:
 
 @dataclass(frozen=True, slots=True)
 class Unsatisfied:
-    """What is not satisfied of a requirement, in words, where the picture is small."""
+    """A requirement that is not satisfied in some runs, in words, for the small matrix."""
 
     row: Row
     text: str
@@ -69,7 +69,7 @@ class Unsatisfied:
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """The requirements of a hazard, the worst first, or a part of them."""
+    """The requirements of a hazard, worst first, or a part of them."""
 
     hazard: str
     title: str
@@ -87,20 +87,20 @@ class Picture:
     groups: tuple[RunGroup, ...]
     blocks: tuple[Block, ...]
     is_small: bool
-    """Whether it is of hazards and groups."""
+    """Whether the cells are of hazards and groups of runs."""
     is_titled: bool
     marks: tuple[Mark, ...]
-    """All marks in it, the worst first."""
+    """All marks in the matrix, worst first."""
     facts: tuple[Mark, ...]
-    """What is known of requirements beside their verdicts: proofs and reviews."""
+    """Marks of proofs and reviews in the matrix."""
     data: Mapping[str, object] | None
-    """All cells for the script, where the picture is small."""
+    """All cells for the script; None for a full matrix."""
 
 
 def marks(view: RequirementView) -> dict[str, Cell]:
-    """The mark of each run with its place, in the order of the runs.
+    """Run → its cell, in the order of the runs.
 
-    One run has one mark: of several results the worst.
+    A run with several results has the worst mark.
     """
     cells: dict[str, Cell] = {}
     for result in view.results:
@@ -111,13 +111,12 @@ def marks(view: RequirementView) -> dict[str, Cell]:
 
 
 def picture(report: Report, anchors: Collection[str], most: int = MOST) -> Picture:
-    """The picture of a report.
+    """The matrix of a report.
 
     Args:
-        report: with all results.
-        anchors: of the results that have a place of their own in the page; the cells of others
-            lead to their requirement.
-        most: the most cells of a picture that has all of them.
+        report: the report with all results.
+        anchors: anchors of results on the page; other cells link to their requirement.
+        most: maximum number of cells of a full matrix.
     """
     columns = [run for group in report.front.groups for run in group.runs]
     cells = len(report.matrix) * len(columns)
@@ -144,7 +143,7 @@ def _lines(
     known: Mapping[str, Mapping[str, Cell]],
     anchors: Collection[str],
 ) -> list[Line]:
-    """Each row with its cells: by hazard, the worst first; the first of a requirement has an id."""
+    """The rows, by hazard and worst first; the first row of a requirement has an id."""
     lines = []
     seen = set[str]()
     order = {row.anchor: number for number, row in reversed([*enumerate(rows)])}
@@ -184,7 +183,7 @@ def _worst(lines: Sequence[Line]) -> Mark:
 
 
 def _parts(groups: Sequence[RunGroup]) -> Iterator[RunGroup]:
-    """The groups, those with many runs in parts."""
+    """The groups; groups with many runs are split."""
     for group in groups:
         runs = group.runs
         if len(runs) <= _PART:
@@ -231,7 +230,7 @@ def _tallies(part: Sequence[Line], first: int, groups: Sequence[RunGroup]) -> It
 
 
 def _unsatisfied(part: Sequence[Line], groups: Sequence[RunGroup]) -> Iterator[Unsatisfied]:
-    """In how many runs of which groups a requirement is not satisfied."""
+    """The numbers of unsatisfied runs of a requirement, by group, in words."""
     for line in part:
         open_ = Counter(cell.mark for cell in line.cells if cell and not cell.mark.shows)
         ordered = sorted(open_.items(), key=lambda item: item[0].severity)
@@ -263,7 +262,7 @@ _LETTERS = "abcdefghijklmnopqrstuvwxyz"
 def _data(
     lines: Sequence[Line], columns: Sequence[ColumnRun], ordered: Sequence[Mark]
 ) -> dict[str, object]:
-    """All cells: a letter for each mark, and how often it is repeated; `-` where there is none."""
+    """All cells, run-length encoded: a letter for each mark, and `-` for no result."""
     letters = {mark: _LETTERS[number] for number, mark in enumerate(ordered)}
     return {
         "runs": [[run.name, run.short, run.anchor] for run in columns],

@@ -1,6 +1,6 @@
-"""The selection for the page: all verdicts, and as many details as a browser can open.
+"""The content of the page: all verdicts, and as many details as a browser can handle.
 
-The page says how many runs that are not satisfied it leaves out; the evidence file has them all.
+The page states how many unsatisfied runs it leaves out; the evidence file has them all.
 """
 
 from __future__ import annotations
@@ -25,29 +25,29 @@ from fretc.report.sections.details import Details
 COMPACT = 1_000
 """Above this number of results, only runs that are not satisfied have a row."""
 DETAILED, PICTURES = 100, 30
-"""The most results with all details, and the most pictures of violations, in one page."""
+"""Maximum results with all details, and maximum pictures of violations, on one page."""
 _FEW_DETAILED, _FEW_PICTURES = 40, 20
-"""The same in a compact page."""
+"""Maximum results with all details, and maximum pictures, on a compact page."""
 _ROWS = 10
-"""The most rows of a requirement in a compact page."""
+"""Maximum rows of a requirement on a compact page."""
 _RUNS, _RUN_ROWS = 8, 200
-"""Above the first number, runs stand in a table; the second is the most rows of that table."""
+"""Number of runs above which they are in a table, and maximum rows of that table."""
 _FOLDED = 60
 """Up to this number of results, the page has the details of satisfied runs too, folded."""
 _VIOLATIONS, _FEW_VIOLATIONS = 8, 6
-"""The most violations of one result above `_FOLDED` results, and in a compact page."""
+"""Maximum violations of one result above `_FOLDED` results, and on a compact page."""
 _WHOLE = 200
 """Above this number of requirements, a compact page has no formulas, artefacts and pictures."""
 _REASONS = 3
-"""The most reasons of a requirement in the list of what is not shown, and in a compact page."""
+"""Maximum reasons per unshown requirement on a compact page."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunRow:
-    """One run of a requirement in its table."""
+    """A row of the table of runs of a requirement."""
 
     anchor: str
-    """The anchor of its details, or of the row where there are none."""
+    """The anchor of the details, or of the row if there are none."""
     run: str
     label: str
     file: str
@@ -67,16 +67,16 @@ class SectionRuns:
     rows: tuple[RunRow, ...]
     details: tuple[ResultView, ...]
     folded: tuple[ResultView, ...]
-    """Details of satisfied runs, which the reader unfolds."""
+    """Folded details of satisfied runs."""
     left_out: tuple[str, ...]
-    """Sentences about what the page leaves out, and where that is."""
+    """Sentences about omitted content and where to find it."""
     is_short: bool
     """Whether formulas, propositions and artefacts are left out."""
 
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """What the page has of each requirement and of the runs."""
+    """The content of the page for each requirement and for the runs."""
 
     by_anchor: Mapping[str, SectionRuns]
     runs: tuple[RunView, ...]
@@ -91,7 +91,7 @@ class Selection:
 
 
 def selection(report: Report, details: Details) -> Selection:
-    """The selection for a report, from its rows; the details of no others are read."""
+    """The content of the page for a report; only the details of selected results are read."""
     total = sum(len(view.results) for view in report.requirements)
     compact = total > COMPACT
     limits = _limits(total, compact)
@@ -117,8 +117,12 @@ def selection(report: Report, details: Details) -> Selection:
     run_rows = tuple(own.get(run.anchor, run) for run in rows)
     left = len(report.runs) - len(run_rows) if many else 0
     anchors = {
-        *(row.anchor for each in by_anchor.values() for row in each.rows),
-        *(view.anchor for each in by_anchor.values() for view in (*each.details, *each.folded)),
+        *(row.anchor for section in by_anchor.values() for row in section.rows),
+        *(
+            view.anchor
+            for section in by_anchor.values()
+            for view in (*section.details, *section.folded)
+        ),
         *(run.anchor for run in (*sections, *run_rows)),
     }
     return Selection(
@@ -154,7 +158,7 @@ def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
             f"With more than {_WHOLE} requirements, their formulas, propositions and artefacts are "
             "left out as well."
         )
-    yield "`fretc report --json` and `--csv` write all of it; the evidence file has every event."
+    yield "`fretc report --json` and `--csv` write all content; the evidence file has every event."
 
 
 # The results of a requirement ------------------------------------------------------------------
@@ -166,13 +170,13 @@ def _is_good(result: ResultRow) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Limits:
-    """The most of what a page has."""
+    """Maximum amounts of details on a page."""
 
     results: int
-    """With details."""
+    """Maximum number of results with details."""
     pictures: int
     violations: int | None
-    """Of one result; None: no limit."""
+    """Maximum number of violations of one result; None: no limit."""
 
 
 def _limits(total: int, compact: bool) -> _Limits:
@@ -195,7 +199,7 @@ def _detailed(views: Sequence[RequirementView], most: int) -> Mapping[str, Resul
 
 
 def _shortened(results: Sequence[ResultView], limits: _Limits) -> Mapping[str, ResultView]:
-    """The results in their order, with the pictures and violations that the page has room for."""
+    """The results in their order, with as many pictures and violations as the limits allow."""
     short: dict[str, ResultView] = {}
     pictures = limits.pictures
     for result in results:
@@ -221,7 +225,7 @@ def _section_runs(
         bad = [result for result in rows if not _is_good(result)]
         rows = sorted(bad, key=lambda result: result.mark.severity)[:_ROWS]
     elif view.results and not (details or folded):
-        rows = view.results  # a single result without details has a row
+        rows = view.results  # A single result without details has a row.
     open_ = {result.anchor for result in (*details, *folded)}
     return SectionRuns(
         rows=tuple(_row(result, result.anchor in open_) for result in rows),
@@ -268,8 +272,8 @@ def _left_out(
         )
     if open_bad < bad:
         yield (
-            f"Details below: of {phrases.whole(open_bad)} of {phrases.times(bad, 'run')} that "
-            "are not satisfied. Those of the others are in the evidence file and in `--json`."
+            f"Details below: {phrases.whole(open_bad)} of {phrases.times(bad, 'run')} that are "
+            "not satisfied. Details of the others are in the evidence file and in `--json`."
         )
     if open_good < good:
         yield "Details of satisfied runs are in the evidence file and in `--json`."
@@ -279,7 +283,7 @@ def _left_out(
 
 
 def slimmed(report: Report, chosen: Selection) -> Report:
-    """The report without what the page leaves out."""
+    """The report without the omitted content."""
     views = tuple(_slim(view, chosen) for view in report.requirements)
     not_shown = tuple(
         replace(each, reasons=_few(each.reasons, "in its section")) for each in report.not_shown
@@ -288,7 +292,7 @@ def slimmed(report: Report, chosen: Selection) -> Report:
 
 
 def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
-    """A section without its results: the template takes those from the selection."""
+    """A section without its results, which the template takes from the selection."""
     where = "in the table of its runs"
     reasons = _few(view.reasons, where) if chosen.is_compact else view.reasons
     kept = replace(view, results=(), reasons=reasons)

@@ -17,15 +17,15 @@ from enum import StrEnum
 from fretc.report.sections.argument import Element, Kind
 
 MOST = 120
-"""The most elements of a drawing. A larger argument is drawn without the goals that are shown."""
+"""Maximum elements of a drawing; a larger argument is drawn without supported goals."""
 _WIDTH, _INDENT, _MARGIN = 720, 26, 4
 _LINE, _PAD, _GAP = 15, 9, 12
 _LETTER = 6.1
 _LINES = 3
 _TALL = 880
-"""The greatest height of a piece: it fits on a page of A4."""
+"""Maximum height of a piece, which fits on a page of A4."""
 _ASSUMED = 4
-"""Above this number, the assumptions of one goal are one shape."""
+"""Above this number, the assumptions of a goal are merged into one shape."""
 _ROUND = (Kind.SOLUTION, Kind.COUNTER_SOLUTION, Kind.ASSUMPTION, Kind.JUSTIFICATION)
 NAMES = {kind: kind.name.capitalize().replace("_", "-") for kind in Kind}
 
@@ -40,16 +40,16 @@ class Relation(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """An element at its place in the tree."""
+    """An element at its position in the tree."""
 
     element: Element
     depth: int
     relation: Relation
     is_reference: bool = False
-    """Whether it only refers to the same element further up."""
+    """Whether this is a reference to the same element further up."""
     is_challenged: bool = False
     is_doubtful: bool = False
-    """Whether it, or something that it rests on, is challenged."""
+    """Whether the element or an element that supports it is challenged."""
 
     @property
     def text(self) -> str:
@@ -59,7 +59,7 @@ class Placement:
 
     @property
     def state(self) -> str:
-        """`defeated`, `challenged` or `in doubt`; empty where there is no counter-evidence."""
+        """`defeated`, `challenged` or `in doubt`; "" without counter-evidence."""
         if self.element.defeated:
             return "defeated"
         return "challenged" if self.is_challenged else "in doubt" if self.is_doubtful else ""
@@ -81,12 +81,12 @@ class Shape:
     diamond: str
     cross: str
     state: tuple[float, float, str] | None
-    """The place and the text of its state."""
+    """(x, y, text) of the state."""
 
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """As much of the tree as fits on a page."""
+    """A part of the tree that fits on a page."""
 
     id: str
     title: str
@@ -130,7 +130,7 @@ def _challengers(elements: Sequence[Element]) -> Mapping[str, Sequence[str]]:
 
 
 def _above(ids: Collection[str], by_id: Mapping[str, Element]) -> set[str]:
-    """These elements, and all elements that they support, directly or not."""
+    """These elements, and all elements that they support, directly or indirectly."""
     above: dict[str, list[str]] = {}
     for element in by_id.values():
         for other in element.supported_by:
@@ -164,14 +164,16 @@ def shortened(elements: Sequence[Element]) -> tuple[Element, ...]:
     kept = [element for element in elements if element.id in ids]
     return tuple(
         replace(
-            each, supported_by=tuple(id for id in each.supported_by if id in ids), in_context_of=()
+            element,
+            supported_by=tuple(id for id in element.supported_by if id in ids),
+            in_context_of=(),
         )
-        for each in kept
+        for element in kept
     )
 
 
 def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
-    """The elements with one in place of many assumptions of a goal; part 6 lists them all."""
+    """The elements, with many assumptions of a goal merged; part 6 of the report lists them all."""
     kinds = {element.id: element.kind for element in elements}
     kept: list[Element] = []
     replaced: set[str] = set()
@@ -192,7 +194,7 @@ def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
 
 
 def pieces(elements: Sequence[Element]) -> tuple[Piece, ...]:
-    """The drawing, in as many pieces as it fills pages."""
+    """The drawing in pieces, one for each page."""
     groups: list[list[Placement]] = [[]]
     height = 0.0
     for cluster in _clusters(placements(elements)):
@@ -209,12 +211,12 @@ def _clusters(flat: Sequence[Placement]) -> Iterator[list[Placement]]:
     """The groups that stay on one page: an element with its context and its counter-evidence."""
     cluster: list[Placement] = []
     height = 0.0
-    for each in flat:
-        height += _height(each)
-        if cluster and (each.relation is Relation.SUPPORT or height > _TALL):
+    for placement in flat:
+        height += _height(placement)
+        if cluster and (placement.relation is Relation.SUPPORT or height > _TALL):
             yield cluster
-            cluster, height = [], _height(each)
-        cluster.append(each)
+            cluster, height = [], _height(placement)
+        cluster.append(placement)
     if cluster:
         yield cluster
 
@@ -228,11 +230,11 @@ def _piece(group: Sequence[Placement], number: int, count: int) -> Piece:
     shapes: list[Shape] = []
     above: dict[int, tuple[float, float]] = {}
     y = 6.0
-    for each in group:
-        shapes.append(_shape(each, y, above))
-        y += _height(each)
+    for placement in group:
+        shapes.append(_shape(placement, y, above))
+        y += _height(placement)
     part = f", part {number} of {count}" if count > 1 else ""
-    text = f"{len(group)} elements, from “{group[0].text}”; the list below says them all."
+    text = f"{len(group)} elements, from “{group[0].text}”; the list below has them all."
     return Piece(f"argument-{number}", f"Assurance argument{part}", text, _WIDTH, y, tuple(shapes))
 
 
@@ -247,7 +249,8 @@ def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> 
     whole = each.is_reference or not element.undeveloped
     link = arrow = ""
     if depth:
-        from_x, from_y = above.get(depth - 1, (x - _INDENT + 6, 0.0))  # from the piece before
+        # The element above may be in the previous piece.
+        from_x, from_y = above.get(depth - 1, (x - _INDENT + 6, 0.0))
         link, arrow = _link(each.relation, from_x, from_y, x, middle)
     above[depth] = (x + 6, y + height)
     cross = f"M{x:g} {y:g}L{right:g} {y + height:g}M{right:g} {y:g}L{x:g} {y + height:g}"

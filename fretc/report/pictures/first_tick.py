@@ -1,7 +1,6 @@
-"""The signals at the first tick of a violation, as the monitor saw them and as the picture shows.
+"""The values of signals at the first tick of a violation, as the monitor used them.
 
-A sample above its age limit is unknown to the monitor: the text has its value, its age and the
-limit.
+A sample above its age limit counts as unknown; the text has its value, its age and the limit.
 """
 
 from __future__ import annotations
@@ -18,8 +17,8 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
 
     Args:
         signal: one of the violation's values.
-        violation: with its window, where the audit kept one.
-        result: of the run with the violation.
+        violation: the violation, with its window if the audit recorded one.
+        result: the result with the violation.
         ages: age limit of each signal in seconds; a signal without one has no limit.
     """
     value, limit = _value(signal, violation), ages.get(signal)
@@ -31,22 +30,22 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
     if value is None or age is None or limit is None or round(age, 9) <= limit:
         return text
     old, most = phrases.duration(round(age, 9), [limit]), phrases.exact_duration(limit)
-    return f"unknown: {text} is {old} old, and counts for {most}"
+    return f"unknown: {text} is {old} old, and valid for {most}"
 
 
 def _bounds(signal: str, result: Result) -> list[float]:
     """The constants that thresholds compare the signal or its absolute value with."""
     unit, bounds = result.units.get(signal), list[float]()
-    for each in result.thresholds:
-        if each.unit == unit and each.signal == signal:
-            bounds.append(each.bound)
-        elif each.unit == unit and each.signal == f"abs({signal})":
-            bounds.extend((each.bound, -each.bound))
+    for threshold in result.thresholds:
+        if threshold.unit == unit and threshold.signal == signal:
+            bounds.append(threshold.bound)
+        elif threshold.unit == unit and threshold.signal == f"abs({signal})":
+            bounds.extend((threshold.bound, -threshold.bound))
     return bounds
 
 
 def _value(signal: str, violation: Violation) -> float | str | None:
-    """The number or the word in the evidence; an infinite number stands in the window only."""
+    """The number or word in the evidence; infinite numbers are only in the window."""
     known = violation.values[signal]
     if known is None and violation.window and signal in violation.window.samples:
         sample = violation.window.samples[signal].at(violation.first.seconds)
@@ -56,7 +55,7 @@ def _value(signal: str, violation: Violation) -> float | str | None:
 
 
 def _age(signal: str, violation: Violation) -> float | None:
-    """Seconds from its last sample to the first tick; None where no sample is known."""
+    """Seconds from the last sample to the first tick; None if no sample is known."""
     window = violation.window
     samples = (window.samples.get(signal) or window.words.get(signal)) if window else None
     if samples is None:

@@ -1,4 +1,4 @@
-"""Histograms over all runs of a requirement: latency of its answers, margin to its thresholds."""
+"""Histograms over all runs of a requirement: latencies and margins."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from fretc.report.model.pictures import Bin, Histogram
 from fretish import syntax
 
 _BINS = 20
-"""The number of bars, about."""
+"""Approximate number of bars."""
 _MARGINS = 3
-"""The most thresholds of a requirement with a histogram."""
+"""Maximum number of thresholds of a requirement with a histogram."""
 _NAMED = 3
-"""The most bars that the text names."""
+"""Maximum number of bars that the text names."""
 
 
 def step(least: float) -> float:
@@ -40,7 +40,10 @@ def exercise(assessment: Assessment) -> str:
     if not assessment.audits:
         return ""
     if not results:
-        return f"none of {phrases.times(len(assessment.audits), 'run')} counts: all are suspect"
+        return (
+            f"none of {phrases.times(len(assessment.audits), 'run')} counts, because all "
+            "are suspect"
+        )
     triggers = sum(result.triggers for result in results)
     answers = sum(result.answers for result in results)
     waiting = sum(result.open for result in results)
@@ -65,12 +68,12 @@ def histograms(
     latencies: Mapping[int, Sequence[float]],
     thresholds: Mapping[int, Sequence[Threshold]],
 ) -> tuple[Histogram, ...]:
-    """One of latency, then one for each threshold; none of fewer than two values.
+    """A histogram of latencies, then one for each threshold; each needs at least two values.
 
     Args:
-        assessment: of the requirement.
-        latencies: of each of its results, by place.
-        thresholds: the same, in declared units.
+        assessment: the assessment of the requirement.
+        latencies: index of a result → its latencies.
+        thresholds: index of a result → its thresholds, in declared units.
     """
     results = _current_results(assessment)
     places = [audit.place for audit in assessment.audits if not audit.is_stale]
@@ -88,12 +91,12 @@ def _current_results(assessment: Assessment) -> list[ResultSummary]:
 
 
 def is_answered(requirement: FormalizedRequirement | None) -> bool:
-    """Whether each trigger waits for an answer, so that one without is missing."""
+    """Whether each trigger requires a response."""
     return requirement is not None and requirement.watch.answer is not None
 
 
 def _unanswered(result: ResultSummary) -> int:
-    """Triggers that no longer wait and got no answer: time ran out, or their scope ended."""
+    """Number of triggers whose deadline or scope ended without an answer."""
     return max(0, result.triggers - result.answers - result.open)
 
 
@@ -127,9 +130,11 @@ def _latency(
 
 
 def _without(unanswered: int, waiting: int) -> str:
-    """The triggers that have no answer, in words."""
+    """A sentence about triggers without an answer."""
     parts = [
-        f"{phrases.times(unanswered, 'trigger')} whose time or scope ran out" if unanswered else "",
+        f"{phrases.times(unanswered, 'trigger')} whose deadline or scope ended"
+        if unanswered
+        else "",
         f"{phrases.times(waiting, 'trigger')} open at the end of a run" if waiting else "",
     ]
     triggers = phrases.joined(list(filter(None, parts)))
@@ -137,7 +142,7 @@ def _without(unanswered: int, waiting: int) -> str:
 
 
 def seconds_allowed(requirement: FormalizedRequirement | None) -> float | None:
-    """What `within` allows, where a tick is a time."""
+    """The allowed latency in seconds; None without a bound in seconds."""
     if requirement is None or syntax.deadline(requirement.sentence.timing) is None:
         return None
     if requirement.clock is None or requirement.clock.period is None or requirement.ticks is None:
@@ -149,19 +154,25 @@ def seconds_allowed(requirement: FormalizedRequirement | None) -> float | None:
 
 
 def _late(late: Sequence[float], bound: float | None) -> str:
-    """The median and the longest; of one answer only how long it took."""
+    """Median and longest latency in words, or the latency of the only answer."""
     bounds = [] if bound is None else [bound]
-    middle, longest = (phrases.duration(each, bounds) for each in (median(late), max(late)))
+    middle, longest = (phrases.duration(latency, bounds) for latency in (median(late), max(late)))
     return longest if len(late) == 1 else f"median {middle}, longest {longest}"
 
 
 def _margins(runs: Iterable[Sequence[Threshold]]) -> Iterator[Histogram]:
-    """One for each threshold with a margin in at least two runs, in the order of propositions."""
+    """A histogram for each threshold with a margin in at least two runs, ordered by proposition."""
     grouped: dict[tuple[str, str, str, float, str], list[Threshold]] = defaultdict(list)
     for thresholds in runs:
-        for each in thresholds:
-            name = (each.proposition, each.signal, each.operator, each.bound, each.unit)
-            grouped[name].append(each)
+        for threshold in thresholds:
+            name = (
+                threshold.proposition,
+                threshold.signal,
+                threshold.operator,
+                threshold.bound,
+                threshold.unit,
+            )
+            grouped[name].append(threshold)
     for (proposition, signal, operator, bound, unit), same in grouped.items():
         margins = [each.margin for each in same if each.margin is not None]
         if len(margins) < 2:
@@ -192,7 +203,7 @@ def _crossed(runs: int) -> str:
 def _bins(
     values: Sequence[float], marks: Sequence[float], place: Callable[[float, float], int]
 ) -> tuple[Bin, ...]:
-    """Bars of a round width, from the least to the greatest of values and marks.
+    """Bars of a round width that cover all values and marks.
 
     Args:
         values: the numbers to count.
@@ -213,12 +224,12 @@ def _bins(
 
 
 def _above(value: float, width: float) -> int:
-    """A value at a border, but for rounding, counts above it: a margin at its bound is on it."""
+    """Bar of a value, with borders belonging to the bar above, up to rounding."""
     return floor(value / width + 1e-9)
 
 
 def _below(value: float, width: float) -> int:
-    """A value at a border, but for rounding, counts below it: an answer at its bound is in time."""
+    """Bar of a value, with borders belonging to the bar below, up to rounding."""
     return max(0, ceil(value / width - 1e-9) - 1)
 
 
@@ -227,16 +238,16 @@ _FROM, _UP_TO = "{count} from {low} to below {high}", "{count} {above} {low} up 
 
 def _in_words(bins: Sequence[Bin], unit: str, form: str) -> str:
     """The fullest bars, in their order."""
-    full = [each for each in bins if each.count]
+    full = [column for column in bins if column.count]
     fullest = sorted(sorted(full, key=lambda each: -each.count)[:_NAMED], key=lambda each: each.low)
     parts = [
         form.format(
-            count=phrases.whole(each.count),
-            low=phrases.decimal(each.low),
-            above="above" if each.low > 0 else "from",
-            high=phrases.value(each.high, unit),
+            count=phrases.whole(column.count),
+            low=phrases.decimal(column.low),
+            above="above" if column.low > 0 else "from",
+            high=phrases.value(column.high, unit),
         )
-        for each in fullest
+        for column in fullest
     ]
-    rest = sum(each.count for each in full) - sum(each.count for each in fullest)
+    rest = sum(column.count for column in full) - sum(column.count for column in fullest)
     return f"{phrases.joined([*parts, *([f'{phrases.whole(rest)} elsewhere'] if rest else [])])}."

@@ -20,25 +20,25 @@ from fretc.report.pictures.histograms import step
 WIDTH, _LEFT, _RIGHT = 720, 92, 30
 _ROW, _BAR, _TOP, _AXIS = 22, 12, 6, 26
 _WORDS = 36
-"""Of a lane of words: its name, and the words."""
+"""Height of a lane of words."""
 _FLAGS = 30
 """Room above the panels for the names of trigger and deadline."""
 _HEAD, _HIGH = 18, 72
 """The heights of a panel: its name, and the signal."""
 _TICKS = 8
-"""The number of labels on an axis, about."""
+"""Approximate number of labels on an axis."""
 _THINNEST = 1.5
-"""The least width of a bar, so that no event is invisible."""
+"""Minimum width of a bar, so that every event is visible."""
 _LETTER = 6
-"""Width of a letter of a label, about."""
+"""Approximate width of a character of a label."""
 
 _Place = Callable[[float], float]
-"""From a number to its place on an axis."""
+"""Converts a number into a coordinate on an axis."""
 
 
 @dataclass(frozen=True, slots=True)
 class Bar:
-    """A stretch of a lane."""
+    """An interval of a lane."""
 
     x: float
     width: float
@@ -56,17 +56,17 @@ class DrawnLane:
 
 @dataclass(frozen=True, slots=True)
 class DrawnWords:
-    """A lane of words: each stretch with its word, which is empty where it is unknown."""
+    """A lane of words: intervals with their word, which is "" if unknown."""
 
     name: str
     y: int
     bars: tuple[tuple[Bar, str, str], ...]
-    """With the word, and as much of it as fits."""
+    """(bar, word, label): the label is the word, shortened to fit."""
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnLevel:
-    """A threshold: the places of its line and of its label."""
+    """A threshold: the coordinates of its line and label."""
 
     y: float
     label: str
@@ -87,7 +87,7 @@ class DrawnPanel:
     unknown: tuple[Bar, ...]
     infinite: tuple[tuple[Bar, float, str], ...]
     marks: tuple[tuple[float, str], ...]
-    """The labels of its own axis, with their places."""
+    """(coordinate, label) of the axis of the panel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +104,7 @@ class DrawnFlag:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """The layout of a timeline; `ticks` are places on the axis with labels in seconds."""
+    """The layout of a timeline; `ticks` are coordinates with labels in seconds."""
 
     id: str
     title: str
@@ -167,7 +167,7 @@ def drawing(timeline: Timeline, id: str) -> Drawing:
 
 @dataclass(frozen=True, slots=True)
 class _Scale:
-    """From seconds to places from left to right."""
+    """Converts seconds into x coordinates."""
 
     start: float
     end: float
@@ -183,7 +183,7 @@ class _Scale:
 
 
 def places(start: float, end: float, most: int = _TICKS) -> list[float]:
-    """Round numbers from `start` to `end`: `most` of them, about."""
+    """About `most` round numbers from `start` to `end`."""
     width = step((end - start) / most)
     first = int(-(-start // width))
     numbers = [(first + i) * width for i in range(2 * most)]
@@ -205,7 +205,7 @@ def _words(lane: WordLane, y: int, scale: _Scale) -> DrawnWords:
 
 
 def fitting(word: str, width: float, letter: float = _LETTER) -> str:
-    """As much of a word as fits; nothing, where that says nothing."""
+    """The word, shortened to fit; "" if too little of it would remain."""
     most = int(width / letter)
     return word if len(word) <= most else f"{word[: most - 1]}…" if most > 3 else ""
 
@@ -255,7 +255,7 @@ def _level(label: str, y: float, top: int) -> DrawnLevel:
 
 
 def _line(piece: Piece, scale: _Scale, at: _Place) -> str:
-    """A line of steps: each value holds up to the next one."""
+    """The path of a step line."""
     path: list[str] = []
     for seconds, least, greatest in piece.points:
         x, y = scale.x(seconds), at(greatest)
@@ -266,7 +266,7 @@ def _line(piece: Piece, scale: _Scale, at: _Place) -> str:
 
 
 def _bands(piece: Piece, scale: _Scale, at: _Place) -> Iterator[str]:
-    """A box from the least to the greatest value, where several values share one place."""
+    """Boxes from the least to the greatest value, where several values share a coordinate."""
     ends = [*(point[0] for point in piece.points[1:]), piece.end]
     for (seconds, least, greatest), end in zip(piece.points, ends, strict=True):
         if least != greatest:
@@ -314,7 +314,7 @@ class DrawnHistogram:
 
 
 def histogram(content: Histogram, id: str) -> DrawnHistogram:
-    """The layout of a histogram; what has no value has a separate bar.
+    """The layout of a histogram, with separate bars for runs and triggers without a value.
 
     Runs that crossed the bound are on the left, triggers without an answer on the right.
     """
@@ -329,14 +329,14 @@ def histogram(content: Histogram, id: str) -> DrawnHistogram:
     left = 20 + (_APART if content.crossed else 0)
     right = WIDTH - 30 - _APART * len(late)
     low, high = content.bins[0].low, content.bins[-1].high
-    most = max([*(each.count for each in content.bins), content.crossed, *(n for n, _, _ in late)])
+    most = max([*(bin_.count for bin_ in content.bins), content.crossed, *(n for n, _, _ in late)])
     scale = (right - left) / (high - low)
 
     def x(number: float) -> float:
         return round(left + (number - low) * scale, 1)
 
     columns = [
-        _column(x(each.low), x(each.high), each.count, most) for each in content.bins if each.count
+        _column(x(bin_.low), x(bin_.high), bin_.count, most) for bin_ in content.bins if bin_.count
     ]
     if content.crossed:
         columns.append(_column(4, _APART - 6, content.crossed, most, "crossed", "crossed"))

@@ -12,7 +12,7 @@ _THINNEST = 2.0
 _MARGIN = 0.15
 """The margin on either side, as a share of the scale."""
 _NARROWEST = 0.004
-"""The least length of the scale."""
+"""Minimum length of the scale."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,7 @@ class ScaleBar:
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """The drawing; `ticks` are places on the axis with their label."""
+    """The drawing; `ticks` are coordinates with their labels."""
 
     id: str
     text: str

@@ -15,7 +15,7 @@ from fretc.report.model.pictures import Level, Panel, Piece, SpanMark, WordLane
 from fretish.bindings.amounts import exact
 
 MOST_PANELS = 4
-"""The most signals of one picture; signals with a threshold come first."""
+"""Maximum number of signals in a picture; signals with a threshold come first."""
 _COLUMNS = 240
 """The resolution of a panel: samples in one column are one stroke, least to greatest."""
 _THINNED = 2.5
@@ -26,7 +26,7 @@ _FAR = 1e300
 
 T = TypeVar("T", float, str)
 Known = tuple[float, float, float | None]
-"""From, to, and the value in force."""
+"""(from, to, value in this interval or None)."""
 
 
 def panels(
@@ -91,20 +91,20 @@ def _bounds(signal: str, result: Result) -> tuple[Threshold, ...]:
     """Thresholds on the signal itself, or on its absolute value, in its own unit."""
     unit = result.units.get(signal, "")
     return tuple(
-        each
-        for each in result.thresholds
-        if each.signal in (signal, f"abs({signal})") and each.unit == unit
+        threshold
+        for threshold in result.thresholds
+        if threshold.signal in (signal, f"abs({signal})") and threshold.unit == unit
     )
 
 
 def _levels(signal: str, bounds: Sequence[Threshold]) -> Iterator[Level]:
-    for each in bounds:
-        label = f"{each.operator} {exact(each.bound, each.unit)}"
-        if each.signal == signal:
-            yield Level(each.bound, label)
+    for bound in bounds:
+        label = f"{bound.operator} {exact(bound.bound, bound.unit)}"
+        if bound.signal == signal:
+            yield Level(bound.bound, label)
         else:
-            yield Level(each.bound, f"|{signal}| {label}")
-            yield Level(-each.bound, "")
+            yield Level(bound.bound, f"|{signal}| {label}")
+            yield Level(-bound.bound, "")
 
 
 # What is known when ----------------------------------------------------------------------------
@@ -113,9 +113,9 @@ def _levels(signal: str, bounds: Sequence[Threshold]) -> Iterator[Level]:
 def _stretches(
     samples: Samples[T], age: float, start: float, end: float, broken: float
 ) -> list[tuple[float, float, T | None]]:
-    """The time of the picture as stretches with one value, or none, in force.
+    """The time of the picture as intervals with one value, or None.
 
-    Thinning keeps the last sample up to `broken`: where it is too old then, it ends at its limit.
+    Thinning keeps the last sample up to `broken`, so that sample ends at its age limit.
     """
     longest = _longest(samples, age)
     stretches: list[tuple[float, float, T | None]] = []
@@ -180,7 +180,7 @@ def _range(values: Sequence[float]) -> tuple[float, float]:
 def _merged(
     stretches: Sequence[tuple[float, float, T | None]],
 ) -> list[tuple[float, float, T | None]]:
-    """The stretches with neighbours of one value joined."""
+    """The intervals, with neighbours of equal value merged."""
     merged: list[tuple[float, float, T | None]] = []
     for begin, end, value in stretches:
         if merged and merged[-1][2] == value and begin - merged[-1][1] <= _EMPTY:
@@ -216,7 +216,7 @@ def _piece(run: Sequence[tuple[float, float, float]], width: float) -> Piece:
         if points and begin - points[-1][0] < width:
             at, least, greatest = points[-1]
             points[-1] = (at, min(least, value), max(greatest, value))
-            if end - at > width:  # the last value holds beyond the column
+            if end - at > width:  # The last value holds beyond the column.
                 points.append((_short(at + width), value, value))
         elif not points or points[-1][1:] != (value, value):
             points.append((_short(begin), value, value))

@@ -1,4 +1,4 @@
-"""The timeline of a result, with few elements whatever the length of the run."""
+"""The timeline of a result, with a bounded number of elements."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from fretc.report.pictures.first_tick import reading
 from fretc.report.pictures.signals import left_out, panels, word_lanes
 
 DETAIL = 400
-"""Two marks nearer than this fraction of the picture are one, which bounds their number."""
+"""Marks nearer than 1/400 of the picture are merged, which bounds their number."""
 DRAWN = 6
-"""The most violations of one result with a picture; the report lists the others."""
+"""Maximum number of violations of one result with a picture; the report lists the others."""
 _AROUND = 10
-"""The least number of ticks before and after a violation."""
+"""Minimum number of ticks before and after a violation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,9 +41,9 @@ def timelines(
 
     Args:
         result: one run, one requirement.
-        tick: seconds of a tick; an average where the clock ticks by message.
+        tick: seconds of a tick; an average if ticks are messages.
         ages: age limit of each signal in seconds; a signal without one has no limit.
-        requirement: that the result was judged by; None: it is not known.
+        requirement: the requirement that was judged; None if unknown.
     """
     if not result.ticks:
         return ()
@@ -107,9 +107,9 @@ def cause(
     ages: Mapping[str, float],
     requirement: FormalizedRequirement | None = None,
 ) -> str:
-    """The cause of a violation: the response that did not come, and why it did not.
+    """The cause of a violation: the missing response, and why it was missing.
 
-    Where the evidence leaves that open, the signals then.
+    If the evidence leaves that open, the values of the signals at that tick.
     """
     what = falsity(violation, requirement) or _missing(violation)
     at = seconds(violation.first.seconds)
@@ -127,9 +127,9 @@ def _missing(violation: Violation) -> str:
     when = f"at {seconds(start)}" if start == end else f"from {seconds(start)} to {seconds(end)}"
     missing = violation.missing or "the response"
     if violation.deadline is not None:
-        what = f"`{missing}` did not come by {seconds(violation.deadline.seconds)}"
+        what = f"`{missing}` was not true by {seconds(violation.deadline.seconds)}"
     else:
-        what = f"`{missing}` did not hold {when}"
+        what = f"`{missing}` was false {when}"
     if violation.trigger is not None:
         what += f", triggered at {seconds(violation.trigger.seconds)}"
     return what
@@ -156,7 +156,7 @@ def _signal_in_words(lane: WordLane) -> str:
 def _extent(points: Sequence[tuple[float, float, float]], panel: Panel) -> str:
     if not points:
         return "has no finite value"
-    digits = 3 - floor(log10(panel.high - panel.low))  # finer than can be drawn
+    digits = 3 - floor(log10(panel.high - panel.low))  # This is finer than can be drawn.
     least, greatest = (
         round(number, digits)
         for number in (min(point[1] for point in points), max(point[2] for point in points))
@@ -188,7 +188,7 @@ def _around(violation: Violation, tick: float) -> Stretch:
 
 
 class _Events:
-    """The events of a result as stretches of time, by their lanes."""
+    """The events of a result as time intervals, by lane."""
 
     def __init__(self, result: Result, tick: float) -> None:
         self.lanes: list[tuple[str, str, list[Stretch]]] = [
@@ -222,7 +222,7 @@ def _waiting(result: Result) -> list[Stretch]:
 
 
 def answered(result: Result) -> list[tuple[Moment, float]]:
-    """Each trigger with an answer, and its latency; empty where they do not match up."""
+    """Each answered trigger with its latency; empty if they cannot be matched."""
     still_open = {moment.tick for moment in result.open}
     closed = [trigger for trigger in result.triggers if trigger.tick not in still_open]
     if len(closed) != len(result.latencies):
@@ -265,11 +265,11 @@ _WORDS = {
     "trigger": ("tick with a trigger", "ticks with a trigger"),
     "waiting": ("trigger waiting for its response", "triggers waiting for their response"),
     "violated": ("violation", "violations"),
-    "unknown": ("stretch of unknown ticks", "stretches of unknown ticks"),
-    "open": ("demand open at the end", "demands open at the end"),
+    "unknown": ("interval of unknown ticks", "intervals of unknown ticks"),
+    "open": ("obligation open at the end", "obligations open at the end"),
 }
 _NAMED = 3
-"""The most stretches of a lane that the text names."""
+"""Maximum number of intervals of a lane that the text names."""
 
 
 def _in_words(lanes: Sequence[Lane], window: Stretch) -> str:

@@ -1,4 +1,4 @@
-"""The assurance argument: hazards are controlled because requirements hold, as the evidence shows.
+"""The assurance argument: hazards are controlled because evidence shows that requirements hold.
 
 The argument claims no more than the report. A goal without evidence is undeveloped. Counter-
 evidence is a solution that challenges its goal; current counter-evidence defeats the goal. A proof
@@ -50,29 +50,29 @@ class Element:
     defeated: bool = False
     """Whether current counter-evidence challenges the goal."""
     name: str = ""
-    """Its short name in a reference; empty: the text."""
+    """The short name in a reference; "" for the text."""
 
 
 _SUBJECTS: Mapping[str, str] = MappingProxyType(
     {
-        Layer.MONITOR: "The monitor of {id} decides it as its sentence means",
-        Layer.LOOP: "Monitor and interceptor keep {id} in the modelled loop",
-        Layer.BOUNDS: "What is claimed of {id} at other bounds and latencies holds in the loop",
-        Layer.INTERCEPTOR: "The interceptor of {id} keeps its contracts",
-        Layer.AGENT: "The agent keeps {id} in its model",
-        Layer.AJPF: "The agent keeps {id} by the verdict of AJPF",
+        Layer.MONITOR: "The monitor of {id} gives the verdicts that the sentence demands",
+        Layer.LOOP: "Monitor and interceptor satisfy {id} in the modelled loop",
+        Layer.BOUNDS: "The claims about {id} at other bounds and latencies hold in the loop",
+        Layer.INTERCEPTOR: "The interceptor of {id} fulfils its contracts",
+        Layer.AGENT: "The agent satisfies {id} in its model",
+        Layer.AJPF: "The agent satisfies {id}, according to AJPF",
     }
 )
 """The goal that the proofs of each layer support."""
 _SHARED_SUBJECTS: Mapping[str, str] = MappingProxyType(
     {
-        "interceptor": "The interceptor keeps its contracts",
+        "interceptor": "The interceptor fulfils its contracts",
         "agent": "The agent has the properties of its property file in its model",
     }
 )
 """The goal that proofs about shared parts support."""
 _NAMED = 3
-"""The most violating runs that an element names; it counts the others."""
+"""Maximum number of violating runs that an element names; others are counted."""
 
 
 def argument(report: Report) -> tuple[Element, ...]:
@@ -103,7 +103,7 @@ class _Argument:
         )
         assumed = [f"A_{number}" for number, _ in enumerate(report.assumptions, 1)]
         context = ("C_project", *assumed)
-        text = f"{name} keeps its safety requirements"
+        text = f"{name} satisfies its safety requirements"
         yield Element("G_top", Kind.GOAL, text, below, context, undeveloped=not below)
         yield Element(
             "C_project", Kind.CONTEXT, f"Requirements in {report.project}; {report.claims}"
@@ -118,7 +118,7 @@ class _Argument:
                 yield from self._hazard(hazard.id, hazard.title, anchors)
         if untraced:
             goals = tuple(_id("G", anchor) for anchor in dict.fromkeys(untraced))
-            words = "Argument over the requirements that trace to no hazard"
+            words = "Argument over the requirements that are not traced to a hazard"
             yield Element("S_others", Kind.STRATEGY, words, goals)
             yield from self._requirements(untraced)
         for name, proofs in self._shared.items():
@@ -134,7 +134,7 @@ class _Argument:
         yield from self._requirements(anchors)
 
     def _requirements(self, anchors: Sequence[str]) -> Iterator[Element]:
-        """The elements of each requirement once, however many hazards it has."""
+        """The elements of each requirement, without duplicates if it has several hazards."""
         for anchor in anchors:
             if anchor not in self._yielded:
                 self._yielded.add(anchor)
@@ -157,7 +157,7 @@ class _Argument:
             (*evidence, *subjects),
             (*([context] if view.meaning else []), *([waived] if view.waiver else [])),
             undeveloped=not (evidence or subjects),
-            defeated=any(each.is_current for each in counters),
+            defeated=any(counter.is_current for counter in counters),
             name=f"{view.id} holds",
         )
         if view.meaning:
@@ -167,8 +167,8 @@ class _Argument:
             by = f"{view.waiver.by}{note}"
             words = f"Waived until {view.waiver.until} by {by}: {view.waiver.reason}"
             yield Element(waived, Kind.JUSTIFICATION, words)
-        for each in counters:
-            yield Element(each.id, Kind.COUNTER_SOLUTION, each.text, challenges=goal)
+        for counter in counters:
+            yield Element(counter.id, Kind.COUNTER_SOLUTION, counter.text, challenges=goal)
         if is_shown:
             yield Element(solution, Kind.SOLUTION, _support(view))
         elif subjects:
@@ -197,7 +197,7 @@ class _CounterEvidence:
     id: str
     text: str
     is_current: bool
-    """Whether it is about the requirement as it is now."""
+    """Whether the counter-evidence is about the present requirement."""
 
 
 def _support(view: RequirementView) -> str:
@@ -209,7 +209,7 @@ def _support(view: RequirementView) -> str:
 
 
 def _counter_evidence(view: RequirementView, id: str) -> Iterator[_CounterEvidence]:
-    """The runs that violate it, suspect ones apart; or the answer about its probability."""
+    """Counter-evidence: violating runs, suspect ones separately, or the estimate."""
     probability = view.probability
     if probability is not None:
         if probability.mark.word == REFUTED:
@@ -282,5 +282,5 @@ def _claims(head: str, proofs: Sequence[ProofView]) -> str:
 
 
 def _id(prefix: str, name: str) -> str:
-    """An id of GSN letters; different names have different ids."""
+    """A valid GSN id; distinct for distinct names."""
     return f"{prefix}_{re.sub(r'[^A-Za-z0-9]', lambda m: f'_{ord(m[0]):x}_', name)}"

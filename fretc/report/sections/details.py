@@ -1,7 +1,7 @@
-"""What the report has in rows only, read in full: results with their events, runs with topics.
+"""Reads the details behind the rows of the report: results with events, runs with topics.
 
-A report of many runs never holds all of it: a page reads the few that it shows, and a form that has
-them all reads and writes them one after the other.
+To save memory, a page reads only the details that it shows, and a format with all details reads and
+writes them in groups.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from fretc.report.sections.runs import Run, RunKey, run_key, topic_views
 
 Latencies = Mapping[int, Sequence[float]]
 Thresholds = Mapping[int, Sequence[Threshold]]
-"""Those of each result, by its place."""
+"""Index of a result → its thresholds."""
 _AT_ONCE = 10_000
-"""The most results whose numbers are read at once, but for those of one requirement."""
+"""Maximum number of results that are read at once, unless one requirement has more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,10 +34,10 @@ class Details:
     """The evidence behind the rows of a report."""
 
     evidence: EvidenceSource | None
-    """None where no run has been audited."""
+    """None if no run was audited."""
     project: Project
     assessments: Mapping[str, Assessment]
-    """Each with the anchor of its requirement."""
+    """Anchor of a requirement → its assessment."""
     runs: Mapping[RunKey, Run]
 
     @property
@@ -62,12 +62,12 @@ class Details:
             yield row, result_view(result, row, assessment, self.project.declarations)
 
     def histograms(self, anchors: Iterable[str]) -> Iterator[tuple[str, tuple[Histogram, ...]]]:
-        """Those of some requirements, by their anchors, in their order."""
+        """(anchor, histograms) of some requirements, in their order."""
         for assessment, latencies, thresholds in self._measures(anchors):
             yield assessment.anchor, histograms(assessment, latencies, thresholds)
 
     def thresholds(self, anchors: Iterable[str]) -> Iterator[tuple[Assessment, Thresholds]]:
-        """Those of the results of some requirements in declared units, by place."""
+        """(assessment, index of a result → thresholds in declared units) of some requirements."""
         for group in self._groups(anchors):
             thresholds = self._thresholds(group)
             yield from ((assessment, thresholds) for assessment in group)
@@ -89,7 +89,7 @@ class Details:
         return {at: thresholds_in_declared_units(some, declared) for at, some in found}
 
     def _groups(self, anchors: Iterable[str]) -> Iterator[list[Assessment]]:
-        """The requirements in their order, with so many results together as are read at once."""
+        """The requirements in their order, in groups whose results are read at once."""
         group: list[Assessment] = []
         for assessment in (self.assessments[anchor] for anchor in anchors):
             if group and sum(len(each.audits) for each in (*group, assessment)) > _AT_ONCE:
@@ -100,15 +100,17 @@ class Details:
             yield group
 
     def run_views(self, summaries: Iterable[RunSummary]) -> tuple[RunView, ...]:
-        """The runs with their topics, in the order in which they are given."""
+        """The runs with their topics, in the given order."""
         ordered = tuple(summaries)
-        wanted = {each.anchor for each in ordered}
+        wanted = {summary.anchor for summary in ordered}
         topics = {}
         for facts in self.evidence.runs() if self.evidence else ():
             anchor = self.runs[run_key(facts)].anchor
             if anchor in wanted and anchor not in topics:
                 topics[anchor] = topic_views(facts, self.project)
-        return tuple(RunView(**_fields(each), topics=topics[each.anchor]) for each in ordered)
+        return tuple(
+            RunView(**_fields(summary), topics=topics[summary.anchor]) for summary in ordered
+        )
 
 
 def _fields(summary: RunSummary) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The rows of the matrix of hazards and requirements, and the links that are missing."""
+"""The rows of the matrix of hazards and requirements, and the missing links."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _REVIEWED = Mark("reviewed", "●", "")
 _CHANGED = sign_mark("changed since the review", signs.SUSPECT)
 _UNREVIEWED = Mark("not reviewed", "", "")
 FACTS = (_LOOP, _MONITOR, _REFUTED, _REVIEWED, _CHANGED)
-"""What the key of the matrix explains beside verdicts."""
+"""Symbols beside verdicts that the key of the matrix explains."""
 
 
 def hazard_views(project: Project) -> tuple[HazardView, ...]:
@@ -46,7 +46,7 @@ def matrix(
     assessments: Sequence[Assessment],
     sections: Sequence[RequirementView],
 ) -> tuple[Row, ...]:
-    """A row for each hazard and requirement below it; then the requirements below none."""
+    """A row for each hazard and requirement below it, then requirements without a hazard."""
     parents = {assessment.id: assessment.entry.parents for assessment in assessments}
     chains = [_chains(assessment.id, parents, project) for assessment in assessments]
     pairs = list(zip(assessments, sections, chains, strict=True))
@@ -65,7 +65,7 @@ def matrix(
 def _chains(
     id: str, parents: dict[str, tuple[str, ...]], project: Project
 ) -> dict[str, tuple[str, ...]]:
-    """Each hazard that a requirement traces to → the requirements in between."""
+    """Hazard above a requirement → the requirements between them."""
     chains: dict[str, tuple[str, ...]] = {}
     visited = {id}
     waiting: list[tuple[str, tuple[str, ...]]] = [(id, ())]
@@ -129,11 +129,15 @@ def _review(assessment: Assessment) -> Mark:
 def orphans(
     project: Project, assessments: Sequence[Assessment], briefs: ResultSummaries | None
 ) -> Orphans:
-    """Every place where the chain from hazard to verdict ends too early."""
+    """The missing links of the chain from hazard to verdict."""
     return Orphans(
         hazards=tuple(_uncovered(project, assessments)),
         requirements=(
-            *(f"{each.id} names no parent" for each in assessments if not each.entry.parents),
+            *(
+                f"{assessment.id} names no parent"
+                for assessment in assessments
+                if not assessment.entry.parents
+            ),
             *_rootless(project),
         ),
         parents=tuple(_undeclared(project, assessments)),
@@ -145,7 +149,7 @@ def orphans(
 
 
 def _rootless(project: Project) -> Iterable[str]:
-    """The requirements in force whose parents are there, and lead to nothing or in a circle."""
+    """Requirements in force whose declared parents lead to no hazard, or form a cycle."""
     declared = {*project.hazards, *project.parents}
     known = declared | {requirement.id for requirement in project.requirements}
     active = [r for r in project.requirements if r.status != RETIRED]
@@ -179,7 +183,7 @@ def _undeclared(project: Project, assessments: Sequence[Assessment]) -> Iterable
 def unknown_ids(
     assessments: Sequence[Assessment], briefs: ResultSummaries | None
 ) -> tuple[str, ...]:
-    """The ids in the evidence that are not ids of the project."""
+    """The ids in the evidence that are not in the project."""
     ids = {assessment.id for assessment in assessments}
     audited = briefs.by_requirement.keys() if briefs else ()
     return tuple(sorted({*audited} - ids, key=natural))

@@ -15,8 +15,8 @@ from fretc.report.sections.matrix import orphans
 from fretc.report.sections.proofs import is_refuted
 from fretc.report.sections.runs import Run, trust
 from fretc.report.sections.signatures import BROKEN
-from fretc.report.traceability.lock import WithdrawnRequirement
-from fretish.diagnostics import status_symbols as signs
+from fretc.traceability.lock import WithdrawnRequirement
+from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import has_errors
 
 _ALL = sign_mark("all shown", signs.GOOD)
@@ -35,7 +35,7 @@ def overall(
     signatures: Signatures,
     changed: Sequence[str] = (),
 ) -> Overall:
-    """Mark, headline and sentences.
+    """The overall result: mark, headline and sentences.
 
     Args:
         project: with or without errors.
@@ -43,17 +43,17 @@ def overall(
         sections: the view of each assessment, in the same order.
         runs: all audited runs.
         reservations: about requirements that are shown.
-        withdrawn: requirements that were reviewed and are claimed no more.
+        withdrawn: reviewed requirements that are no longer in force.
         signatures: all of them.
-        changed: what has changed since the review, in sentences.
+        changed: sentences about changes since the review.
     """
-    active = [one for one in assessments if one.verdict != RETIRED]
+    active = [assessment for assessment in assessments if assessment.verdict != RETIRED]
     active_views = [view for view in sections if view.status != RETIRED]
     missing = [plan for view in active_views for plan in view.planned if not plan.has_result]
     refuted = [view.name for view in active_views if is_refuted(view)]
-    red = [one for one in active if one.is_broken]
+    red = [assessment for assessment in active if assessment.is_broken]
     stale = outdated(active)
-    good = [one for one in active if one.is_shown]
+    good = [assessment for assessment in active if assessment.is_shown]
     has_flaws = has_errors(project.diagnostics)
     forged = _forged(signatures)
     sentences = tuple(
@@ -63,7 +63,7 @@ def overall(
                 *((stale,) if red else ()),
                 *changed,
                 *_held(active, good, len(runs)),
-                *(f"{one.text}." for one in withdrawn),
+                *(f"{withdrawal.text}." for withdrawal in withdrawn),
                 _refuted(refuted),
                 *_few(reservations),
                 _waived(active),
@@ -77,25 +77,25 @@ def overall(
         )
     )
     if red:
-        mark = replace(_VIOLATED, suspect=all(one.suspicions for one in red))
+        mark = replace(_VIOLATED, suspect=all(assessment.suspicions for assessment in red))
         return Overall(mark, violated(red), sentences)
     if forged:
         return Overall(BROKEN, forged, sentences)
     if not good:
-        return Overall(_NONE, _with("Nothing that was claimed is shown", stale), sentences)
+        return Overall(_NONE, _with("None of the claimed requirements is shown", stale), sentences)
     if len(good) < len(active) or has_flaws or withdrawn:
-        return Overall(_PART, _with("Not everything that was claimed is shown", stale), sentences)
+        return Overall(_PART, _with("Not all claimed requirements are shown", stale), sentences)
     if refuted:
-        headline = "What was audited held; verification found counterexamples."
+        headline = "All audited requirements held, but verification found counterexamples."
         return Overall(_PART, headline, sentences)
     if missing:
-        headline = "What was audited held; not all that was planned is shown."
+        headline = "All audited requirements held, but some planned methods have no result."
         return Overall(_PART, headline, sentences)
-    return Overall(_ALL, "Everything that was claimed is shown.", sentences)
+    return Overall(_ALL, "All claimed requirements are shown.", sentences)
 
 
 def _with(headline: str, stale: str) -> str:
-    """A headline, and what is suspect for which reason."""
+    """A headline with the reasons why results are suspect."""
     return f"{headline}: {stale}" if stale else f"{headline}."
 
 
@@ -103,23 +103,25 @@ def _with(headline: str, stale: str) -> str:
 
 
 def _held(active: Sequence[Assessment], good: Sequence[Assessment], runs: int) -> Iterator[str]:
-    """How many requirements hold in each run, and how many probabilities over all runs."""
-    single = [one for one in active if one.probability is None]
-    probable = [one for one in active if one.probability is not None]
+    """Sentences with the number of requirements that hold, and of supported probabilities."""
+    single = [assessment for assessment in active if assessment.probability is None]
+    probable = [assessment for assessment in active if assessment.probability is not None]
     if single or not probable:
-        yield _held_in_runs(single, [one for one in good if one.probability is None], runs)
+        yield _held_in_runs(
+            single, [assessment for assessment in good if assessment.probability is None], runs
+        )
     if probable:
-        count = sum(one.is_shown for one in probable)
+        count = sum(assessment.is_shown for assessment in probable)
         yield (
             f"{count} of {phrases.times(len(probable), 'probability', 'probabilities')} "
-            f"{'is' if len(probable) == 1 else 'are'} supported, on the average over the triggers "
+            f"{'is' if len(probable) == 1 else 'are'} supported, as an average over the triggers "
             f"of {phrases.times(runs, 'run')}."
         )
 
 
 def _held_in_runs(active: Sequence[Assessment], good: Sequence[Assessment], runs: int) -> str:
     if not active:
-        return "There is no requirement to show."
+        return "There is no requirement in force."
     if not runs:
         return "No run has been audited."
     if len(active) == 1:
@@ -127,7 +129,7 @@ def _held_in_runs(active: Sequence[Assessment], good: Sequence[Assessment], runs
         held = f"held in {where}" if good else f"was not shown to hold in {where}"
         name = active[0].entry.name
         return f"The one requirement, {name}, {held if where else 'was not audited'}."
-    everywhere = all(len(one.audits) == runs for one in good)
+    everywhere = all(len(assessment.audits) == runs for assessment in good)
     where = _where(runs) if everywhere else "each run in which they were audited"
     return f"{len(good)} of {len(active)} requirements held in {where}."
 
@@ -139,27 +141,29 @@ def _where(runs: int) -> str:
 def _refuted(ids: Sequence[str]) -> str:
     if not ids:
         return ""
-    return f"Verification found a counterexample to {phrases.some(ids)}; part 4 has the claim."
+    return f"Verification found a counterexample to {phrases.some(ids)}; part 4 lists the claims."
 
 
 def _waived(active: Sequence[Assessment]) -> str:
-    waived = [one for one in active if one.verdict == WAIVED]
+    waived = [assessment for assessment in active if assessment.verdict == WAIVED]
     if not waived:
         return ""
     verb = "is" if len(waived) == 1 else "are"
-    names = phrases.some([f"{one.entry.name}: {one.unwaived_mark.text}" for one in waived])
+    names = phrases.some(
+        [f"{assessment.entry.name}: {assessment.unwaived_mark.text}" for assessment in waived]
+    )
     return f"{phrases.times(len(waived), 'requirement')} {verb} waived, and not shown: {names}."
 
 
 def _unsigned(sections: Sequence[RequirementView]) -> str:
-    """A waiver lets a requirement pass, no matter who has written it."""
+    """A sentence about effective waivers without a valid signature."""
     waived = [view for view in sections if view.waiver and view.mark.word == WAIVED]
     names = [view.name for view in waived if view.waiver and not view.waiver.signature.is_good]
-    return f"Nobody is known to have signed the waiver of {phrases.some(names)}." if names else ""
+    return f"There is no valid signature for the waiver of {phrases.some(names)}." if names else ""
 
 
 def _forged(signatures: Signatures) -> str:
-    places = [one.name for one in signatures.signed if one.signature.mark == BROKEN]
+    places = [entry.name for entry in signatures.signed if entry.signature.mark == BROKEN]
     if not places:
         return ""
     verb = "does" if len(places) == 1 else "do"
@@ -171,7 +175,7 @@ def _unplanned(missing: Sequence[Planned], names: Mapping[str, str]) -> str:
     if not missing:
         return ""
     methods = phrases.some([f"{plan.method} for {names[plan.requirement]}" for plan in missing])
-    return f"No result is known of {phrases.times(len(missing), 'planned method')}: {methods}."
+    return f"No result is recorded for {phrases.times(len(missing), 'planned method')}: {methods}."
 
 
 def _uncovered(project: Project, assessments: Sequence[Assessment]) -> str:
@@ -180,11 +184,11 @@ def _uncovered(project: Project, assessments: Sequence[Assessment]) -> str:
     return f"{phrases.times(count, 'hazard')} {verb} no requirement in force." if count else ""
 
 
-_FLAWED = "The requirements or what stands beside them have errors: this report is not complete."
+_FLAWED = "The requirements, bindings or hazards have errors: this report is not complete."
 
 
 def _few(reservations: Sequence[str]) -> Sequence[str]:
-    """The reservations themselves, or a sentence with their number where there are many."""
+    """The reservations, or a sentence with their number if there are many."""
     if len(reservations) <= 3:
         return reservations
-    return (f"There are {len(reservations)} reservations about what is shown; part 2 lists them.",)
+    return (f"There are {len(reservations)} reservations; part 2 lists them.",)

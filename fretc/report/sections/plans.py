@@ -16,11 +16,11 @@ _AUDIT = "audit"
 
 
 def planned(assessment: Assessment, proofs: Sequence[ProofView]) -> tuple[Planned, ...]:
-    """Every method that the requirement's `verify` names, in its order.
+    """The planned methods in the requirement's `verify`, in its order.
 
     Args:
         assessment: of the requirement.
-        proofs: about it, and about parts that all requirements share.
+        proofs: proofs about the requirement and about shared parts.
     """
     return tuple(
         _planned(assessment, method, proofs) for method in dict.fromkeys(assessment.entry.verify)
@@ -35,7 +35,7 @@ def _planned(assessment: Assessment, method: str, proofs: Sequence[ProofView]) -
 
 
 def _by_proofs(assessment: Assessment, method: str, proofs: Sequence[ProofView]) -> Planned:
-    """The worst proof decides; one that is vacuous or not checked is no result."""
+    """A method by its proofs: the worst one decides; vacuous and unchecked ones are not results."""
     decisive = worst(proofs)
     refuted = decisive.mark.word == Result.COUNTEREXAMPLE
     has_result = refuted or is_proved(decisive)
@@ -47,19 +47,19 @@ def _audit(assessment: Assessment) -> Planned:
     if current:
         text = f"{phrases.times(len(current), 'run')} audited: {assessment.mark.text}"
         return Planned(assessment.id, assessment.anchor, _AUDIT, True, text)
-    suspect = f"all its evidence is suspect; it said {assessment.unwaived}"
+    suspect = f"all its evidence is suspect; its verdict was {assessment.unwaived}"
     text = suspect if assessment.audits else "no run has been audited"
     return Planned(assessment.id, assessment.anchor, _AUDIT, False, text)
 
 
 def _other(assessment: Assessment, method: str) -> Planned:
-    """A method without a known result, and what fretc can make for it."""
+    """A method without a known result, with the files that fretc can generate for it."""
     return Planned(
         assessment.id,
         assessment.anchor,
         method,
         False,
-        f"no result is known{_at_hand(assessment, method)}",
+        f"no result is recorded{_at_hand(assessment, method)}",
     )
 
 
@@ -68,7 +68,7 @@ def _at_hand(assessment: Assessment, method: str) -> str:
     if target is None:
         return ""
     if assessment.requirement is None:
-        return f", and none can be: the requirement is {UNFORMALIZED}"
+        return f", and none is possible: the requirement is {UNFORMALIZED}"
     if target.refuse(assessment.requirement) is not None:
-        return f", and none can be: {method} cannot express the requirement"
-    return "; the file for it can be made, and whether it was checked is not recorded"
+        return f", and none is possible: {method} cannot express the requirement"
+    return "; its file can be generated, but no check of it is recorded"

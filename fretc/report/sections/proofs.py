@@ -10,16 +10,16 @@ from compiler.logic.claims import ALL, PROVERS, Proof, Result
 from compiler.targets.interceptor_options import ASSUMED
 from fretc.report.model import phrases
 from fretc.report.model.views import Mark, ProofView, RequirementView, sign_mark
-from fretc.report.traceability.artefacts import Product, compiled_monitor
+from fretc.traceability.artefacts import Product, compiled_monitor
 from fretc.verification.layers.table import OF_MONITOR
 from fretc.verification.text_output import SIGNS
 
 _MARKS: Mapping[str, Mark] = {
     str(result): sign_mark(str(result), sign) for result, sign in SIGNS.items()
 }
-"""The worst result first, as for verdicts."""
+"""Result → mark, worst first."""
 SHARED = ("interceptor", "agent")
-"""The subjects of claims that are about no single requirement."""
+"""Names used as requirement of claims about shared parts."""
 
 
 def proof_views(
@@ -31,10 +31,10 @@ def proof_views(
     """The view of each proof.
 
     Args:
-        proofs: about one requirement, or about shared parts.
-        products: what the targets make now; a proof about another text is suspect.
-        requirement: the requirement; None where it cannot be read, and of shared parts.
-        joint: SHA-256 of the monitors of several requirements that are made now.
+        proofs: proofs about one requirement, or about shared parts.
+        products: the files that targets generate now; a proof about another file is suspect.
+        requirement: the requirement; None if it cannot be read, and for shared parts.
+        joint: SHA-256 of the joint monitors that would be generated now.
     """
     now = {product.file: product.sha256 for product in products if product.sha256}
     return tuple(_view(proof, now, requirement, joint) for proof in proofs)
@@ -66,20 +66,20 @@ def _suspicions(
     requirement: FormalizedRequirement | None,
     joint: Collection[str],
 ) -> Iterator[str]:
-    """Why a proof is about other texts than those of now; only texts that fretc makes count."""
+    """Why a proof is about outdated files; only files that fretc generates are compared."""
     for name, examined in proof.artefacts.items():
         if name in now and now[name] != examined:
-            what = "is not what it was" if name == ASSUMED else "is not made like that any more"
+            what = "has changed" if name == ASSUMED else "would be generated differently now"
             yield f"{name} {what}"
     is_joint = any(examined in joint for examined in proof.artefacts.values())
     if proof.layer in OF_MONITOR and not (is_joint or _is_of_monitor(proof, now, requirement)):
-        yield "it is about another monitor than the one that is made now"
+        yield "it is about another monitor than the one generated now"
 
 
 def _is_of_monitor(
     proof: Proof, now: Mapping[str, str], requirement: FormalizedRequirement | None
 ) -> bool:
-    """Whether the monitor that is made now was examined, in any language."""
+    """Whether the proof is about the monitor that is generated now, in any language."""
     monitors = {hash_ for name, hash_ in now.items() if name.endswith("_monitor.py")}
     return any(
         examined in monitors
@@ -113,12 +113,12 @@ def in_words(proofs: Sequence[ProofView]) -> str:
 
 
 def is_proved(proof: ProofView) -> bool:
-    """Whether it is proved of what is there now."""
+    """Whether the claim is proved and current."""
     return proof.mark.word == Result.PROVED and not proof.mark.suspect
 
 
 def is_proved_layer(view: RequirementView, layer: str) -> bool:
-    """Whether all claims of a layer are proved of what is there now, and there is one."""
+    """Whether a layer has claims, and all of them are proved and current."""
     own = [proof for proof in view.proofs if proof.layer == layer]
     return bool(own) and all(map(is_proved, own))
 
@@ -129,5 +129,5 @@ def is_refuted(view: RequirementView) -> bool:
 
 
 def refutations(view: RequirementView) -> tuple[ProofView, ...]:
-    """Its counterexamples, suspect ones too."""
+    """The counterexamples of a requirement, including suspect ones."""
     return tuple(proof for proof in view.proofs if proof.mark.word == Result.COUNTEREXAMPLE)

@@ -1,4 +1,4 @@
-"""The commands that make the report again, and the hashes to compare with."""
+"""The commands that reproduce the report, and the hashes to compare with."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def commands(
 ) -> tuple[Command, ...]:
     """The commands, in the order in which a reader runs them.
 
-    Names come from evidence, which anybody may have written. Each name is quoted; a comment stands
-    in place of a command with a name that cannot be quoted.
+    Names come from evidence, which is untrusted. Each name is quoted; a command with a
+    name that cannot be quoted is replaced by a comment.
     """
 
     def audit() -> str:
@@ -57,15 +57,15 @@ def commands(
 
     return (
         Command("Check the version of the tool", f"fretc --version   # fretc {__version__}"),
-        *_command("Check that the runs are those that were audited", lambda: _check(runs)),
+        *_command("Check that the logs are the audited ones", lambda: _check(runs)),
         *_command("Audit the runs", audit),
         *_emissions(sections),
-        *_command("Write this report", report),
+        *_command("Generate this report", report),
     )
 
 
 def _command(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
-    """The command; none where its text is empty."""
+    """The command, or nothing if its text is empty."""
     try:
         command = text()
     except UnencodableNameError as error:
@@ -75,7 +75,7 @@ def _command(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
 
 
 def _log(run: str) -> str:
-    """Its path, of an absolute one the last part."""
+    """The path of a run; only the last part of an absolute path."""
     return STDIN if run == name_of(STDIN) else shell_word(path_of(phrases.place(run)))
 
 
@@ -99,23 +99,23 @@ def folder_of(project: Project) -> str:
 
 
 def _folder(path: str) -> str:
-    """The folder of a file; of an absolute path only its name."""
+    """The folder of a file; only the name of the folder if the path is absolute."""
     folder = PurePath(path).parent
     return str(folder) if phrases.place(path) == path else folder.name or str(folder)
 
 
 def _files(project: Project) -> list[Source]:
-    """The files of the requirements, each once."""
+    """The files of the requirements, without duplicates."""
     return list({r.wording.source.name: r.wording.source for r in project.requirements}.values())
 
 
 def _check(runs: Sequence[Run]) -> str:
     facts = [run.facts for run in runs if run.facts.log and _is_file(run.facts.run)]
-    return check_of((each.log, phrases.place(path_of(each.run))) for each in facts)
+    return check_of((fact.log, phrases.place(path_of(fact.run))) for fact in facts)
 
 
 def _is_file(run: str) -> bool:
-    """Whether `sha256sum` reads the run: no folder, no URL, no standard input."""
+    """Whether `sha256sum` can read the run: it is not a folder, a URL or standard input."""
     return PurePath(run).suffix in (".mcap", ".bag", ".db3") and "://" not in run
 
 
@@ -133,7 +133,7 @@ def _emissions(sections: Sequence[RequirementView]) -> Iterable[Command]:
     for kinds, files in groups.items():
         if kinds:
             emits = " ".join(f"--emit {kind}" for kind in kinds)
-            yield from _command("Make the artefacts", partial(_emission, files, emits))
+            yield from _command("Generate the artefacts", partial(_emission, files, emits))
 
 
 def _emission(files: Sequence[str], emits: str) -> str:
@@ -141,11 +141,16 @@ def _emission(files: Sequence[str], emits: str) -> str:
 
 
 def _of_bindings(project: Project) -> str:
-    """SHA-256 as in the evidence: of the bindings that requirements in force read."""
+    """SHA-256 of the bindings that requirements in force read, as in the evidence."""
     requirements = {id(requirement.entry): requirement for requirement in project.formalized}
-    inforce = [each for each in project.requirements if each.status != "retired"]
+    inforce = [
+        requirement for requirement in project.requirements if requirement.status != "retired"
+    ]
     return of_all(
-        {each.id: of_bindings(requirements.get(id(each)), project.declarations) for each in inforce}
+        {
+            requirement.id: of_bindings(requirements.get(id(requirement)), project.declarations)
+            for requirement in inforce
+        }
     )
 
 
@@ -158,7 +163,7 @@ def manifest(
     signers: Signers | None = None,
     together: AnalyzedSet | None = None,
 ) -> tuple[Hash, ...]:
-    """Every hash that the report rests on."""
+    """The hashes of all inputs of the report."""
     bindings = project.declarations
     lines = [Hash("sentence", section.id, section.fingerprint) for section in sections]
     if bindings is not None:

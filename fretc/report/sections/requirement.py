@@ -36,7 +36,7 @@ from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.results import reasons, result_rows
 from fretc.report.sections.reviews import review, waiver
 from fretc.report.sections.runs import Run, RunKey
-from fretc.report.traceability.artefacts import Product
+from fretc.traceability.artefacts import Product
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -63,13 +63,13 @@ def section(
         assessment: of the requirement.
         project: with or without errors.
         runs: all runs.
-        anchors: of the section of each requirement, by its id.
+        anchors: id → anchor of the section of a requirement.
         audited: whether there is any evidence.
-        proofs: about all requirements, and about shared parts.
-        shared_products: what targets make from the bindings alone.
-        joint: SHA-256 of the monitors of all requirements together.
-        book: who signed what.
-        situations: that runs have shown; None where no run has been audited.
+        proofs: proofs about all requirements and about shared parts.
+        shared_products: files that targets generate from the bindings.
+        joint: SHA-256 of the joint monitors.
+        book: the checked signatures.
+        situations: situations that runs have shown; None if no run was audited.
     """
     entry, requirement = assessment.entry, assessment.requirement
     products = (*assessment.products, *shared_products)
@@ -117,7 +117,7 @@ def section(
 
 
 def _limit(requirement: FormalizedRequirement | None) -> str:
-    """Why no run can violate it; many runs decide about a probability, so it has no limit."""
+    """Why no run can violate the requirement, or ""; a probability is judged over many runs."""
     return (
         ""
         if requirement is None or requirement.sentence.probability is not None
@@ -165,11 +165,13 @@ def _formulas(requirement: FormalizedRequirement) -> tuple[Formula, ...]:
         Formula("Future time", "infinite traces", printing.readable(requirement.ft_infinite)),
         Formula(
             "Future time, finite",
-            "finite traces, read at the first tick; LAST holds at the last one",
+            "finite traces, evaluated at the first tick; LAST holds at the last tick",
             printing.readable(requirement.ft_finite),
         ),
         Formula(
-            "Past time", "finite traces, read at the last tick", printing.readable(requirement.pt)
+            "Past time",
+            "finite traces, evaluated at the last tick",
+            printing.readable(requirement.pt),
         ),
     )
 
@@ -214,12 +216,12 @@ def _proposition(name: str, declared: Declarations | None) -> PropositionView:
         text=bound.text,
         expression=_expression(declared, bound),
         properties=_properties(bound),
-        signals=tuple(_signal(declared.signals[each]) for each in bound.signals),
+        signals=tuple(_signal(declared.signals[signal]) for signal in bound.signals),
     )
 
 
 def _expression(declared: Declarations, bound: Proposition) -> str:
-    """The expression, as the bindings write it; what only a sentence states, in their language."""
+    """The expression of a proposition, in the syntax of the bindings."""
     written = _written(declared.source.text)
     if bound.name not in written:
         return printed(bound.expression)
@@ -228,7 +230,7 @@ def _expression(declared: Declarations, bound: Proposition) -> str:
 
 @lru_cache(maxsize=1)
 def _written(bindings: str) -> Mapping[str, Any]:
-    """The propositions of bindings, as they are written."""
+    """Proposition → its text in the bindings."""
     written: Mapping[str, Any] = tomllib.loads(bindings).get("proposition", {})
     return written
 
@@ -236,7 +238,7 @@ def _written(bindings: str) -> Mapping[str, Any]:
 def _properties(bound: Proposition) -> str:
     unknown = "unknown" if bound.on_unknown is None else str(bound.on_unknown).lower()
     parts = [str(bound.role), *([bound.kind] if bound.kind else [])]
-    return f"{', '.join(parts)}; of a tick counts: {bound.aggregate}; where unknown: {unknown}"
+    return f"{', '.join(parts)}; value of a tick: {bound.aggregate}; if unknown: {unknown}"
 
 
 def _signal(signal: Signal) -> SignalView:

@@ -40,11 +40,11 @@ from fretish.clock import Clock
 from fretish.meaning import span
 
 LISTED = 100
-"""The most violations, open demands and unknown stretches; the evidence file has them all."""
+"""Maximum number of listed violations, open obligations and unknown intervals."""
 _WAITS = 5
-"""The most waits of a result."""
+"""Maximum number of listed waits of a result."""
 _NAMED = 10
-"""The most runs among the reasons why a requirement is not shown."""
+"""Maximum number of runs among the reasons why a requirement is not shown."""
 
 
 def result_rows(assessment: Assessment, runs: Mapping[RunKey, Run]) -> tuple[ResultRow, ...]:
@@ -83,12 +83,12 @@ def result_view(
     """The view of a result.
 
     Args:
-        result: in declared units.
-        row: of the same result.
-        assessment: of its requirement.
+        result: the result, in declared units.
+        row: the row of the same result.
+        assessment: the assessment of its requirement.
         declared: the bindings.
     """
-    # A stale result was judged by other bindings: the clock and the ages of now are not its own.
+    # The present clock and age limits do not apply to a result of other bindings.
     is_stale = assessment.audits[row.number - 1].is_stale
     bindings, requirement = (None, None) if is_stale else (declared, assessment.requirement)
     tick, ages = _tick(result, bindings.clock if bindings else None), _ages(bindings)
@@ -115,7 +115,7 @@ def result_view(
 
 
 def _tick(result: Result, clock: Clock | None) -> float:
-    """Seconds of a tick; the average where the clock ticks by message or is not known."""
+    """Length of a tick in seconds; an average if ticks are messages or the clock is unknown."""
     if clock is not None and clock.period:
         return clock.period / 1e9
     if result.start_ns is None or result.end_ns is None or result.end_ns <= result.start_ns:
@@ -180,7 +180,7 @@ def _latency(result: Result, requirement: FormalizedRequirement | None) -> Laten
 
 
 def is_bounded(requirement: FormalizedRequirement | None) -> bool:
-    """Whether the sentence allows an answer only for some time, as far as is known."""
+    """Whether the sentence limits the time of the response; True if unknown."""
     return requirement is None or not syntax.is_eventual(requirement.sentence.timing)
 
 
@@ -193,11 +193,8 @@ def _bound(requirement: FormalizedRequirement | None) -> str:
     if not syntax.is_eventual(requirement.sentence.timing):
         return ""
     word = syntax.timing_key(requirement.sentence)
-    how = "gives no timing, which means `eventually`" if word == "null" else f"says `{word}`"
-    return (
-        f"No bound was required: the sentence {how}, so a response satisfies it however late it "
-        "comes."
-    )
+    how = "has no timing, which means `eventually`" if word == "null" else f"says `{word}`"
+    return f"No bound was required: the sentence {how}, so a response at any time satisfies it."
 
 
 def _waits(result: Result) -> tuple[str, ...]:
@@ -239,7 +236,7 @@ def _violation(
         values=tuple(
             (name, reading(name, violation, result, ages)) for name in sorted(violation.values)
         ),
-        causes=tuple(dict.fromkeys(each.text for each in causes(violation, result, requirement))),
+        causes=tuple(dict.fromkeys(cause.text for cause in causes(violation, result, requirement))),
     )
 
 
@@ -250,7 +247,7 @@ def _at(moment: Moment) -> str:
 def _threshold(threshold: Threshold) -> ThresholdView:
     kept, unit, bound = threshold.comparison, threshold.unit, threshold.bound
     least, greatest = (
-        phrases.value(each, unit, [bound]) for each in (threshold.least, threshold.greatest)
+        phrases.value(number, unit, [bound]) for number in (threshold.least, threshold.greatest)
     )
     margin = {None: "never known", "crossed": "crossed"}.get(kept) or (
         "always out of range"
@@ -284,11 +281,11 @@ def _since(stretch: Sequence[Moment], uncertain: Collection[int]) -> str:
 
 
 def _perhaps(count: int, of: int) -> str:
-    """How many are uncertain because propositions are unknown; empty where none is."""
+    """A phrase with the number of uncertain items, or ""."""
     if not count:
         return ""
     some = "" if of == 1 else "all of them " if count == of else f"{count} of them "
-    return f", {some}uncertain for propositions are unknown"
+    return f", {some}uncertain because propositions are unknown"
 
 
 def _unknown(result: Result) -> Listing:
@@ -307,7 +304,7 @@ def _unknown(result: Result) -> Listing:
 def reasons(
     assessment: Assessment, runs: Mapping[RunKey, Run], *, audited: bool
 ) -> tuple[str, ...]:
-    """Why a requirement is not shown, the worst first; empty where it is, or is retired."""
+    """Why a requirement is not shown, worst reason first; empty if it is shown or retired."""
     if assessment.is_shown or assessment.unwaived == RETIRED:
         return ()
     lines = [(severity(UNFORMALIZED), text) for text in _unformalized(assessment)]

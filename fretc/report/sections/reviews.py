@@ -21,10 +21,10 @@ from fretc.report.model.changes import (
 )
 from fretc.report.model.views import ReviewView, WaiverView, sign_mark
 from fretc.report.sections.signatures import of_review, of_waiver
-from fretc.report.traceability.changes import Change as TextChange
-from fretc.report.traceability.comparison import OTHER_TEXTS, Difference, difference
-from fretc.report.traceability.lock import Review, WithdrawnRequirement
-from fretish.diagnostics import status_symbols as signs
+from fretc.traceability.changes import Change as TextChange
+from fretc.traceability.comparison import OTHER_TEXTS, Difference, difference
+from fretc.traceability.lock import Review, WithdrawnRequirement
+from fretish.diagnostics import signs
 
 _ACCEPTED = sign_mark("reviewed", signs.GOOD)
 _UNSIGNED = sign_mark("reviewed", signs.OPEN)
@@ -47,7 +47,7 @@ def review(assessment: Assessment, book: SignatureBook) -> ReviewView:
 
 
 def waiver(assessment: Assessment, book: SignatureBook) -> WaiverView | None:
-    """The waiver that counts today."""
+    """The view of the waiver that is valid today."""
     granted = assessment.waiver
     if granted is None:
         return None
@@ -60,15 +60,19 @@ def waiver(assessment: Assessment, book: SignatureBook) -> WaiverView | None:
 
 
 def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
-    """The number of reviews, of those that stand, and of those without a signature."""
-    standings = [each.standing for each in assessments if each.standing.review is not None]
+    """Sentences with the number of reviews, of current ones, and of unsigned ones."""
+    standings = [
+        assessment.standing for assessment in assessments if assessment.standing.review is not None
+    ]
     if not standings:
         return "No requirement has been reviewed."
     suspect = sum(standing.is_suspect for standing in standings)
     verb = "stands" if suspect == 1 else "stand"
-    stands = f"; {suspect} of these reviews no longer {verb}" if suspect else ", and all stand"
+    stands = (
+        f"; {suspect} of these reviews no longer {verb}" if suspect else ", all reviews are current"
+    )
     reviews = [standing.review for standing in standings if standing.review is not None]
-    unsigned = sum(not of_review(book, each).is_good for each in reviews)
+    unsigned = sum(not of_review(book, standing).is_good for standing in reviews)
     verb = "is" if unsigned == 1 else "are"
     who = f" {unsigned} of {len(standings)} {verb} unauthenticated." if unsigned else ""
     count = phrases.times(len(assessments), "requirement")
@@ -77,29 +81,29 @@ def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
 
 def changes(assessments: Sequence[Assessment], project: Project) -> tuple[Change, ...]:
     """The changes of each requirement since its review; one without changes is left out."""
-    reviewed = [each for each in assessments if each.standing.review]
-    pairs = [(each, difference(each.standing, project)) for each in reviewed]
+    reviewed = [assessment for assessment in assessments if assessment.standing.review]
+    pairs = [(assessment, difference(assessment.standing, project)) for assessment in reviewed]
     return tuple(_change(each, change) for each, change in pairs if change.state != "same")
 
 
 def change_groups(
     assessments: Sequence[Assessment], changes: Sequence[Change]
 ) -> tuple[ChangeGroup, ...]:
-    """Each change once, with all requirements that it touches.
+    """The distinct changes, each with all requirements that it affects.
 
-    One that may be why its requirements have the most new violations each comes first.
+    The change whose requirements have the most new violations comes first.
     """
     violations = {change.anchor: new_violations(change) for change in changes}
     touched: dict[ChangeText, list[tuple[str, str]]] = {}
     links: Counter[ChangeText] = Counter()
     judged: set[ChangeText] = set()
-    for each in assessments:
-        for change in each.standing.changes:
+    for assessment in assessments:
+        for change in assessment.standing.changes:
             text = _text(change)
-            touched.setdefault(text, []).append((each.id, each.anchor))
+            touched.setdefault(text, []).append((assessment.id, assessment.anchor))
             if change.node.kind in KINDS:
                 judged.add(text)
-            links[text] += sum(map(change.makes_suspect, each.standing.suspects))
+            links[text] += sum(map(change.makes_suspect, assessment.standing.suspects))
     groups = [ChangeGroup(text, tuple(of), links[text]) for text, of in touched.items()]
 
     def worst_first(group: ChangeGroup) -> tuple[float, int]:
@@ -111,7 +115,7 @@ def change_groups(
 
 
 def change_sentences(changes: Sequence[Change], groups: Sequence[ChangeGroup]) -> Iterator[str]:
-    """What has changed since the review, what became of verdicts, and what contradicts it."""
+    """Sentences about changes since the review, changed verdicts, and contradictions."""
     for group in groups[:_SENTENCES]:
         named = phrases.some([id for id, _ in group.requirements])
         only = only_change(group, changes)
@@ -130,25 +134,25 @@ _SENTENCES = 3
 
 
 def withdrawals(withdrawn: Sequence[WithdrawnRequirement]) -> tuple[Change, ...]:
-    """A change for each requirement that is gone; a retired one is among `changes` already."""
+    """A change for each removed requirement; retired ones are already among `changes`."""
     return tuple(
         Change(
-            requirement=one.review.requirement,
-            title=one.review.texts.title if one.review.texts else "",
+            requirement=withdrawal.review.requirement,
+            title=withdrawal.review.texts.title if withdrawal.review.texts else "",
             anchor="",
             state="gone",
-            by=_by(one.review),
+            by=_by(withdrawal.review),
             texts=(),
-            lines=(one.text,),
+            lines=(withdrawal.text,),
             contradictions=(),
             consequences=(),
             suspicion="",
             verdicts=tuple(
-                (run, then, "none") for run, then in sorted(one.review.verdicts.items())
+                (run, then, "none") for run, then in sorted(withdrawal.review.verdicts.items())
             ),
         )
-        for one in withdrawn
-        if not one.retired
+        for withdrawal in withdrawn
+        if not withdrawal.retired
     )
 
 
@@ -162,7 +166,7 @@ def _change(assessment: Assessment, difference: Difference) -> Change:
         state=difference.state,
         by=_by(difference.review) if difference.review else "",
         texts=texts,
-        lines=(*(each.text for each in texts), *other),
+        lines=(*(text.text for text in texts), *other),
         contradictions=difference.contradictions,
         consequences=difference.consequences,
         suspicion=difference.suspicion,

@@ -21,8 +21,8 @@ from fretc.audit.evidence.result_summaries import (
 from fretc.audit.evidence.schema import Checked, Finding, Topic
 from fretc.report.model import phrases
 from fretc.report.model.views import Remark, RunSummary, TopicView, sign_mark
-from fretc.report.traceability.acceptances import as_diagnostic
-from fretish.diagnostics import status_symbols as signs
+from fretc.traceability.acceptances import as_diagnostic
+from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import Severity
 
 _NONE = "\N{EN DASH}"
@@ -37,16 +37,16 @@ class Run:
 
     number: int
     facts: RunFacts
-    """Without its topics, which are many: `topic_views` has those of one run."""
+    """Facts without topics, because there may be many; `topic_views` reads the topics of a run."""
     has_topics: bool
     first: int = 0
-    """The place of its first result in the evidence: that one has the course of the run."""
+    """Index of the first result of the run, which contains the plot data of the run."""
     name: str = ""
-    """What tells it from the other runs: that of its file, as far as it is needed."""
+    """A short unique name, from the name of the file."""
 
     @cached_property
     def anchor(self) -> str:
-        """The anchor of its section; one text for all its results."""
+        """The anchor of the section of the run."""
         return f"run-{self.number}"
 
 
@@ -77,11 +77,11 @@ def runs(briefs: ResultSummaries | None) -> dict[RunKey, Run]:
 
 _SEPARATOR = re.compile(r"[/\\]+")
 _LONGEST = 60
-"""Characters of a name."""
+"""Maximum number of characters of a name."""
 
 
 def run_names(logs: Sequence[str]) -> list[str]:
-    """A name for each run, all different: `safety-off-2`; alike ones have a number behind them."""
+    """A unique name for each run, such as `safety-off-2`; equal names get a number."""
     names = file_names(inner_paths(logs))
     counts = Counter(names)
     return [
@@ -91,19 +91,19 @@ def run_names(logs: Sequence[str]) -> list[str]:
 
 
 def inner_paths(logs: Sequence[str]) -> list[list[str]]:
-    """The paths without the folders that all of them share: no place of one machine is said."""
+    """The paths without their common folders, so that the report is independent of the machine."""
     paths = [_SEPARATOR.split(log) for log in logs]
     shared = alike([path[:-1] for path in paths])
     return [path[shared:] for path in paths]
 
 
 def alike(sequences: Sequence[Sequence[str]]) -> int:
-    """With how many of the same elements all of them begin."""
+    """The length of the common prefix of sequences."""
     return sum(1 for _ in takewhile(lambda same: len({*same}) == 1, zip(*sequences, strict=False)))
 
 
 def file_names(paths: Sequence[Sequence[str]]) -> list[str]:
-    """The name of each file, without an ending that all share; with its folder where needed."""
+    """The name of each file, without a common ending, and with its folder if needed."""
     endings = {path[-1].rpartition(".")[1:] for path in paths}
     cut = sum(map(len, next(iter(endings)))) if len(endings) == 1 else 0
     cut = cut if all(len(path[-1]) > cut for path in paths) else 0
@@ -127,13 +127,13 @@ def run_summaries(runs: Iterable[Run], project: Project) -> tuple[RunSummary, ..
 
 
 def _severity(run: Run) -> tuple[bool, bool, bool, bool]:
-    """The key that sorts runs: errors, damage, other findings, gaps."""
+    """Sort key of runs: errors, damage, other findings, gaps."""
     health = run.facts.health
     return not _errors(run), health.intact, not health.findings, not health.gaps
 
 
 def _errors(run: Run) -> list[str]:
-    """The codes of its errors, each once."""
+    """The codes of the errors of a run, without duplicates."""
     codes = (f.code for f in run.facts.health.findings if f.severity == Severity.ERROR.value)
     return list(dict.fromkeys(codes))
 
@@ -155,7 +155,9 @@ def _summary(run: Run, project: Project) -> RunSummary:
         health=_INTACT if health.intact else _DAMAGED if run.has_topics else _UNREAD,
         checked=_checked(health.checked, hashed=not facts.log_summary),
         gaps=_gaps(facts),
-        findings=tuple(_finding(each, project) for each in sorted(health.findings, key=_badness)),
+        findings=tuple(
+            _finding(finding, project) for finding in sorted(health.findings, key=_badness)
+        ),
     )
 
 
@@ -171,21 +173,21 @@ def _duration(facts: RunFacts) -> str:
 
 
 def _checked(checked: Checked | None, *, hashed: bool) -> str:
-    """The checks of the file, and what they left out."""
+    """The checks of the file, and the parts that were not checked."""
     if checked is None:
         return "not known"
     if not checked.chunks:
-        return "every record was read" if not checked.by_index else "nothing: it has no chunks"
+        return "every record was read" if not checked.by_index else "nothing: the log has no chunks"
     parts = [
         f"{count} of {checked.chunks} chunks {what}"
         for count, what in (
-            (checked.crc_checked, "have the CRC that they state"),
+            (checked.crc_checked, "match their CRC"),
             (
                 checked.crc_unchecked,
-                "have a CRC that was not checked: only their beginning was read",
+                "have a CRC that was not checked, because only their beginning was read",
             ),
-            (checked.without_crc, "state no CRC"),
-            (checked.skipped, "hold nothing that is bound and were not read"),
+            (checked.without_crc, "have no CRC"),
+            (checked.skipped, "contain no bound topic and were not read"),
         )
         if count
     ]
@@ -203,7 +205,7 @@ def _gaps(facts: RunFacts) -> tuple[str, ...]:
 
 
 def _badness(finding: Finding) -> int:
-    """The key that sorts findings."""
+    """Sort key of findings."""
     return [str(severity) for severity in Severity].index(finding.severity)
 
 
@@ -218,7 +220,7 @@ def _finding(finding: Finding, project: Project) -> Remark:
 
 
 def _accepted(finding: Finding, project: Project) -> str:
-    """Why the project accepts it; empty where it does not."""
+    """The reason why the project accepts a finding, or ""."""
     (answered,) = project.answered([as_diagnostic(finding)])
     return answered.accepted
 
@@ -243,7 +245,7 @@ def _longest_gap(topic: Topic) -> str:
 
 
 def _rate(topic: Topic) -> str:
-    """Messages a second, between the first and the last."""
+    """Messages per second, between the first and the last message."""
     if topic.first_ns is None or topic.last_ns is None or topic.last_ns <= topic.first_ns:
         return _NONE
     rate = (topic.count - 1) * 1e9 / (topic.last_ns - topic.first_ns)
@@ -257,12 +259,12 @@ def _named(run: Run) -> str:
 
 
 def _is_open(run: Run, project: Project) -> bool:
-    """Whether it has a finding that the project does not accept."""
+    """Whether the run has a finding that the project does not accept."""
     return not all(_accepted(finding, project) for finding in run.facts.health.findings)
 
 
 def trust(runs: Sequence[Run], project: Project) -> str:
-    """The condition of the runs, in one sentence; empty where there is no run."""
+    """The condition of the runs in one sentence; "" if there is no run."""
     damaged = [_named(run) for run in runs if not run.facts.health.intact]
     wrong = [_named(run) for run in runs if run.facts.health.intact and _errors(run)]
     with_findings = [run.name for run in runs if _is_open(run, project)]

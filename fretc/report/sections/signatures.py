@@ -12,8 +12,8 @@ from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import Signatures, SignatureView, Signed, sign_mark
-from fretc.report.traceability.lock import Review
-from fretc.report.traceability.waivers import Waiver
+from fretc.traceability.lock import Review
+from fretc.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
@@ -56,7 +56,7 @@ def signatures(
     signers = book.signers.signers if book.signers else ()
     return Signatures(
         file=phrases.place(book.signers.file) if book.signers else "",
-        signers=tuple(f"{', '.join(one.principals)}: {one.key.text}" for one in signers),
+        signers=tuple(f"{', '.join(signer.principals)}: {signer.key.text}" for signer in signers),
         signed=(
             *_broken(book),
             *_files(book, evidence, proofs, together),
@@ -66,11 +66,11 @@ def signatures(
 
 
 def _broken(book: SignatureBook) -> Iterator[Signed]:
-    for one in book.envelopes:
-        for signer in one.broken:
-            place = one.envelope.place
+    for envelope in book.envelopes:
+        for signer in envelope.broken:
+            place = envelope.envelope.place
             where = f"{phrases.place(place.source.name)}:{place.line}"
-            text = f"it is not by {signer.name}, or not about this"
+            text = f"the signature is not by {signer.name}, or not about this item"
             yield Signed("signature", where, "", SignatureView(BROKEN, text, False))
 
 
@@ -91,7 +91,7 @@ def _files(
 
 
 def _file(book: SignatureBook, subject: Subject) -> Signed:
-    """A file is signed under the last part of its name."""
+    """The signature of a file, which is signed under its base name."""
     return Signed(subject.kind, subject.name, "", _view(book.of_file(subject.kind, subject.sha256)))
 
 
@@ -107,7 +107,7 @@ def _people(book: SignatureBook, assessments: Sequence[Assessment]) -> Iterator[
 
 
 def idle_signatures(book: SignatureBook, assessments: Sequence[Assessment]) -> Iterator[Diagnostic]:
-    """F559 for each review and waiver with a signature that does not count."""
+    """F559 for each review and waiver with an invalid signature."""
     for assessment in assessments:
         review, waiver = assessment.standing.review, assessment.waiver
         if review is not None:
@@ -121,7 +121,7 @@ def _idle(what: str, signing: Signing) -> Iterator[Diagnostic]:
         yield Diagnostic(
             Code.IDLE_SIGNATURE,
             f"{what} is unauthenticated: {signing.text}",
-            help="have its reviewer sign it: `fretc sign FILE --key KEY`; `allowed_signers` names "
-            "whose keys count",
+            help="ask the reviewer to sign: `fretc sign FILE --key KEY`; `allowed_signers` "
+            "lists the valid keys",
             severity=Severity.WARNING,
         )

@@ -1,4 +1,4 @@
-"""Evidence of `fretc analyze` → what the report says of it, and of its currency."""
+"""The view of the file of `fretc analyze`, and whether it is up to date."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ _WORDS: Mapping[Verdict, str] = {
 
 
 def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str]) -> SetAnalysis:
-    """All of it.
+    """The view of the analysis.
 
     Args:
-        known: the evidence.
-        project: as it is now.
-        anchors: of the requirement of each id.
+        known: the file of `fretc analyze`.
+        project: the present project.
+        anchors: id → anchor of the requirement.
     """
     requirements = [
         requirement for requirement in project.formalized if requirement.entry.status != RETIRED
@@ -50,7 +50,11 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
     assumed, mistakes = assumptions(requirements, project.declarations)
     old = [
         *suspicions(known.document, requirements, assumed),
-        *(f"an assumption has a mistake: {each.message}" for each in mistakes if each.is_error),
+        *(
+            f"an assumption has an error: {mistake.message}"
+            for mistake in mistakes
+            if mistake.is_error
+        ),
     ]
     analysis = known.document.analysis
     view = _Views(known.document, anchors)
@@ -60,30 +64,35 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
         mark=replace(_mark(analysis.verdict), suspect=bool(old)),
         headline=_headline(analysis),
         suspicions=tuple(old),
-        left_out=tuple(each.id for each in project.without_rule if each.status != RETIRED),
+        left_out=tuple(entry.id for entry in project.without_rule if entry.status != RETIRED),
         components=tuple(
             SetComponent(
-                _mark(each.verdict), view.members(each.requirements), each.outputs, each.why
+                _mark(component.verdict),
+                view.members(component.requirements),
+                component.outputs,
+                component.why,
             )
-            for each in analysis.components
+            for component in analysis.components
         ),
         conflicts=tuple(
             SetConflict(
-                view.members(each.requirements), each.because, view.play(each.play, each.loop)
+                view.members(conflict.requirements),
+                conflict.because,
+                view.play(conflict.play, conflict.loop),
             )
-            for each in analysis.conflicts
+            for conflict in analysis.conflicts
         ),
         complete=analysis.complete,
         clashes=tuple(
-            SetConflict(view.members(each.requirements), "", view.play(each.play, None))
-            for each in analysis.inconsistent
+            SetConflict(view.members(conflict.requirements), "", view.play(conflict.play, None))
+            for conflict in analysis.inconsistent
         ),
         remarks=tuple(text.strip() for text, _ in remarks(analysis)),
-        assumptions=tuple(each.in_words for each in analysis.assumptions),
+        assumptions=tuple(assumption.in_words for assumption in analysis.assumptions),
         inputs=_of_role(analysis, Role.INPUT),
         outputs=_of_role(analysis, Role.OUTPUT),
         terms=analysis.terms,
-        open=tuple(f"{each.question}: {each.why}" for each in analysis.open),
+        open=tuple(f"{question.question}: {question.why}" for question in analysis.open),
     )
 
 
@@ -96,7 +105,7 @@ def _of_role(analysis: Analysis, role: Role) -> tuple[str, ...]:
 
 
 def _headline(analysis: Analysis) -> str:
-    """The answer, in a sentence."""
+    """The result in a sentence."""
     match analysis.verdict:
         case Verdict.REALIZABLE:
             held = ", while the assumptions hold" if analysis.assumptions else ""
@@ -114,7 +123,7 @@ def _headline(analysis: Analysis) -> str:
 
 
 class _Views:
-    """What members and plays look like."""
+    """Builds views of members and runs."""
 
     def __init__(self, document: Document, anchors: Mapping[str, str]) -> None:
         self._document, self._anchors = document, anchors
@@ -124,15 +133,17 @@ class _Views:
         return tuple(SetMember(id, self._anchors.get(id, ""), known[id].sentence) for id in ids)
 
     def play(self, ticks: Sequence[Mapping[str, object]], loop: int | None) -> Play:
-        """A play in columns; `loop` is a tick."""
+        """The view of a run in columns; `loop` is a tick."""
         roles = self._document.analysis.roles
         names = lanes(ticks, roles)
         found = columns(ticks, names)
         back = [i for i, each in enumerate(found) if loop is not None and each.first <= loop]
         return Play(
-            tuple(each.head for each in found),
+            tuple(conflict.head for conflict in found),
             tuple(
-                PlayLane(name, str(roles.get(name, "")), tuple(each.values[i] for each in found))
+                PlayLane(
+                    name, str(roles.get(name, "")), tuple(conflict.values[i] for conflict in found)
+                )
                 for i, name in enumerate(names)
             ),
             back[-1] if back else None,
@@ -143,7 +154,7 @@ class _Views:
 
 
 def sentence(found: SetAnalysis) -> str:
-    """What the headline has to say of it; empty where all is well."""
+    """The sentence for the headline; "" if the analysis is good."""
     if found.is_good:
         return ""
     parts = [] if found.mark.word == REALIZABLE else [found.headline]
@@ -152,12 +163,12 @@ def sentence(found: SetAnalysis) -> str:
         parts.append(f"The analysis of all requirements together is suspect: {why}.")
     if found.left_out:
         names = phrases.some(found.left_out)
-        parts.append(f"Nobody has asked whether {names} can be kept with the others.")
+        parts.append(f"Not analyzed: whether {names} can be kept together with the others.")
     return " ".join(parts)
 
 
 def in_overall(overall: Overall, found: SetAnalysis | None) -> Overall:
-    """The overall result with what is known of all requirements together."""
+    """The overall result, extended by the result of the analysis."""
     if found is None:
         return overall
     if found.is_good:
@@ -171,7 +182,7 @@ def in_overall(overall: Overall, found: SetAnalysis | None) -> Overall:
 
 
 def in_front(front: Front, found: SetAnalysis | None) -> Front:
-    """The first screen with the same; a headline of its own says it, too."""
+    """The first screen, extended by the result of the analysis unless the headline contains it."""
     said = "" if found is None else sentence(found)
     if not said or said in front.headline:
         return front

@@ -1,4 +1,4 @@
-"""The picture of a play: a lane for each variable, a column for each run of equal ticks."""
+"""The picture of a run: a lane for each variable, a column for each group of equal ticks."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ _LETTER = 7
 _COLUMN, _NARROWEST = 64, 34
 _WIDTH = 960
 _MOST = 18
-"""Columns that are drawn; of more the first ones and the last ones, with a gap between them."""
+"""Maximum number of columns; of more, the first and the last ones are drawn, with a gap."""
 _LONGEST = 34
-"""Characters of a name that are drawn."""
+"""Maximum number of characters of a name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,14 +26,14 @@ class DrawnLane:
     title: str
     y: int
     base: str
-    """A thin line where `0` is."""
+    """A thin line at the level of `0`."""
     path: str
     texts: tuple[tuple[float, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnPlay:
-    """The layout; `last` are the columns of the breach, or of what comes again for ever."""
+    """The layout; `last` are the columns of the violation, or of the loop."""
 
     id: str
     title: str
@@ -43,21 +43,21 @@ class DrawnPlay:
     lanes: tuple[DrawnLane, ...]
     heads: tuple[tuple[float, str], ...]
     last: tuple[float, float] | None
-    """Where these columns begin, and how wide they are; None: the run breaks nothing."""
+    """Left edge and width of these columns; None if the run violates nothing."""
     top: int
     bottom: int
     gap: float | None
-    """Where columns are left out."""
+    """The x coordinate of the gap, or None."""
 
 
 def drawing(play: Play, id: str, title: str, *, breaks: bool) -> DrawnPlay | None:
-    """The layout of a play; None where it has no tick, or no variable.
+    """The layout of a run; None if it has no tick or no variable.
 
     Args:
-        play: a run.
-        id: of the picture.
-        title: of the picture.
-        breaks: whether a requirement is broken, at its end or for ever.
+        play: the run.
+        id: id of the picture.
+        title: title of the picture.
+        breaks: whether the run violates a requirement.
     """
     count = len(play.ticks)
     if not count or not play.lanes:
@@ -112,7 +112,7 @@ def _lane(lane: PlayLane, values: Sequence[str], left: float, column: float, y: 
 
 
 def _steps(values: Sequence[str], left: float, column: float, y: int) -> Iterator[str]:
-    """A line that is high where the value is 1."""
+    """The path of a step line of 0 and 1."""
     for place, value in enumerate(values):
         level = y + 4 if value == "1" else y + _HIGH + 4
         yield f"{'L' if place else 'M'}{left + column * place:.1f} {level}"
@@ -124,7 +124,7 @@ def _middle(place: int, left: float, column: float) -> float:
 
 
 def _in_words(play: Play, *, breaks: bool) -> str:
-    """What the picture shows, for who does not see it."""
-    end = "a requirement is broken at the last one" if breaks else "no requirement is broken"
-    end = end if play.loop is None else "the marked ones come again for ever"
+    """The text alternative of the picture."""
+    end = "a requirement is violated at the last tick" if breaks else "no requirement is violated"
+    end = end if play.loop is None else "the marked ticks repeat for ever"
     return f"Ticks {play.ticks[0]} to {play.ticks[-1]}; {end}. The table below has all values."

@@ -152,7 +152,7 @@ def test_an_encrypted_key_needs_its_passphrase(kind: str) -> None:
         public = private_key(data, lambda: "open sesame").public
         assert public == public_key(keys.public(PAIRS[kind]))
         for passphrase in some(("", "open", "öpen"), 2 if kind == KINDS[0] else 3):
-            with pytest.raises(UnusableKeyError, match="its passphrase is another one"):
+            with pytest.raises(UnusableKeyError, match="the passphrase is wrong"):
                 private_key(data, lambda passphrase=passphrase: passphrase)  # type: ignore[misc]
 
 
@@ -167,13 +167,13 @@ def test_keys_that_do_not_count_are_refused_with_a_reason() -> None:
     old = dsa.generate_private_key(1024).public_key()
     text = old.public_bytes(Encoding.PEM, PublicFormat.SubjectPublicKeyInfo).decode()
     for key, why in (
-        (small, "an RSA key has 2048 bits at least, 16384 at most"),
-        (text, "only Ed25519, ECDSA and RSA keys are taken"),
-        ("sk-ssh-ed25519@openssh.com AAAA", "it is no public key of `ssh-ed25519`"),
-        ("ssh-ed25519-cert-v01@openssh.com AAAA", "it is no public key of"),
+        (small, "an RSA key has 2048 bits or more, up to 16384"),
+        (text, "only Ed25519, ECDSA and RSA keys are supported"),
+        ("sk-ssh-ed25519@openssh.com AAAA", "it is not a public key of type `ssh-ed25519`"),
+        ("ssh-ed25519-cert-v01@openssh.com AAAA", "it is not a public key of type"),
         ("ssh-ed25519 AAAA", "."),
         ("ssh-ed25519", "."),
-        ("", "it is no public key of"),
+        ("", "it is not a public key of type"),
     ):
         with pytest.raises(UnusableKeyError, match=why):
             public_key(key)

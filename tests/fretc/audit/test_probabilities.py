@@ -522,10 +522,10 @@ def test_what_all_runs_say_is_made_again_with_the_evidence(fretc: Fretc) -> None
     write("build/evidence.json", text.replace('"refuted"', '"supported"'))
     run = fretc("verify-evidence")
     assert run.status == 1
-    assert "✘ R7  differs: the answer is refuted, and was supported\n" in run.out
+    assert "✘ R7  differs: the answer is refuted now, and was supported\n" in run.out
     for field, value, reason in [
-        ("confidence", 0.99, "differs: the answer is inconclusive, and was refuted"),
-        ("confidence", 0.9995, "differs: its confidence is none above 0.5 and up to 0.999"),
+        ("confidence", 0.99, "differs: the answer is inconclusive now, and was refuted"),
+        ("confidence", 0.9995, "differs: its confidence is not above 0.5 and at most 0.999"),
         ("reason", "so it is", "differs: it differs in reason"),
     ]:
         (estimate,) = evidence["probabilities"]
@@ -538,7 +538,7 @@ def test_what_all_runs_say_is_made_again_with_the_evidence(fretc: Fretc) -> None
         assert reason in run.out
     del evidence["probabilities"]
     write("build/evidence.json", json.dumps(evidence))
-    assert "what all runs say of it is left out" in fretc("verify-evidence").out
+    assert "its estimate over all runs is missing from the file" in fretc("verify-evidence").out
     shutil.rmtree("runs")
     write("build/evidence.json", text)
     assert fretc("verify-evidence").status == 3

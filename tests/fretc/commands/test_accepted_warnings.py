@@ -340,7 +340,7 @@ def test_an_acceptance_is_a_change_since_the_review_and_leaves_the_evidence_curr
     assert "verdict" not in run.out
     run = fretc("check")
     assert codes(run, "warning:") == ["F512"]
-    assert "since then this has changed: reason to accept R1 F203: none → meant" in run.err
+    assert "has changed since then: reason to accept R1 F203: none → meant" in run.err
     assert "Changed since the review: R1: reason to accept R1 F203: none → meant." in page(fretc)
     assert fretc("lock", *BY).err.count("; accepted warnings: R1 F203\n") == 1
     assert (fretc("diff").status, fretc("check").status) == (0, 0)

@@ -54,7 +54,7 @@ def test_an_analysis_that_nobody_touched_stands(analyzed: Fretc) -> None:
     assert said.startswith(
         "  ✔     stands: r1, r2, r3: unrealizable\n"
         "  ✔     stands: conflict of r1, r2, r3\n"
-        "  ✔     stands: what else is said of them\n"
+        "  ✔     stands: other results\n"
     )
 
 
@@ -69,16 +69,16 @@ def realizable(found: dict[str, Any]) -> None:
     ("change", "said"),
     [
         (realizable, "✘     differs: r1, r2, r3: they are unrealizable now, and the file says"),
-        (realizable, "✘     differs: conflict of r1, r2, r3: it is left out\n"),
+        (realizable, "✘     differs: conflict of r1, r2, r3: it is missing from the file\n"),
         (
             lambda found: found["conflicts"][0]["play"].append({}),
-            "✘     differs: conflict of r1, r2, r3: its play is another one\n",
+            "✘     differs: conflict of r1, r2, r3: its counterexample run differs\n",
         ),
         (
             lambda found: found["conflicts"].append(
                 found["conflicts"][0] | {"requirements": ["r1", "r3"]}
             ),
-            "✘     differs: conflict of r1, r3: there is no such conflict now\n",
+            "✘     differs: conflict of r1, r3: this conflict does not exist now\n",
         ),
         (
             lambda found: found["conflicts"].append(found["conflicts"][0]),
@@ -86,11 +86,11 @@ def realizable(found: dict[str, Any]) -> None:
         ),
         (
             lambda found: found["terms"].pop(),
-            "✘     differs: what else is said of them: it differs in terms\n",
+            "✘     differs: other results: it differs in terms\n",
         ),
         (
             lambda found: found["roles"].update(p="input"),
-            "✘     differs: what else is said of them: it differs in roles\n",
+            "✘     differs: other results: it differs in roles\n",
         ),
     ],
 )
@@ -135,7 +135,7 @@ def test_what_was_not_checked_is_not_checked(analyzed: Fretc) -> None:
     status, found = together(analyzed)
     assert status == 1
     assert "they are unrealizable now, and the file says not checked\n" in found
-    assert "?     not checked: conflict of r1, r2, r3: it is left out\n" in found
+    assert "?     not checked: conflict of r1, r2, r3: it is missing from the file\n" in found
 
 
 @pytest.mark.slow

@@ -72,12 +72,13 @@ def test_a_trigger_that_the_component_itself_commands_is_told(good: Fretc) -> No
     run = good("check")
     assert run.status == 3
     assert run.err == (
-        "F209 warning: R1 is triggered by `near`, which robot itself commands: it holds where "
-        "nothing is ever commanded\n"
+        "F209 warning: R1 is triggered by `near`, which robot itself commands: the requirement "
+        "holds if nothing is ever commanded\n"
         "  --> requirements/r1.fret:10:10\n"
         "   | whenever near the robot shall within 300 milliseconds satisfy stopped\n"
         "   |          ^^^^\n"
-        "help: trigger it by what the sensors see, or say `role` and `kind` of the proposition\n"
+        "help: use a trigger that depends on sensor values, or declare `role` and `kind` of the "
+        "proposition\n"
         "\n"
         "1 requirement: 0 mistakes, 1 warning\n"
     )
@@ -86,12 +87,12 @@ def test_a_trigger_that_the_component_itself_commands_is_told(good: Fretc) -> No
 TOLD: dict[str, tuple[dict[str, str], list[str], list[str]]] = {
     "comparisons that contradict each other": (
         {"whenever near": "whenever near & vx < 1 & vx > 2"},
-        ["F210 warning: `near & vx < 1 & vx > 2` of R1 is never true, whatever is measu"],
+        ["F210 warning: `near & vx < 1 & vx > 2` of R1 is never true, whatever the signa"],
         [],
     ),
     "a plan that can give no result": (
         {'["audit"]': '["audit", "ajpf"]'},
-        ["F525 warning: R1 plans `ajpf`, and there can be no result: AJPF cannot"],
+        ["F525 warning: R1 plans `ajpf`, but this method cannot give a result: AJPF cannot"],
         [],
     ),
     "a remark of a planned method": (
@@ -135,7 +136,7 @@ def test_what_changed_since_its_review_is_told(good: Fretc) -> None:
     run = good("check")
     assert run.status == 3
     assert (
-        "F512 warning: R1 was reviewed on 2026-01-01, and since then this has changed: sentence: "
+        "F512 warning: R1 was reviewed on 2026-01-01, and has changed since then: sentence: "
         "whenever near the robot shall within 300 milliseconds → 400 milliseconds …\n"
     ) in run.err
 
@@ -145,16 +146,14 @@ def test_a_review_of_what_is_gone_is_told(good: Fretc) -> None:
     edited("r1.fret", 'id = "R1"', 'id = "R2"')
     run = good("check")
     assert run.status == 3
-    assert (
-        "F511 warning: R1 was reviewed (no run of it was audited) and is not among the" in run.err
-    )
+    assert "F511 warning: R1 was reviewed (not audited in any run) and is no longer" in run.err
 
 
 def test_mistakes_win_over_warnings(good: Fretc) -> None:
     write("requirements/waivers.toml", "[R9]\n")
     run = good("check")
     assert run.status == 2
-    assert "F513 R9 is waived, and is not among the requirements" in run.err
+    assert "F513 R9 is waived, but is not among the requirements" in run.err
 
 
 def test_a_lock_that_cannot_be_read_is_a_mistake(good: Fretc) -> None:

@@ -86,8 +86,8 @@ def test_tests_say_how_a_run_comes_by_what_was_not_seen(robot: Fretc) -> None:
     run = robot("coverage", "idle.mcap")
     assert run.status == 3
     assert "        record: start with `near` " in run.out
-    assert "        only a run that breaks the requirement shows it: start with " in run.out
-    assert "are left that a run can show" in run.out
+    assert "        only a run that violates the requirement can show it: start with " in run.out
+    assert "are not seen yet that a run can show" in run.out
     write("requirements/r1.fret", f'+++\nid = "R1"\n+++\n{SENTENCE.replace("2", "3")}\n')
     run = robot("coverage", "idle.mcap")
     assert "record:" not in run.out

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from compiler.project.folder import load
-from fretc.report.traceability.artefacts import shared_products
-from fretc.report.traceability.chain import Chain
-from fretc.report.traceability.lock import unnamed_violations
+from fretc.traceability.artefacts import shared_products
+from fretc.traceability.chain import Chain
+from fretc.traceability.lock import unnamed_violations
 from tests.command import Fretc, write
 from tests.fretc.report import cases
 
@@ -54,7 +54,7 @@ def test_a_changed_threshold_is_told_with_the_links_below_it(fretc: Fretc, folde
     assert run.out == (
         "R1  changed since the review of 2026-11-22 by A. Meier\n"
         "  near: clearance < 5 cm → 90 cm\n"
-        "  1 verdict is of before the change: audit again\n"
+        "  1 verdict is from before the change: audit again\n"
         "  2 links are suspect: near changed\n"
     )
 
@@ -108,7 +108,7 @@ def test_a_requirement_that_was_deleted_and_one_that_is_new_are_told(
     run = fretc("diff")
     assert run.status == 3
     assert "R2  not reviewed\n" in run.out
-    assert "R1  not there any more; there is the review of 2026-11-22 by A. Meier\n" in run.out
+    assert "R1  in the review of 2026-11-22 by A. Meier, but no longer in the project\n" in run.out
 
 
 @pytest.mark.parametrize(
@@ -118,8 +118,8 @@ def test_a_requirement_that_was_deleted_and_one_that_is_new_are_told(
         (("lock", *BY, "r1"), "F907 there is no requirement `r1`\nhelp: did you mean `R1`?"),
         (("lock", "--reviewer", " ", *BY[2:]), "F907 `--reviewer` says nothing"),
         (("lock", "--reviewer", "A"), "F907 missing option '--role'"),
-        (("diff",), "F901 nothing has been reviewed: there is no `requirements/fretc.lock`"),
-        (("diff", "other.lock"), "F901 nothing has been reviewed: there is no `other.lock`"),
+        (("diff",), "F901 no requirement is reviewed: there is no `requirements/fretc.lock`"),
+        (("diff", "other.lock"), "F901 no requirement is reviewed: there is no `other.lock`"),
         (("lock", *BY, "--requirements", "no"), "F901 there is no folder `no`"),
     ],
 )
@@ -249,7 +249,7 @@ def test_a_violation_is_accepted_by_name_only(fretc: Fretc, folder: Path) -> Non
     assert (run.status, run.out) == (2, "")
     assert run.err == (
         "F529 R1 is violated in b.mcap, c.mcap; satisfied in 1 run\n"
-        "help: fix it, or accept it as it is: add `--accept-violations`\n"
+        "help: fix it, or accept the violation: add `--accept-violations`\n"
     )
     assert not (folder / "fretc.lock").exists()
     run = fretc("lock", *BY, *ON, "--accept-violations")
@@ -297,7 +297,7 @@ def test_of_others_than_the_chosen_ones_nothing_is_asked(fretc: Fretc, folder: P
     write("requirements/r2.fret", '+++\nid = "R2"\n+++\nthe sw shall always satisfy near\n')
     run = fretc("lock", "R2", *BY, *ON)
     assert run.status == 0
-    assert "accepted R2: no run of it was audited\n" in run.err
+    assert "accepted R2: not audited in any run\n" in run.err
 
 
 def test_the_verdicts_are_named_the_worst_first(fretc: Fretc, folder: Path) -> None:

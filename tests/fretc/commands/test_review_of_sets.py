@@ -69,8 +69,8 @@ def test_a_conflict_is_accepted_by_its_name_only_and_stays_red(fretc: Fretc) -> 
     assert not Path("requirements/fretc.lock").exists()
     run = fretc("lock", *BY, "--accept-violations")
     assert run.status == 0
-    assert f"accepted R2: no run of it was audited; {fight}\n" in run.err
-    assert "accepted R3: no run of it was audited; realizable with the others" in run.err
+    assert f"accepted R2: not audited in any run; {fight}\n" in run.err
+    assert "accepted R3: not audited in any run; realizable with the others" in run.err
     assert "0 violated, 3 not shown, 2 unrealizable with the others\n" in run.err
     assert "F561" in fretc("check", "--analyze").err
     fretc("report", "-o", "build/report.json", "--format", "json")
@@ -84,7 +84,7 @@ def test_an_accepted_question_without_an_answer_is_visible(fretc: Fretc) -> None
     fretc("analyze", "requirements")
     run = fretc("lock", "R3", *BY)
     assert run.status == 0
-    assert "accepted R3: no run of it was audited; not checked with the others\n" in run.err
+    assert "accepted R3: not audited in any run; not checked with the others\n" in run.err
     assert run.err.endswith("1 not shown, 1 not checked with the others\n")
     json_ = json.loads(fretc("lock", "R3", *BY, "--format", "json").out)
     assert json_["together"] == {"R3": ["not checked"]}
@@ -115,7 +115,7 @@ def test_a_change_of_a_member_makes_the_analysis_suspect(
     assert {id: causes for id, causes in found.items() if id not in change} == because
     run = locked("diff")
     if because:
-        assert "is of before the change: analyze again" in run.out
+        assert "is from before the change: analyze again" in run.out
         assert "F541" in locked("lock", *BY, "--accept-violations").err
     locked("analyze", "requirements")
     assert not [each for causes in suspect(locked).values() for each in causes if "member" in each]

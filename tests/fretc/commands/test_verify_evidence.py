@@ -71,7 +71,7 @@ def test_what_was_never_hashed_does_not_stand(audited: Fretc) -> None:
     assert audited("audit", "logs", "-o", "build/evidence.json", "--integrity", "index").status == 1
     run = audited("verify-evidence")
     assert run.status == 3
-    assert "? r1  not checked: its log was read by its index, and never hashed\n" in run.out
+    assert "? r1  not checked: its log was read by its index and was not hashed\n" in run.out
     manifested()
     assert audited("verify-evidence", "--manifest", "logs.sha256").status == 0
 
@@ -83,7 +83,7 @@ def test_a_verdict_that_was_changed_by_hand_is_found(audited: Fretc) -> None:
     assert run.status == 1
     assert run.out == (
         "logs/bad.mcap\n"
-        "  ✘ r1  differs: the verdict is violated, and was satisfied; "
+        "  ✘ r1  differs: the verdict is violated now, and was satisfied; "
         "it differs in phases\n"
         "logs/good.mcap\n"
         "  ✔ r1  stands\n"
@@ -96,7 +96,7 @@ def test_another_log_under_the_same_name_is_found(audited: Fretc) -> None:
     log("logs/bad.mcap", 0, 1.5, 3, 0, 0, 0)
     run = audited("verify-evidence")
     assert run.status == 1
-    assert "differs: the log has changed; the verdict is satisfied, and was violated" in run.out
+    assert "differs: the log has changed; the verdict is satisfied now, and was violated" in run.out
 
 
 @pytest.mark.slow
@@ -135,14 +135,14 @@ def test_a_hash_that_was_put_in_by_hand_does_not_help(audited: Fretc) -> None:
     run = audited("verify-evidence")
     assert run.status == 1
     assert "the log has changed" not in run.out
-    assert "the verdict is satisfied, and was violated" in run.out
+    assert "the verdict is satisfied now, and was violated" in run.out
 
 
 def test_another_binding_is_found(audited: Fretc) -> None:
     write("requirements/bindings.toml", BINDINGS.replace("x > 2 m", "x > 2.5 m"))
     run = audited("verify-evidence")
     assert run.status == 1
-    assert "what the bindings say has changed" in run.out
+    assert "the bindings have changed" in run.out
 
 
 def changed(**fields: object) -> None:
@@ -168,13 +168,13 @@ def manifested(*lines: str) -> None:
 @pytest.mark.parametrize(
     ("field", "value", "told"),
     [
-        ("fretc", "0.0.1", "differs: this is fretc 0.1.0"),
-        ("bindings", {"file": "x", "sha256": NO_HASH}, "what the bindings say has changed"),
-        ("requirements", [], "differs: r1 is claimed and the evidence does not name it"),
+        ("fretc", "0.0.1", "differs: the installed fretc is 0.1.0"),
+        ("bindings", {"file": "x", "sha256": NO_HASH}, "the bindings have changed"),
+        ("requirements", [], "differs: r1 is claimed, but the evidence does not name it"),
         ("requirements", [], "differs: the file does not name it among its requirements"),
-        ("requirements", [named("r1"), named("r1")], "differs: it is named twice"),
+        ("requirements", [named("r1"), named("r1")], "differs: it appears twice"),
         ("requirements", [named("r1")], "sentence has changed"),
-        ("requirements", [named("r2")], "r2  differs: it is not claimed any more"),
+        ("requirements", [named("r2")], "r2  differs: it is no longer claimed"),
     ],
 )
 def test_what_the_file_says_before_its_results_is_compared(
@@ -195,7 +195,7 @@ def test_a_result_that_was_taken_out_is_found(audited: Fretc) -> None:
     changed(results=results)
     run = audited("verify-evidence")
     assert run.status == 1
-    assert "✘ r1  differs: r1 is claimed and the evidence has no result of it\n" in run.out
+    assert "✘ r1  differs: r1 is claimed, but the evidence has no result for it\n" in run.out
 
 
 def test_a_result_that_is_told_twice_is_found(audited: Fretc) -> None:
@@ -214,14 +214,14 @@ def test_evidence_of_no_run_shows_nothing(audited: Fretc) -> None:
     changed(results=[])
     run = audited("verify-evidence")
     assert run.status == 3
-    assert "not checked: it tells of no run" in run.out
+    assert "not checked: it contains no run" in run.out
 
 
 def test_a_log_that_is_gone_is_not_checked(audited: Fretc) -> None:
     Path("logs/good.mcap").unlink()
     run = audited("verify-evidence")
     assert run.status == 3
-    assert "  ? r1  not checked: its log is not found\n" in run.out
+    assert "  ? r1  not checked: its log was not found\n" in run.out
 
 
 def test_logs_that_were_moved_are_found_below_a_folder(audited: Fretc) -> None:
@@ -236,7 +236,7 @@ def test_a_requirement_that_is_gone_is_found(audited: Fretc) -> None:
     shutil.move("requirements/r1.fret", "requirements/r2.fret")
     run = audited("verify-evidence")
     assert run.status == 1
-    assert "differs: it is not claimed any more" in run.out
+    assert "differs: it is no longer claimed" in run.out
 
 
 @pytest.mark.slow
@@ -257,7 +257,10 @@ def test_a_report_is_made_again_and_compared(audited: Fretc) -> None:
     [
         (("no.json",), "F901 no run has been audited: there is no evidence in `no.json`"),
         (("--manifest", "no"), "F901 there is no file `no`"),
-        (("--manifest", "requirements/r1.fret"), "F545 this is no line of `sha256sum`"),
+        (
+            ("--manifest", "requirements/r1.fret"),
+            "F545 the line is not in the format of `sha256sum`",
+        ),
         (("--only", "r2"), "F907 no requirement `r2` is in force"),
         (("--verification", "no"), "F901 there is no file `no`"),
         (("--logs", "no"), "F901 there is no folder `no`"),
@@ -293,7 +296,7 @@ def test_a_place_that_evidence_names_is_opened_below_the_present_folder_only(
     assert run.status == 3
     assert run.err.startswith("F921 warning: `")
     assert "good.mcap` is not opened: it" in run.err
-    assert f"{place}\n  ? r1  not checked: its log is not found\n" in run.out
+    assert f"{place}\n  ? r1  not checked: its log was not found\n" in run.out
 
 
 def test_what_the_user_names_is_opened(
@@ -349,7 +352,7 @@ def test_a_run_that_was_reviewed_is_missed(audited: Fretc) -> None:
     without("logs/bad.mcap")
     run = audited("verify-evidence")
     assert run.status == 1
-    told = "✘ r1  differs: the lock names this run and the evidence has no result of it\n"
+    told = "✘ r1  differs: the lock names this run, but the evidence has no result for it\n"
     assert f"logs/bad.mcap\n  {told}" in run.out
 
 
@@ -359,7 +362,10 @@ def test_a_log_in_place_of_the_one_that_was_reviewed_is_found(audited: Fretc) ->
     assert audited("audit", "logs", "-o", "build/evidence.json").status == 0
     run = audited("verify-evidence")
     assert run.status == 1
-    assert "logs/bad.mcap\n  ✘ r1  differs: its log is not the one that was reviewed\n" in run.out
+    assert (
+        "logs/bad.mcap\n  ✘ r1  differs: its log differs from the one that was reviewed\n"
+        in run.out
+    )
 
 
 @pytest.mark.slow
@@ -374,7 +380,7 @@ def test_a_log_is_the_reviewed_one_however_closely_it_was_looked_at(
     assert json.loads(run.out)["counts"]["differs"] == 0
     log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0.5)
     assert audited("audit", "logs", "-o", "build/evidence.json", "--integrity", now).status == 1
-    assert "is not the one that was reviewed" in audited("verify-evidence").out
+    assert "differs from the one that was reviewed" in audited("verify-evidence").out
 
 
 @pytest.mark.slow
@@ -386,7 +392,7 @@ def test_a_requirement_that_was_reviewed_and_is_gone_is_missed(audited: Fretc) -
     assert audited("audit", "logs", "-o", "build/evidence.json").status == 1
     run = audited("verify-evidence")
     assert run.status == 1
-    assert "r2  differs: it was claimed when it was reviewed, and is not any more\n" in run.out
+    assert "r2  differs: it was claimed at the review, and is no longer claimed\n" in run.out
 
 
 def test_a_manifest_names_all_logs(audited: Fretc) -> None:
@@ -399,7 +405,7 @@ def test_a_manifest_names_all_logs(audited: Fretc) -> None:
     without("logs/bad.mcap")
     run = audited("verify-evidence", "--manifest", "logs.sha256")
     assert run.status == 1
-    assert "differs: the manifest names it and the evidence has no result of it\n" in run.out
+    assert "differs: the manifest names it, but the evidence has no result for it\n" in run.out
 
 
 @pytest.mark.slow
@@ -411,10 +417,10 @@ def test_a_manifest_names_all_logs(audited: Fretc) -> None:
         ("# by hand\n{good}  archive/kept.mcap", 0, ""),
         (f"{NO_HASH}  logs/good.mcap", 1, "differs: the manifest has another hash for `logs/good"),
         (f"{NO_HASH}  logs/other.mcap", 1, "differs: the manifest does not name it"),
-        ("{good}  logs/good.mcap\n{good}  logs/copy.mcap", 1, "the manifest names it and the"),
+        ("{good}  logs/good.mcap\n{good}  logs/copy.mcap", 1, "the manifest names it, but the"),
         ("{good}  logs/good.mcap\n{good}  logs/good.mcap", 2, "names this log twice"),
-        ("{good} logs/good.mcap", 2, "F545 this is no line of `sha256sum`"),
-        ("00  logs/good.mcap", 2, "F545 this is no line of `sha256sum`"),
+        ("{good} logs/good.mcap", 2, "F545 the line is not in the format of `sha256sum`"),
+        ("00  logs/good.mcap", 2, "F545 the line is not in the format of `sha256sum`"),
         ("# nothing", 2, "F545 `logs.sha256` names no log"),
     ],
 )
@@ -457,7 +463,7 @@ def test_proofs_are_made_again(audited: Fretc) -> None:
     write("build/verification.json", text.replace('"proved"', '"counterexample"'))
     run = audited("verify-evidence")
     assert run.status == 1
-    assert "it is proved, and was counterexample\n" in run.out
+    assert "it is proved now, and was counterexample\n" in run.out
     run = audited("verify-evidence", "--no-proofs")
     assert run.status == 3
     assert "not checked: no proof was made again: `--no-proofs`\n" in run.out
@@ -486,7 +492,7 @@ def test_proofs_of_a_monitor_in_another_language_are_made_again(audited: Fretc, 
     assert audited(*verify).status == 0
     run = audited("verify-evidence")
     assert run.status == 3
-    assert f"it is about `{made.artefacts[0]}`, which is not made here" in run.out
+    assert f"it is about `{made.artefacts[0]}`, which this check does not generate" in run.out
 
 
 def test_a_proof_that_is_planned_and_is_not_there_is_missed(audited: Fretc) -> None:
@@ -494,7 +500,7 @@ def test_a_proof_that_is_planned_and_is_not_there_is_missed(audited: Fretc) -> N
     assert audited("audit", "logs", "-o", "build/evidence.json").status == 1
     run = audited("verify-evidence")
     assert run.status == 3
-    assert "r1  not checked: r1 plans `loop` and no proof says anything of it\n" in run.out
+    assert "r1  not checked: r1 plans `loop` but the file has no proof of it\n" in run.out
 
 
 @pytest.mark.slow

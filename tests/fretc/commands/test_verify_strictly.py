@@ -87,9 +87,9 @@ MISSING: Mapping[str, tuple[Callable[[Fretc], None], str]] = {
     "a known key of the lock": (_signed_by_bob(LOCK), "its review is not signed"),
     "a known key of the report": (_signed_by_bob(REPORT), "(report) is not signed"),
     "the reviewer's own signature": (_reviewed_by_bob, "who is not Bob"),
-    "the list of signers": (_taken(SIGNERS), "and no list of signers"),
-    "the lock": (_taken(LOCK), "nobody has reviewed it"),
-    "a review": (_without_a_review, "nobody has reviewed it"),
+    "the list of signers": (_taken(SIGNERS), "but there is no list of signers"),
+    "the lock": (_taken(LOCK), "it is not reviewed"),
+    "a review": (_without_a_review, "it is not reviewed"),
     "a run in the manifest": (_without_a_run, "the manifest does not name it"),
 }
 
@@ -107,4 +107,4 @@ def test_each_thing_that_is_missing_is_a_difference(complete: Fretc, name: str) 
 def test_without_a_manifest_it_does_not_stand(complete: Fretc) -> None:
     run = complete("verify-evidence", "--strict")
     assert run.status == 1
-    assert "differs: no `--manifest` lists its runs" in run.out
+    assert "differs: its runs are not listed in a `--manifest`" in run.out

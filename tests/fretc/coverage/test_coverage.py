@@ -124,13 +124,13 @@ def test_what_is_printed() -> None:
     )
     assert [text for text, _ in lines(covered, {"R1": "Stop (R1)"}, every=True)] == [
         "○ Stop (R1): 1 of 3 situations seen, not measured in 1 run",
-        "    ? it is at-once: perhaps at 0.7 s of b.mcap, where something is unknown",
+        "    ? it is at-once: perhaps at 0.7 s of b.mcap, where some values are unknown",
         "    ✔ it is late: seen in 2 runs, first at 0.3 s of a.mcap",
         "    ○ it is never-triggered: never",
         "",
         "a.mcap: 1 situation",
         "b.mcap: 1 situation",
         "c.mcap: 0 situations",
-        "1 of 3 runs shows all that is seen (no fewer do): a.mcap",
+        "1 of 3 runs shows all that is seen (the smallest set): a.mcap",
         "3 runs \N{MULTIPLICATION SIGN} 1 requirement: 1 of 3 situations seen, 1 perhaps, 1 never",
     ]

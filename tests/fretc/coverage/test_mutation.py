@@ -21,7 +21,7 @@ from fretc.coverage.mutation import (
     MutationResult,
     difference,
     judgements,
-    suspects,
+    mutant_batch,
 )
 from fretc.coverage.mutation_output import lines
 from fretc.logs.signals.traces import Timeline, Trace
@@ -80,7 +80,7 @@ def seen(found: Judgement) -> tuple[object, ...]:
 @pytest.mark.slow
 @each("sentence", some(SENTENCES, 2))
 def test_all_mutants_in_one_monitor_are_judged_as_each_by_its_own(sentence: str) -> None:
-    of = suspects(requirement(sentence))
+    of = mutant_batch(requirement(sentence))
     assert of.mutants
     assert not of.refused
     alone, *of_mutants = [
@@ -98,7 +98,7 @@ def test_all_mutants_in_one_monitor_are_judged_as_each_by_its_own(sentence: str)
 @pytest.mark.slow
 @each("template", [*templates((2,))][:: 30 if FULL else 90])
 def test_a_difference_is_there_whatever_the_unknown_values_were(template: Template) -> None:
-    of = suspects(requirement(template.sentence))
+    of = mutant_batch(requirement(template.sentence))
     for run in runs(template.sentence, 0.0):
         holes = [
             {**row, name: None} if tick == len(run) // 2 else row
@@ -120,7 +120,7 @@ def test_a_difference_is_there_whatever_the_unknown_values_were(template: Templa
 
 @pytest.mark.slow
 def test_known_runs_differ_where_verdicts_or_violated_ticks_do() -> None:
-    of = suspects(requirement(SENTENCES[0]))
+    of = mutant_batch(requirement(SENTENCES[0]))
     noticed = set[str]()
     for bits in product((False, True), repeat=6):
         values = [
@@ -137,7 +137,7 @@ def test_known_runs_differ_where_verdicts_or_violated_ticks_do() -> None:
 
 
 def test_what_is_unknown_notices_nothing() -> None:
-    of = suspects(requirement(SENTENCES[3]))
+    of = mutant_batch(requirement(SENTENCES[3]))
     own, *others = together(of, trace_of([dict.fromkeys("pq")] * 3))
     stuck = {"stuck:response-false", "stuck:response-true"}
     for mutant, other in zip(of.mutants, others, strict=True):
@@ -147,7 +147,7 @@ def test_what_is_unknown_notices_nothing() -> None:
 
 
 def surveyed() -> MutationResult:
-    of = suspects(requirement(SENTENCES[3]))
+    of = mutant_batch(requirement(SENTENCES[3]))
     first, second, *_ = of.mutants
     apart = {
         ("R1", first.key): (0, Difference("satisfied", "violated", 3)),
@@ -168,9 +168,9 @@ def test_its_json_is_of_its_schema() -> None:
 def test_what_no_run_notices_is_printed_with_its_sentence() -> None:
     found = surveyed()
     short = [text for text, _ in lines(found, {}, every=False)]
-    (of,) = found.suspects
+    (of,) = found.batches
     survivors = of.mutants[2:]
-    assert short[0] == f"○ R1: 2 of {len(of.mutants)} wrong sentences noticed"
+    assert short[0] == f"○ R1: 2 of {len(of.mutants)} mutants noticed"
     for mutant in survivors:
         assert f"    ○ {mutant.words}" in short
         assert f"      {mutation_record.written(mutant)}" in short
@@ -180,7 +180,7 @@ def test_what_no_run_notices_is_printed_with_its_sentence() -> None:
 
 
 def test_runs_without_a_verdict_say_so() -> None:
-    of = suspects(requirement(SENTENCES[3]))
+    of = mutant_batch(requirement(SENTENCES[3]))
     nothing = MutationResult(("a.mcap",), (of,), frozenset(), {}, ())
     (head, *_) = lines(nothing, {}, every=False)
     assert head[0].endswith("noticed; no run has a verdict on it")

@@ -94,7 +94,7 @@ class Model:
         }
         for number, sentence in enumerate(SENTENCES, 1):
             machine: Any = load("m.py", monitor_text(requirement(sentence)))
-            ends = found[f"R{number} if it ended here"] = []
+            ends = found[f"R{number} if the run ended here"] = []
             for row in zip(*self.rows, strict=True):
                 values = dict(zip(("near", "stopped"), row, strict=True))
                 machine.advance([tuple(values[name] for name in machine.PROPOSITIONS)])

@@ -78,7 +78,7 @@ def test_a_report_opens_the_violations_of_its_runs(fretc: Fretc, missions: Missi
     assert not [each for each in played(fretc, *folder)["starts"] if "violation" in each["about"]]
     log.unlink()
     text = inset(fretc, *folder)
-    assert "violations of off.mcap are not here: " in text
+    assert "violations of off.mcap are left out: " in text
 
 
 def inset(fretc: Fretc, *options: str) -> str:

@@ -80,7 +80,7 @@ def test_the_verdicts_are_those_of_the_automaton(opened: Open, scope: str) -> No
         known = [{n: row[n] for n in each.columns} for row in rows]
         expected = [*judged(counted, known)]
         assert found[f"R{place} at this tick"] == [now for now, _ in expected], each
-        for (_, end), shown in zip(expected, found[f"R{place} if it ended here"], strict=True):
+        for (_, end), shown in zip(expected, found[f"R{place} if the run ended here"], strict=True):
             assert shown == end or (shown == "inconclusive" and end != "violated"), each
 
 
@@ -88,7 +88,7 @@ def test_what_is_unknown_is_told_as_unknown(opened: Open) -> None:
     rows = [{"near": None if t == 0 else False, "stopped": False} for t in range(4)]
     page = opened(WITHIN, address=address(rows))
     assert told(page, "R1", "at this tick") == ["pending", "pending", "unknown", "unknown"]
-    assert told(page, "R1", "open demand")[:2] == ["unknown", "unknown"]
+    assert told(page, "R1", "open obligation")[:2] == ["unknown", "unknown"]
     assert told(page, "near") == ["unknown", "false", "false", "false"]
     assert lane(page, "near").first.inner_text() == "?"
 
@@ -148,8 +148,10 @@ def test_the_cursor_says_why(opened: Open) -> None:
     for t in range(6):
         lane(page, "R1", "at this tick").nth(t).click()
         says[t] = page.locator("#why li").inner_text()
-    assert "no demand is open." in says[0]
-    assert "open since tick 1, due by tick 3, in 1 tick; not met, violated at tick 3." in says[2]
+    assert "no obligation is open." in says[0]
+    assert (
+        "open since tick 1, due by tick 3, in 1 tick; not answered: violated at tick 3." in says[2]
+    )
     assert "`stopped` is false at ticks 1 to 2." in says[2]
     assert "violated since tick 3. Triggered at tick 1, due by tick 3." in says[4]
     assert "`stopped` is false at ticks 1 to 3." in says[4]
@@ -170,7 +172,7 @@ def test_numbers_are_typed_and_comparisons_follow(opened: Open) -> None:
     assert told(page, "battery < 20")[3] == "unknown"
     page.keyboard.type("1x")
     page.keyboard.press("Enter")
-    assert "is no number" in page.locator("#status").inner_text()
+    assert "is not a number" in page.locator("#status").inner_text()
     assert told(page, "battery")[3] == "unknown"
     page.keyboard.press("Escape")
     lines = page.locator(".plot .limit")
@@ -197,7 +199,7 @@ def test_the_address_is_the_trace(opened: Open, visits: Visits) -> None:
 
 def test_an_address_of_something_else_is_told(opened: Open) -> None:
     page = opened(WITHIN, address="#ticks=0")
-    refused = "the address holds no trace of this page"
+    refused = "the address contains no valid trace for this page"
     assert page.locator("#status").inner_text() == refused
     for bad in ("ticks=99999999", "x", "ticks=2&v.near=1", "ticks=2&v.x=1_1", "ticks=1&v.near=%"):
         page.evaluate("location.hash = 'ticks=3'")
@@ -269,12 +271,12 @@ def test_saved_tests_pass_with_the_monitor_and_give_the_trace_again(
         page.keyboard.type(beyond)
         page.keyboard.press("Enter")
         page.get_by_role("button", name="Save tests").click()
-        assert "takes no infinite number" in page.locator("#status").inner_text()
+        assert "cannot contain an infinite number" in page.locator("#status").inner_text()
     lane(page, "battery").nth(2).click()
     page.keyboard.press("Enter")
     page.keyboard.type("9007199254740993")  # another number in JavaScript
     page.keyboard.press("Enter")
-    assert "is no number" in page.locator("#status").inner_text()
+    assert "is not a number" in page.locator("#status").inner_text()
 
 
 def test_both_versions_stand_side_by_side(opened: Open) -> None:
@@ -305,16 +307,19 @@ def test_both_versions_stand_side_by_side(opened: Open) -> None:
 
 BAD_TABLES = (
     ("near\n", "the table has no rows"),
-    ("near,x\n1,1\n", "`x` is no variable here: there are near, stopped"),
-    ("near,near\n1,1\n", "`near` comes twice in the header"),
+    ("near,x\n1,1\n", "`x` is not a variable of this page; the variables are near, stopped"),
+    ("near,near\n1,1\n", "`near` appears twice in the header"),
     ("near,stopped\n1,0\n1\n", "row 2 has 1 cells for 2 names"),
     ("near\n1\n2\n", "row 2: `near` cannot be `2`"),
-    ('near,stopped\n0,1\n"0"1,0\n', "row 2: a quote is open, or stands within a cell"),
-    ('near,stopped\n0"1,0\n', "row 1: a quote is open, or stands within a cell"),
-    ('near,stopped\n"0,1\n' + '"1,0\n' * 100_000, "row 1: a quote is open"),
+    ('near,stopped\n0,1\n"0"1,0\n', "row 2: a quotation mark is not closed, or is inside a cell"),
+    ('near,stopped\n0"1,0\n', "row 1: a quotation mark is not closed, or is inside a cell"),
+    ('near,stopped\n"0,1\n' + '"1,0\n' * 100_000, "row 1: a quotation mark is not closed"),
     ("near,stopped\n=1+0,0\n", "row 1: `near` cannot be `=1+0`"),
     ("tick,near\n3,1\n5,1\n", "row 2: `5` is not the next `tick`"),
-    ("near\n" + "1\n" * 2001, "the table has 2001 rows, and a page takes 2000: cut a part out"),
+    (
+        "near\n" + "1\n" * 2001,
+        "the table has 2001 rows, and the page shows at most 2000: load a shorter",
+    ),
 )
 
 
@@ -397,7 +402,7 @@ def test_more_cells_than_a_browser_shows_are_counted(opened: Open) -> None:
     assert page.locator("#hidden").inner_text() == "Not shown: 39 violated at the last tick."
     page.locator("#which").select_option("")
     assert page.locator("#which").input_value() == "0"
-    assert "too many to be shown at once" in page.locator("#status").inner_text()
+    assert "too many to show at once" in page.locator("#status").inner_text()
 
 
 # The page as a whole --------------------------------------------------------------------------

@@ -69,7 +69,7 @@ def test_each_tick_of_a_window_is_judged_as_in_the_whole_run() -> None:
             assert rows == [{n: columns[n][first + t] for n in rows[0]} for t in range(len(rows))]
             alone = signals(machine, rows)
             assert alone[1:] == whole[first + 1 : first + len(rows)], template
-            begins = "a demand from before begins with it" in start.about
+            begins = "an obligation from before this window starts at its first tick" in start.about
             assert (alone[0] == whole[first]) is not begins, template
             assert any(each.breach or each.doom for tick in alone for each in tick), template
             seen += 1
@@ -95,7 +95,7 @@ def test_a_late_violation_of_a_standing_demand_has_a_short_window() -> None:
     made = run_of("the robot shall always satisfy q", {"q": values})
     (start,) = made.starts()
     assert start.ticks < 60
-    assert start.about.endswith("a demand from before begins with it")
+    assert start.about.endswith("an obligation from before this window starts at its first tick")
 
 
 def test_what_is_not_on_the_page_is_counted() -> None:
@@ -111,4 +111,4 @@ def test_what_is_not_on_the_page_is_counted() -> None:
     assert note.endswith(f"what led to it takes more than {MOST} ticks")
     often = run_of("the robot shall always satisfy q", {"q": [True, False] * 30})
     assert len([*often.starts()]) == SHOWN
-    assert [*often.notes()] == ["R1: 10 more violations of run.mcap are not here"]
+    assert [*often.notes()] == ["R1: 10 more violations of run.mcap are left out"]

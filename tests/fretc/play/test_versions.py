@@ -85,11 +85,11 @@ def test_what_became_of_each_requirement() -> None:
     old = {"A": WITHIN.format(3), "B": AGAIN, "C": SAME, "E": SAME}
     found = of(new, old)
     assert [pair.note for pair in found.pairs] == [
-        "A: a shortest trace that tells both versions apart has 3 ticks",
-        "B: written in another way; all finite runs without unknown values have the same verdicts:"
-        " proved",
+        "A: a shortest trace that distinguishes the two versions has 3 ticks",
+        "B: reworded; proved: both versions have the same verdict on every finite run without "
+        "unknown values",
     ]
-    assert found.notes == ("C: the same as before", "D: new", "E: gone")
+    assert found.notes == ("C: unchanged", "D: new", "E: gone")
     assert [pair.start is None for pair in found.pairs] == [False, True]
     beside = side_by_side(found, [named(text, id) for id, text in new.items()])
     assert [each.id for each in beside] == ["A", "A before", "B", "B before", "C", "D"]
@@ -113,7 +113,7 @@ def test_a_proof_about_numbers_says_that_floats_round() -> None:
         finite.append(machine.standings()[0].finite)
     assert finite == [True, False]
     (pair,) = versions(Side([new], {}, None), Side([old], {}, None), SECONDS).pairs
-    assert pair.note.endswith("proved, of exact numbers; rounding of floats is not modelled")
+    assert pair.note.endswith("; the proof assumes exact numbers, without the rounding of floats")
 
 
 def test_an_id_that_is_taken_gets_a_mark() -> None:
@@ -126,7 +126,7 @@ def test_a_trace_that_no_page_takes_is_a_note(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(comparing, "MOST", 20)
     (pair,) = of({"A": WITHIN.format(25)}, {"A": WITHIN.format(26)}).pairs
     assert pair.start is None
-    assert pair.note.endswith("has 26 ticks, and this page takes 20")
+    assert pair.note.endswith("has 26 ticks, and this page shows at most 20")
 
 
 BINDINGS = """
@@ -145,15 +145,20 @@ NOT_COMPARED: dict[str, tuple[str, str, dict[str, str], str]] = {
         WITHIN.format(2),
         WITHIN.format(2),
         {"tick": "200 ms"},
-        "a tick is something else",
+        "the clock has changed",
     ),
-    "a proposition": (WITHIN.format(2), WITHIN.format(2), {"near": "3"}, "`near` means something"),
-    "a proof about another proposition": (SAME, AGAIN, {"near": "3"}, "`near` means something"),
+    "a proposition": (
+        WITHIN.format(2),
+        WITHIN.format(2),
+        {"near": "3"},
+        "`near` has another meaning",
+    ),
+    "a proof about another proposition": (SAME, AGAIN, {"near": "3"}, "`near` has another meaning"),
     "the unit of a signal": (
         "the robot shall always satisfy d < 5",
         "the robot shall never satisfy d >= 5",
         {"unit": "km"},
-        "`d` means something",
+        "`d` has another meaning",
     ),
 }
 
@@ -179,7 +184,7 @@ def test_what_reads_other_bindings_is_neither_the_same_nor_proved(
     assert why in note
     assert note.endswith("its versions are not compared")
     again = versions(sides[0], sides[0], SECONDS)
-    assert again.notes == ("r: the same as before",)
+    assert again.notes == ("r: unchanged",)
 
 
 def test_what_no_monitor_can_be_made_of_is_neither_new_nor_gone() -> None:
@@ -188,6 +193,6 @@ def test_what_no_monitor_can_be_made_of_is_neither_new_nor_gone() -> None:
         Side(requirements, {"B": "why"}, None), Side([], {"A": "that", "B": "why"}, None), 1
     )
     assert found.notes == (
-        "A: no monitor can be made of what it was: that",
-        "B: no monitor can be made of what it was: why",
+        "A: no monitor can be generated from the earlier version: that",
+        "B: no monitor can be generated from the earlier version: why",
     )

@@ -14,9 +14,9 @@ from fretc.audit.evidence.basis import BINDINGS as BINDINGS_PART
 from fretc.audit.evidence.basis import KINDS, of_all
 from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.report.make import ReportBuild, make
-from fretc.report.traceability.chain import chains
-from fretc.report.traceability.lock import Lock, accepted
-from fretc.report.traceability.lock import text as lock_text
+from fretc.traceability.chain import chains
+from fretc.traceability.lock import Lock, accepted
+from fretc.traceability.lock import text as lock_text
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import write
 

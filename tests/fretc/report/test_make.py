@@ -41,7 +41,7 @@ VERDICTS: list[tuple[str, dict[str, Any], str, str, str]] = [
         "satisfied",
         {"triggers": [moment(10)], "latencies_s": [0.0]},
         "all shown",
-        "Everything that was claimed is shown.",
+        "All claimed requirements are shown.",
         f"The one requirement, {NAME}, held in the audited run.",
     ),
     (
@@ -55,21 +55,21 @@ VERDICTS: list[tuple[str, dict[str, Any], str, str, str]] = [
         "inconclusive",
         {"open": [moment(90)], "latencies_s": []},
         "nothing shown",
-        "Nothing that was claimed is shown.",
+        "None of the claimed requirements is shown.",
         f"The one requirement, {NAME}, was not shown to hold in the audited run.",
     ),
     (
         "vacuous",
         {"triggers": [], "latencies_s": []},
         "nothing shown",
-        "Nothing that was claimed is shown.",
+        "None of the claimed requirements is shown.",
         f"The one requirement, {NAME}, was not shown to hold in the audited run.",
     ),
     (
         "no data",
         {"unknown": [[0, 99]], "triggers": [], "latencies_s": []},
         "nothing shown",
-        "Nothing that was claimed is shown.",
+        "None of the claimed requirements is shown.",
         f"The one requirement, {NAME}, was not shown to hold in the audited run.",
     ),
 ]
@@ -131,7 +131,7 @@ def test_several_requirements_are_counted_in_words(tmp_path: Path) -> None:
     overall = content_of(
         known, tmp_path, result(known, "satisfied"), result(known, "vacuous", "R2")
     )["overall"]
-    assert overall["headline"] == "Not everything that was claimed is shown."
+    assert overall["headline"] == "Not all claimed requirements are shown."
     assert overall["sentences"][0] == "1 of 2 requirements held in the audited run."
 
 
@@ -155,7 +155,7 @@ def test_a_requirement_that_one_run_left_out_is_not_said_to_hold_in_all(tmp_path
 def test_without_evidence_every_requirement_is_not_exercised(tmp_path: Path) -> None:
     report = make(project(tmp_path), "nowhere/evidence.json")
     content = as_json(report)
-    assert content["overall"]["headline"] == "Nothing that was claimed is shown."
+    assert content["overall"]["headline"] == "None of the claimed requirements is shown."
     assert words(content["not_shown"]) == ["not exercised"]
     assert content["not_shown"][0]["reasons"] == ["no run has been audited"]
     assert [(d.code, d.severity) for d in report.diagnostics] == [
@@ -179,7 +179,7 @@ def test_a_project_without_a_requirement_shows_nothing(tmp_path: Path) -> None:
     content = content_of(known, tmp_path)
     assert content["overall"]["mark"]["word"] == "nothing shown"
     assert content["overall"]["sentences"] == [
-        "There is no requirement to show.",
+        "There is no requirement in force.",
         "1 hazard has no requirement in force.",
     ]
     validate("report.schema.json", content)
@@ -222,7 +222,7 @@ def test_evidence_of_something_else_is_suspect_and_never_satisfied(
     assert words([view]) == ["satisfied, suspect"]
     assert view["suspicions"] == content["requirements"][0]["suspicions"] == [why]
     assert content["overall"]["headline"] == (
-        f"Nothing that was claimed is shown: {NAME} was satisfied, and {why}."
+        f"None of the claimed requirements is shown: {NAME} was satisfied, and {why}."
     )
     assert [word(c["mark"]) for c in content["counts"] if c["results"]] == ["satisfied, suspect"]
     (warning,) = report.diagnostics
@@ -319,7 +319,7 @@ def test_a_retired_requirement_is_neither_claimed_nor_missing(tmp_path: Path) ->
         }
     ]
     assert content["claims"] == "1 requirement in force, 1 retired, audited against 1 run."
-    assert content["overall"]["headline"] == "Everything that was claimed is shown."
+    assert content["overall"]["headline"] == "All claimed requirements are shown."
 
 
 def test_two_requirements_of_one_id_have_sections_of_their_own(tmp_path: Path) -> None:
@@ -332,13 +332,13 @@ def test_two_requirements_of_one_id_have_sections_of_their_own(tmp_path: Path) -
 def test_a_project_with_errors_is_never_all_shown(tmp_path: Path) -> None:
     known = project(tmp_path, R1, "+++\nid = 1\n+++\nthe robot shall satisfy stopped\n")
     overall = content_of(known, tmp_path, result(known, "satisfied", latencies_s=[]))["overall"]
-    assert overall["headline"] == "Not everything that was claimed is shown."
+    assert overall["headline"] == "Not all claimed requirements are shown."
     assert overall["sentences"] == [
         "1 of 2 requirements held in the audited run.",
         "No run can violate R1: it sets no bound, so an answer that has not come may always come "
         "later.",
         "No damage was found in the run.",
-        "The requirements or what stands beside them have errors: this report is not complete.",
+        "The requirements, bindings or hazards have errors: this report is not complete.",
     ]
 
 
@@ -362,17 +362,16 @@ def test_a_planned_method_without_a_result_is_reported(tmp_path: Path) -> None:
         (
             "ajpf",
             False,
-            "no result is known; the file for it can be made, and whether it was checked is "
-            "not recorded",
+            "no result is recorded; its file can be generated, but no check of it is recorded",
         ),
-        ("inspection", False, "no result is known"),
+        ("inspection", False, "no result is recorded"),
     ]
     assert overall["overall"]["mark"]["word"] == "not all shown"
     assert overall["overall"]["headline"] == (
-        "What was audited held; not all that was planned is shown."
+        "All audited requirements held, but some planned methods have no result."
     )
     assert overall["overall"]["sentences"][2] == (
-        "No result is known of 2 planned methods: ajpf for Title of R1 (R1) and "
+        "No result is recorded for 2 planned methods: ajpf for Title of R1 (R1) and "
         "inspection for Title of R1 (R1)."
     )
 
@@ -389,7 +388,7 @@ def test_what_a_target_cannot_say_is_not_expressible(tmp_path: Path) -> None:
         "F601 AJPF cannot express the timing `within 3 ticks`"
     )
     assert content["planned"][0]["result"] == (
-        "no result is known, and none can be: ajpf cannot express the requirement"
+        "no result is recorded, and none is possible: ajpf cannot express the requirement"
     )
 
 
@@ -405,8 +404,8 @@ def test_a_response_without_a_bound_is_shown_with_a_reservation(tmp_path: Path) 
         "longest": "2.5 s, after the trigger at 1 s",
         "longest_s": 2.5,
         "is_bounded": False,
-        "bound": "No bound was required: the sentence says `eventually`, so a response satisfies "
-        "it however late it comes.",
+        "bound": "No bound was required: the sentence says `eventually`, so a response at any "
+        "time satisfies it.",
         "waits": ["1 s to 3.5 s: 2 triggers, the first waited 2.5 s"],
         "median_s": 2.4,
     }
@@ -478,7 +477,7 @@ def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) ->
         "deadline": "1.4 s (tick 14)",
         "missing": "stopped",
         "values": [
-            ["clearance", "unknown: 0.0318 m is 400 ms old, and counts for 300 ms"],
+            ["clearance", "unknown: 0.0318 m is 400 ms old, and valid for 300 ms"],
             ["vx", "unknown"],
         ],
         "causes": [],
@@ -504,13 +503,14 @@ def test_what_is_uncertain_among_answers_and_open_demands_is_named(tmp_path: Pat
     )
     (view,) = content_of(known, tmp_path, bad)["requirements"][0]["results"]
     assert view["open"]["lines"] == [
-        "triggered from 9 s to 9.2 s (ticks 90 to 92): 3 demands, 2 of them uncertain for "
+        "triggered from 9 s to 9.2 s (ticks 90 to 92): 3 demands, 2 of them uncertain because "
         "propositions are unknown",
-        "triggered at 9.5 s (tick 95), uncertain for propositions are unknown",
+        "triggered at 9.5 s (tick 95), uncertain because propositions are unknown",
         "triggered at 9.7 s (tick 97)",
     ]
     assert view["latency"]["answers"] == (
-        "3 triggers, 1 of them at the same tick, 2 of them uncertain for propositions are unknown"
+        "3 triggers, 1 of them at the same tick, 2 of them uncertain because propositions are "
+        "unknown"
     )
 
 
@@ -558,8 +558,8 @@ def test_a_run_is_shown_with_its_health(tmp_path: Path) -> None:
         "clock": "100 ms, by log_time",
         "intact": False,
         "health": {"word": "damaged", "glyph": "✘", "kind": "violated", "suspect": False},
-        "checked": "4 of 9 chunks have the CRC that they state; 2 of 9 chunks have a CRC that was "
-        "not checked: only their beginning was read; 3 of 9 chunks hold nothing that is bound and "
+        "checked": "4 of 9 chunks match their CRC; 2 of 9 chunks have a CRC that was not "
+        "checked, because only their beginning was read; 3 of 9 chunks contain no bound topic and "
         "were not read; read by the index",
         "gaps": ["1 s to 2 s"],
         "findings": [

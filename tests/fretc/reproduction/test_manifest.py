@@ -51,5 +51,5 @@ def test_a_file_of_a_folder_that_is_not_named_is_found(tmp_path: Path) -> None:
     del logs["logs/run/run_1.mcap"]
     assert wrong(folder, logs) == ["the manifest does not name `logs/run/run_1.mcap`"]
     assert wrong(folder, {**listed(folder), "logs/run/run_9.mcap": "0" * 64}) == [
-        "the manifest names it and the evidence has no result of it"
+        "the manifest names it, but the evidence has no result for it"
     ]

@@ -33,8 +33,6 @@ from fretc.audit.many_logs import SEQUENTIAL, LogAudits, LogResult, audit_logs
 from fretc.audit.measurements import confidence_intervals
 from fretc.audit.plan import Plan, planned
 from fretc.audit.store.anywhere import required
-from fretc.report.traceability.chain import chains
-from fretc.report.traceability.lock import Lock, accepted
 from fretc.reproduction import proofs as reproving
 from fretc.reproduction import results
 from fretc.reproduction.completeness import Scope
@@ -42,6 +40,8 @@ from fretc.reproduction.manifest import Manifest
 from fretc.reproduction.manifest import read as read_manifest
 from fretc.reproduction.outcome import Finding, Recheck
 from fretc.reproduction.results import recheck
+from fretc.traceability.chain import chains
+from fretc.traceability.lock import Lock, accepted
 from fretc.verification import reader as proven
 from fretc.verification.engines.sandbox import Limits
 from fretish.diagnostics.diagnostic import Diagnostic

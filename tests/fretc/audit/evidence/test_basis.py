@@ -25,10 +25,10 @@ from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read, source
 from fretc.audit.store.writer import write_document
 from fretc.report.make import make
-from fretc.report.traceability.chain import chains
-from fretc.report.traceability.lock import Lock, standings
-from fretc.report.traceability.lock import read as read_lock
-from fretc.report.traceability.lock import text as lock_text
+from fretc.traceability.chain import chains
+from fretc.traceability.lock import Lock, standings
+from fretc.traceability.lock import read as read_lock
+from fretc.traceability.lock import text as lock_text
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, write
 from tests.effort import FULL, some
@@ -502,7 +502,9 @@ def asked(fretc: Fretc) -> Said:
     report = json.loads(outcome.json or "")["requirements"]
     verify = fretc("verify-evidence", *ONE_PROCESS, "--format", "json").out
     again = [one for one in json.loads(verify)["results"] if one["finding"] == "differs"]
-    everywhere = any("this is fretc" in reason for one in again for reason in one["reasons"])
+    everywhere = any(
+        "the installed fretc is" in reason for one in again for reason in one["reasons"]
+    )
     return Said(
         {
             "check": {id for ids in _OUTDATED.findall(check) for id in re.findall(r"R\w+", ids)},
@@ -598,9 +600,7 @@ def test_evidence_of_something_else_is_not_accepted(reviewed: Fretc) -> None:
     before = Path(LOCK).read_text()
     run = reviewed("lock", *BY)
     assert run.status == 2
-    message = (
-        "F541 what was shown of R1 is about something else than what is here now: bindings R1\n"
-    )
+    message = "F541 the evidence for R1 is about another version: bindings R1\n"
     assert message in run.err
     assert Path(LOCK).read_text() == before
     assert reviewed("lock", "R2", *BY).status == 0, "of the others nothing is asked"
@@ -614,7 +614,7 @@ def test_a_log_that_nothing_identifies_is_not_accepted(reviewed: Fretc) -> None:
     hashed("log", None)()
     run = reviewed("lock", *BY)
     assert run.status == 2
-    assert "F542 nothing tells the log `logs/a.mcap` of R1 from another one: there is no" in run.err
+    assert "F542 the evidence does not identify the log `logs/a.mcap` of R1, because" in run.err
 
 
 @pytest.mark.slow
@@ -685,7 +685,7 @@ def test_what_was_claimed_and_is_not_any_more_is_never_lost(
     report = json.loads(Path("r.json").read_text())
     assert run.status == 1
     assert {one["requirement"] for one in report["withdrawn"]} == ids
-    assert report["overall"]["headline"] != "Everything that was claimed is shown."
+    assert report["overall"]["headline"] != "All claimed requirements are shown."
     assert all(any(id in sentence for sentence in report["overall"]["sentences"]) for id in ids)
     junit = Path("r.xml").read_text()
     cases = re.findall(r'name="(\w+)[^"]*"[^>]*>\s*<failure message="withdrawn: ', junit)
@@ -715,8 +715,8 @@ def test_who_accepts_that_something_is_claimed_no_more_hears_of_it_no_more(
 def test_what_was_renamed_is_found_by_its_sentence(reviewed: Fretc) -> None:
     renamed()
     assert (
-        "F511 warning: R3 was reviewed (satisfied in 2 runs) and is not among the requirements "
-        "any more; R3b has its sentence\n"
+        "F511 warning: R3 was reviewed (satisfied in 2 runs) and is no longer among the "
+        "requirements; R3b has the same sentence\n"
     ) in reviewed("check").err
 
 

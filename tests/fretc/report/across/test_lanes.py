@@ -141,4 +141,4 @@ def test_a_mark_leads_to_the_first_of_its_violations() -> None:
 
 def test_the_text_says_the_same() -> None:
     drawn = picture(one(1, 9.0), one(2, 10.0, (3.0, 3.1)))
-    assert drawn.text == "Run 2 (2.mcap): 1 violation; 1 run: none of it."
+    assert drawn.text == "Run 2 (2.mcap): 1 violation; 1 run without such a tick."

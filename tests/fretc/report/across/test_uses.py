@@ -66,7 +66,7 @@ def test_a_bound_is_what_good_runs_keep_and_a_crossing_of_it_stands_first() -> N
     ]
     shares = [row.uses[0].share or 0.0 for row in found.rows]
     assert [round(share, 9) for share in shares] == [1.25, 1.25, 0.75]
-    assert found.notes == ("Nothing is known of the use in Run 4 (satisfied).",)
+    assert found.notes == ("How much of the bound was used is not known in Run 4 (satisfied).",)
 
 
 def test_a_threshold_that_good_runs_cross_is_no_bound() -> None:

@@ -138,7 +138,10 @@ RUNS = ("walk-1", "walk-2", "stop-1", "stop-2")
         (
             {"R1": "vsnn"},
             "Title of R1 (R1) is violated, in one of four runs.",
-            ["Title of R1 (R1) fails only in walk (1 of 2 runs); in 2 other runs it is not known."],
+            [
+                "Title of R1 (R1) fails only in walk (1 of 2 runs); the verdict is not known in 2 "
+                "other runs."
+            ],
         ),
         (
             {"R1": "vvvv", "R2": "vsvs", "R5": "vvvs"},

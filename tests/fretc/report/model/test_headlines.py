@@ -55,18 +55,18 @@ SENTENCE = "the sentence has changed since the audit"
         ([("violated", {}), ("satisfied", OLD)], f"{T1} is violated.", False),
         (
             [("satisfied", OLD), ("vacuous", {})],
-            f"Nothing that was claimed is shown: {T1} was satisfied, and {BINDINGS}.",
+            f"None of the claimed requirements is shown: {T1} was satisfied, and {BINDINGS}.",
             False,
         ),
         (
             [("satisfied", {}), ("satisfied", OLD), ("vacuous", OTHER)],
-            f"Not everything that was claimed is shown: {T3} was vacuous, and {SENTENCE}; "
+            f"Not all claimed requirements are shown: {T3} was vacuous, and {SENTENCE}; "
             f"{T2} was satisfied, and {BINDINGS}.",
             False,
         ),
         (
             [("satisfied", {**OLD, **OTHER})],
-            f"Nothing that was claimed is shown: {T1} was satisfied, "
+            f"None of the claimed requirements is shown: {T1} was satisfied, "
             f"and {SENTENCE} and {BINDINGS}.",
             False,
         ),
@@ -92,7 +92,7 @@ def test_red_stays_red_where_the_sentence_cannot_be_read_any_more(tmp_path: Path
     content = content_of(now, tmp_path, broken)
     assert content["overall"]["headline"] == (
         f"{NAME} was violated, "
-        "and the sentence could be formalized at the audit, and cannot be now."
+        "and the sentence could be formalized at the audit, but cannot be formalized now."
     )
     assert content["requirements"][0]["reasons"][0].startswith("a: violated, ")
     assert content["requirements"][0]["reasons"][1].startswith("F107: ")
@@ -104,7 +104,8 @@ def test_a_sentence_that_could_never_be_read_is_not_called_one_that_could_be(
     known = project(tmp_path, R1.replace("eventually", "evntually"))
     content = content_of(known, tmp_path, red(known, "R1"))
     assert content["overall"]["headline"] == (
-        f"{NAME} was violated, and the sentence cannot be formalized, and could not at the audit."
+        f"{NAME} was violated, and the sentence cannot be formalized now, and could not be "
+        "formalized at the audit."
     )
 
 

@@ -11,7 +11,10 @@ from fretc.report.model.suspicions import about_estimation
 from fretish.syntax import Probability
 
 STATED = Probability(">=", Fraction("0.9"), "0.9")
-SUMS = "the evidence contradicts itself: its runs do not add up to what it says of all"
+SUMS = (
+    "the evidence contradicts itself: its results for single runs do not add up to its "
+    "result over all runs"
+)
 RUNS = [("a", True, Trials(3, 0, 1)), ("b", True, Trials(2, 1, 0))]
 ALL = Outcomes(5, 1, 1)
 
@@ -60,5 +63,5 @@ def test_a_damaged_log_supports_nothing_and_may_refute() -> None:
     runs = [RUNS[0], ("b", False, RUNS[1][2])]
     assert [*about_estimation(estimation(ALL, "refuted"), STATED, runs)] == []
     assert [*about_estimation(estimation(ALL), STATED, runs)] == [
-        "a log is damaged, and no damaged log supports a probability"
+        "a log is damaged, so it cannot support a probability"
     ]

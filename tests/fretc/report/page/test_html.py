@@ -144,7 +144,7 @@ def test_a_verdict_is_a_word_and_a_sign_not_only_a_colour(html: str) -> None:
 def test_the_parts_stand_in_their_order(html: str) -> None:
     assert re.findall(r"<h2>(.*?)</h2>", html) == [
         "The matrix",
-        "What is not shown, and why",
+        "Requirements that are not shown, and why",
         "What changed since the review",
         "Across runs",
         "The requirements",
@@ -158,7 +158,7 @@ def test_what_the_bindings_declare_of_unknown_values_is_called_no_default(tmp_pa
     declared = BINDINGS.replace('agg = "any"', 'agg = "any"\non_unknown = false')
     known = project(tmp_path, bindings=declared)
     text = Page(report_of(known, tmp_path, result(known, "satisfied")).html or "").text
-    assert "Where the bindings say nothing, a default was taken; what they declare" in text
+    assert "What the verdicts assume: defaults, and values that the bindings declare." in text
     assert (
         "proposition near: where its signals are unknown it counts as false, as the bindings "
         "declare"
@@ -175,9 +175,9 @@ def test_a_requirement_that_no_run_can_violate_says_so_beside_its_verdict(tmp_pa
 
 def test_a_violation_has_its_picture_and_its_values(html: str) -> None:
     text = Page(html).text
-    late = "stopped was false from 1.1 s to 2 s, it had to be true by 1.4 s"
+    late = "stopped was false from 1.1 s to 2 s, but had to be true by 1.4 s"
     cause = f"{late}; at 1.4 s clearance was unknown"
-    old = "0.0318 m is 400 ms old, and counts for 300 ms"
+    old = "0.0318 m is 400 ms old, and valid for 300 ms"
     assert f"Violation 1. {cause}: {old} and vx was unknown." in text
     assert "From 0.1 s to 2 s: 2 ticks with a trigger (1 s to 1.2 s)" in text
     assert (

@@ -65,7 +65,7 @@ def test_when_all_is_violated_each_requirement_gets_a_share_of_the_details(
     assert max(counts) - min(counts) <= 1
     pictures = [len(r.timelines) for s in chosen.by_anchor.values() for r in s.details]
     assert sum(pictures) == drawn
-    assert f"Details below: of {most // count} of 10 runs that are not satisfied." in html
+    assert f"Details below: {most // count} of 10 runs that are not satisfied." in html
 
 
 @pytest.mark.slow

@@ -29,9 +29,9 @@ def broken(value: float | None, *times: float, values: tuple[float, ...] = ()) -
     [
         (12.3, 0.3, "2 m"),
         (12.0, 0.3, "2 m"),  # as old as it may be
-        (11.999999999, 0.3, "unknown: 2 m is 300.000001 ms old, and counts for 300 ms"),
-        (11.8, 0.3, "unknown: 2 m is 500 ms old, and counts for 300 ms"),
-        (-4.0, 0.3, "unknown: 2 m is 16.3 s old, and counts for 300 ms"),
+        (11.999999999, 0.3, "unknown: 2 m is 300.000001 ms old, and valid for 300 ms"),
+        (11.8, 0.3, "unknown: 2 m is 500 ms old, and valid for 300 ms"),
+        (-4.0, 0.3, "unknown: 2 m is 16.3 s old, and valid for 300 ms"),
         (-4.0, None, "2 m"),
     ],
 )
@@ -55,7 +55,7 @@ def test_an_infinite_value_grows_too_old_as_well() -> None:
     one = replace(broken(None, 12.2, values=(inf,)))
     assert reading("x", one, RESULT, {"x": 0.3}) == "+inf"
     assert reading("x", one, RESULT, {"x": 0.05}) == (
-        "unknown: +inf is 100 ms old, and counts for 50 ms"
+        "unknown: +inf is 100 ms old, and valid for 50 ms"
     )
 
 

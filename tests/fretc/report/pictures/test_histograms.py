@@ -43,7 +43,7 @@ def test_all_latencies_are_counted_and_the_bound_is_marked(tmp_path: Path) -> No
     assert late["text"] == (
         "4 answers in 2 runs: median 300 ms, longest 3.2 s; bound 3 s, 1 later. "
         "1 from 0 up to 0.2 s, 2 above 0.2 up to 0.4 s and 1 above 3 up to 3.2 s. "
-        "Without an answer: 2 triggers whose time or scope ran out."
+        "Without an answer: 2 triggers whose deadline or scope ended."
     )
 
 
@@ -80,7 +80,7 @@ def test_each_trigger_is_counted_answered_or_not(tmp_path: Path) -> None:
     assert (histogram["unanswered"], histogram["open"]) == (5, 2)
     assert sum(each["count"] for each in histogram["bins"]) + 5 + 2 == 10
     assert histogram["text"].endswith(
-        " Without an answer: 5 triggers whose time or scope ran out and "
+        " Without an answer: 5 triggers whose deadline or scope ended and "
         "2 triggers open at the end of a run."
     )
     assert section["exercise"] == (

@@ -53,7 +53,7 @@ def test_a_run_without_violation_is_one_picture() -> None:
     assert picture.text == (
         "From 0 s to 10 s: 3 ticks with a trigger (1 s to 1.2 s and 4 s to 4.1 s), "
         "2 triggers waiting for their response (1 s to 3.5 s) and "
-        "1 stretch of unknown ticks (0.5 s to 0.7 s)."
+        "1 interval of unknown ticks (0.5 s to 0.7 s)."
     )
 
 

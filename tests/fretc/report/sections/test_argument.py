@@ -146,11 +146,11 @@ def test_runs_support_the_requirement_and_a_proof_what_it_is_about(tmp_path: Pat
     assert support == {
         "Sn_req_2d_R1": ("R1 is satisfied in 1 audited run", ()),
         "G_req_2d_R1_monitor": (
-            "The monitor of R1 decides it as its sentence means",
+            "The monitor of R1 gives the verdicts that the sentence demands",
             ("Sn_req_2d_R1_monitor",),
         ),
         "G_req_2d_R1_loop": (
-            "Monitor and interceptor keep R1 in the modelled loop",
+            "Monitor and interceptor satisfy R1 in the modelled loop",
             ("Sn_req_2d_R1_loop",),
         ),
     }
@@ -204,7 +204,7 @@ def test_what_all_requirements_share_stands_below_the_top_and_those_that_plan_it
     by_id = elements(reported(known, tmp_path, run(known, 1, "satisfied"), proofs=[line]))
     assert by_id["G_top"].supported_by == ("S_hazards", "G_shared_interceptor")
     assert by_id["G_req_2d_R1"].supported_by == ("Sn_req_2d_R1", "G_shared_interceptor")
-    assert by_id["G_shared_interceptor"].text == "The interceptor keeps its contracts"
+    assert by_id["G_shared_interceptor"].text == "The interceptor fulfils its contracts"
     assert by_id["Sn_shared_interceptor"].text == "Proved: it stops (by fretc)"
 
 

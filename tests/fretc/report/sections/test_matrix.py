@@ -85,7 +85,7 @@ def test_every_missing_link_is_listed(tmp_path: Path) -> None:
     assert "2 hazards have no requirement in force." in as_json(report)["overall"]["sentences"]
     (warning,) = report.diagnostics
     assert (warning.code, warning.severity) == (Code.STALE_EVIDENCE, Severity.WARNING)
-    assert warning.message == "there is evidence of R9, which is not among the requirements"
+    assert warning.message == "there is evidence for R9, which is not among the requirements"
 
 
 def test_a_row_counts_the_runs_that_have_its_verdict(tmp_path: Path) -> None:

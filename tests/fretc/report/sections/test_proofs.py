@@ -82,10 +82,10 @@ def test_a_proof_is_the_result_of_its_method(tmp_path: Path, method: str) -> Non
     report = reported(tmp_path, {}, verify=[method])
     assert plan(report) == ("1 claim proved", True, False)
     content = as_json(report)
-    assert content["overall"]["headline"] == "Everything that was claimed is shown."
+    assert content["overall"]["headline"] == "All claimed requirements are shown."
     assert content["manifest"][-2]["kind"] == "verification"
     validate("report.schema.json", content)
-    assert "<h4>What was proved</h4>" in as_html(report)
+    assert "<h4>Proofs</h4>" in as_html(report)
 
 
 def test_the_worst_claim_decides(tmp_path: Path) -> None:
@@ -94,9 +94,12 @@ def test_the_worst_claim_decides(tmp_path: Path) -> None:
     assert plan(report) == ("counterexample: it keeps R1 (12 states)", True, True)
     overall = as_json(report)["overall"]
     assert overall["mark"]["word"] == "not all shown"
-    assert overall["headline"] == "What was audited held; verification found counterexamples."
+    assert (
+        overall["headline"]
+        == "All audited requirements held, but verification found counterexamples."
+    )
     assert overall["sentences"][1] == (
-        "Verification found a counterexample to Title of R1 (R1); part 4 has the claim."
+        "Verification found a counterexample to Title of R1 (R1); part 4 lists the claims."
     )
 
 
@@ -112,7 +115,7 @@ def test_the_argument_rests_on_proofs_and_on_nothing_that_is_refuted(tmp_path: P
     refuted = reported(tmp_path, {"outcome": "counterexample"}, verify=[]).report
     assert refuted is not None
     (goal,) = [each for each in argument(refuted) if each.undeveloped]
-    assert goal.text == "The monitor of R1 decides it as its sentence means"
+    assert goal.text == "The monitor of R1 gives the verdicts that the sentence demands"
     assert goal.defeated
 
 
@@ -136,8 +139,8 @@ def test_what_says_nothing_is_no_result(tmp_path: Path, outcome: str) -> None:
 @pytest.mark.parametrize(
     ("artefacts", "why"),
     [
-        ({"r1_monitor.py": "0" * 64}, "r1_monitor.py is not made like that any more"),
-        ({"mine.py": "0" * 64}, "it is about another monitor than the one that is made now"),
+        ({"r1_monitor.py": "0" * 64}, "r1_monitor.py would be generated differently now"),
+        ({"mine.py": "0" * 64}, "it is about another monitor than the one generated now"),
     ],
 )
 def test_a_proof_of_another_text_is_suspect(
@@ -230,7 +233,7 @@ def test_the_command_takes_the_file_at_its_usual_place_and_exits_as_it_says(
     assert CliRunner().invoke(cli, command).exit_code == 0
     (tmp_path / "verification.json").rename("build/verification.json")
     assert CliRunner().invoke(cli, command).exit_code == 1
-    assert "What was proved" in Path("build/report.html").read_text(encoding="utf-8")
+    assert "<h4>Proofs</h4>" in Path("build/report.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -61,7 +61,7 @@ def test_a_review_that_stands_is_named(tmp_path: Path) -> None:
     lock(known, tmp_path)
     report = reported(known, tmp_path, result(known, "satisfied"))
     assert report["reviewed"] == (
-        "1 of 1 requirement reviewed, and all stand. 1 of 1 is unauthenticated."
+        "1 of 1 requirement reviewed, all reviews are current. 1 of 1 is unauthenticated."
     )
     assert only(report)["review"] == {
         "mark": {"word": "reviewed", "glyph": "◔", "kind": "inconclusive", "suspect": False},
@@ -177,7 +177,8 @@ def test_a_waiver_covers_the_verdict_that_it_names_and_no_other(
     else:
         assert only(as_json(build))["mark"]["word"] == verdict
         assert idle == [
-            f"the waiver of R1 is for `{waived}`, and the verdict is `{verdict}`: it covers nothing"
+            f"the waiver of R1 is for `{waived}`, but the verdict is `{verdict}`: the waiver has "
+            "no effect"
         ]
 
 

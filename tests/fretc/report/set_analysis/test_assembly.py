@@ -136,7 +136,8 @@ def test_free_text_was_not_asked_about(fretc: Fretc) -> None:
     content = report(fretc)
     assert content["analysis"]["left_out"] == ["R3"]
     assert (
-        "Nobody has asked whether R3 can be kept with the others." in (content["front"]["headline"])
+        "Not analyzed: whether R3 can be kept together with the others."
+        in (content["front"]["headline"])
     )
 
 

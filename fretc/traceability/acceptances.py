@@ -1,4 +1,4 @@
-"""Which warnings of a whole project are accepted, those of its audited logs included."""
+"""Warnings about a whole project, with those that `[accept]` tables accept."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from compiler.project.project import Project
 from compiler.project.refusals import unreviewable
 from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Finding
-from fretc.report.traceability.checks import checks, unreviewed
-from fretc.report.traceability.lock import Lock, ReviewedRequirement
+from fretc.traceability.checks import checks, unreviewed
+from fretc.traceability.lock import Lock, ReviewedRequirement
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors
 from fretish.diagnostics.source import Source
 
@@ -24,37 +24,38 @@ def warnings(
     lock: Lock | None,
     evidence: EvidenceSource | None,
 ) -> tuple[Diagnostic, ...]:
-    """What there is to say of a project beside its own diagnostics.
+    """Warnings about a project that are not about a single file.
 
-    Of the audited logs it is only what is accepted: their findings are those of their audit.
+    Findings about audited logs are included only if they are accepted: the audit reports the
+    others.
 
     Args:
-        project: with or without errors; nothing is said of what a mistake reaches.
-        standings: each requirement beside its review, in the order of the project.
-        lock: None where nothing was reviewed.
-        evidence: None where no run was audited.
+        project: with or without errors; requirements that an error affects are skipped.
+        standings: each requirement with its review, in the order of the project.
+        lock: None if no requirement was reviewed.
+        evidence: None if no run was audited.
     """
     refused = unreviewable(project)
     pairs = zip(project.requirements, standings, strict=True)
     sound = [each for requirement, each in pairs if id(requirement) not in refused]
     new = unreviewed(project, sound) if lock is not None and lock.reviews else ()
     found = project.answered((*checks(project, sound), *new))
-    if not project.acceptances:  # then nothing of the logs is accepted: they need not be read
+    if not project.acceptances:  # No finding about the logs is accepted, so they need not be read.
         return found
-    if has_errors(project.diagnostics):  # an acceptance may be there for what a mistake hides
+    if has_errors(project.diagnostics):  # An error may hide the warning that an acceptance is for.
         return found
     logged = project.answered(_of_logs(evidence)) if evidence is not None else ()
     every = (*project.diagnostics, *found, *logged)
     recorded = _recorded(evidence) if evidence is not None else None
     return (
         *found,
-        *(each for each in logged if each.accepted),
+        *(diagnostic for diagnostic in logged if diagnostic.accepted),
         *unused_acceptances(project.acceptances, every, project.declarations, recorded),
     )
 
 
 def as_diagnostic(finding: Finding) -> Diagnostic:
-    """A finding of the evidence as it was; its line is reported by the evidence."""
+    """A finding of the evidence as a diagnostic, without its line."""
     return Diagnostic(
         _CODES.get(finding.code, Code.BAD_EVIDENCE),
         finding.message,
@@ -66,9 +67,9 @@ def as_diagnostic(finding: Finding) -> Diagnostic:
 
 
 def _of_logs(evidence: EvidenceSource) -> Iterator[Diagnostic]:
-    """The findings of all runs, each once."""
-    findings = (each for run in evidence.runs() for each in run.health.findings)
-    yield from dict.fromkeys(as_diagnostic(each) for each in findings)
+    """The findings of all runs, without duplicates."""
+    findings = (finding for run in evidence.runs() for finding in run.health.findings)
+    yield from dict.fromkeys(as_diagnostic(finding) for finding in findings)
 
 
 def _recorded(evidence: EvidenceSource) -> set[str]:

@@ -1,7 +1,7 @@
-"""What an analysis of all requirements together says of each, and what that is about.
+"""The result of `fretc analyze` for each requirement, and whether it is up to date.
 
-It is about the component: the requirements that share outputs with it, then or now, and the
-assumptions. A change of another requirement leaves it as it is.
+A result covers a component: the requirements that shared outputs at the analysis or share them now,
+and the assumptions. A change of another requirement does not affect it.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from fretc.analysis.findings import Analysis, Verdict
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """Whether one requirement can be kept together with the others of its component."""
+    """Whether one requirement is realizable together with the others of its component."""
 
     verdict: Verdict
     findings: tuple[str, ...]
-    """Each conflict that it is in, then what it rests on; each in words."""
+    """A sentence for each conflict of the requirement, then for each assumption of the analysis."""
     differing: tuple[str, ...]
-    """Ids of requirements and assumptions of which there is another one, or none, by now."""
+    """Ids of requirements and assumptions that have changed or disappeared since the analysis."""
 
     @property
     def texts(self) -> tuple[str, ...]:
@@ -36,11 +36,11 @@ class Answer:
 
 
 def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Answer]:
-    """The answer for each requirement that was analyzed, and is there now.
+    """Requirement id → answer, for each requirement that was analyzed and still exists.
 
     Args:
-        analyzed: the evidence; None: nobody has asked.
-        project: as it is now.
+        analyzed: the file of `fretc analyze`; None if there is none.
+        project: the present project.
     """
     if analyzed is None:
         return {}
@@ -65,15 +65,15 @@ def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Answ
 
 
 def _answer(analysis: Analysis, id: str, differing: tuple[str, ...], as_fret: bool) -> Answer:
-    own = [each for each in analysis.components if id in each.requirements]
+    own = [component for component in analysis.components if id in component.requirements]
     verdict = own[0].verdict if own else Verdict.NOT_CHECKED
     return Answer(verdict, tuple(_findings(analysis, id, as_fret)), differing)
 
 
 def _findings(analysis: Analysis, id: str, as_fret: bool) -> Iterator[str]:
-    for each in analysis.conflicts:
-        if id in each.requirements:
-            yield f"conflict of {', '.join(each.requirements)}"
+    for conflict in analysis.conflicts:
+        if id in conflict.requirements:
+            yield f"conflict of {', '.join(conflict.requirements)}"
     for assumption in analysis.assumptions:
         yield f"assumed {assumption.id}: {assumption.sentence}"
     if as_fret:
@@ -81,7 +81,9 @@ def _findings(analysis: Analysis, id: str, as_fret: bool) -> Iterator[str]:
 
 
 def _component(analysis: Analysis, id: str) -> tuple[str, ...]:
-    own = (each.requirements for each in analysis.components if id in each.requirements)
+    own = (
+        component.requirements for component in analysis.components if id in component.requirements
+    )
     return tuple(chain.from_iterable(own))
 
 
@@ -90,15 +92,18 @@ def _components(
     assumed: Sequence[FormalizedRequirement],
     analyzed: Mapping[str, Member],
 ) -> Mapping[str, tuple[str, ...]]:
-    """The requirements of each one's component now; all, where the roles are not known."""
+    """Requirement id → ids in its present component; all ids if the roles are unknown."""
     systems = {
         requirement.sentence.component for requirement in requirements if requirement.id in analyzed
     }
     own = [requirement for requirement in requirements if requirement.sentence.component in systems]
-    for some in (requirements, own):  # an input of one system may be an output of another one
-        chosen = roles([*some, *assumed])
+    for candidates in (requirements, own):  # An input of one system may be an output of another.
+        chosen = roles([*candidates, *assumed])
         if not isinstance(chosen, tuple):
-            groups = [[each.id for each in group] for group in by_outputs(some, assumed, chosen)]
+            groups = [
+                [requirement.id for requirement in group]
+                for group in by_outputs(candidates, assumed, chosen)
+            ]
             found = {id: tuple(ids) for ids in groups for id in ids}
             return {requirement.id: found.get(requirement.id, ()) for requirement in requirements}
     return dict.fromkeys(

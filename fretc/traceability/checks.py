@@ -1,7 +1,7 @@
 """Warnings about a whole project before any run: vacuity, plans without result, missing links.
 
-`compiler.project.folder` reports mistakes of single files while it reads them. These warnings are
-about no single file: with them, the project cannot show all that it should.
+`compiler.project.folder` reports errors in single files while it reads them. These warnings are
+about the project as a whole: it cannot show all that it should.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from compiler.logic.claims import METHODS
 from compiler.project.hazards import without_hazard
 from compiler.project.project import Project
 from compiler.targets.target import Options
-from fretc.report.traceability.changes import in_words
-from fretc.report.traceability.lock import ReviewedRequirement
+from fretc.traceability.changes import in_words
+from fretc.traceability.lock import ReviewedRequirement
 from fretish.bindings.declarations import Role
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
 from fretish.diagnostics.source import Source, Span
@@ -26,15 +26,15 @@ from fretish.printer import expression as printed
 
 _COMMAND = "command"
 _METHODS = ("audit", *METHODS, *TARGETS)
-"""Methods with results that fretc knows, or with files that it makes."""
+"""Methods whose results fretc reads, or for which it generates files."""
 
 
 def checks(project: Project, standings: Sequence[ReviewedRequirement]) -> tuple[Diagnostic, ...]:
     """All warnings, in the order of the project.
 
     Args:
-        project: with or without errors; no requirement that a mistake reaches is looked at.
-        standings: requirements beside their reviews.
+        project: with or without errors; requirements that an error affects are skipped.
+        standings: requirements with their reviews.
     """
     requirements = [
         requirement
@@ -77,10 +77,10 @@ def _own_triggers(requirement: FormalizedRequirement, project: Project) -> Itera
         yield Diagnostic(
             Code.OWN_TRIGGER,
             f"{requirement.id} is triggered by `{name}`, which {requirement.sentence.component} "
-            "itself commands: "
-            "it holds where nothing is ever commanded",
+            "itself commands: the requirement holds if nothing is ever commanded",
             _place(requirement, name),
-            help="trigger it by what the sensors see, or say `role` and `kind` of the proposition",
+            help="use a trigger that depends on sensor values, or declare `role` and `kind` "
+            "of the proposition",
             severity=Severity.WARNING,
         )
 
@@ -97,10 +97,9 @@ def _never_so(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
         yield Diagnostic(
             Code.NEVER_SO,
             f"`{printed(part)}` of {requirement.id} is {'always' if value else 'never'} true, "
-            "whatever is "
-            "measured",
+            "whatever the signals are",
             next((name.span for name in names(part)), None) or requirement.entry.wording,
-            help="look at the numbers, and at the direction of each comparison",
+            help="check the numbers and the direction of each comparison",
             severity=Severity.WARNING,
         )
 
@@ -109,7 +108,7 @@ def _never_so(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
 
 
 def _planned(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
-    """F525: a planned method that can give no result; and what a target has to remark."""
+    """F525 for a planned method that cannot give a result; also the remarks of targets."""
     for method in requirement.entry.verify:
         target = TARGETS.get("monitor" if method == "audit" else method)
         if target is None:
@@ -119,7 +118,8 @@ def _planned(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
         if refused is not None:
             yield Diagnostic(
                 Code.UNREACHABLE_PLAN,
-                f"{requirement.id} plans `{method}`, and there can be no result: {refused.message}",
+                f"{requirement.id} plans `{method}`, but this method cannot give a result: "
+                f"{refused.message}",
                 requirement.entry.place("verify"),
                 help=refused.help,
                 severity=Severity.WARNING,
@@ -131,12 +131,12 @@ def _planned(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
 
 
 def _misspelt(requirement: FormalizedRequirement, method: str) -> Iterator[Diagnostic]:
-    """F528: nearly the name of a method whose results fretc knows; any other name is one's own."""
+    """F528 for a misspelt method name; other unknown names are the user's own methods."""
     near = suggestion(method, _METHODS, cutoff=0.75)
     if method not in _METHODS and near is not None:
         yield Diagnostic(
             Code.MISSPELT_METHOD,
-            f"{requirement.id} plans `{method}`, which is no method that fretc knows: it stays "
+            f"{requirement.id} plans `{method}`, which is not a method of fretc: the plan stays "
             "open",
             requirement.entry.place("verify"),
             help=f"did you mean `{near}`?",
@@ -148,7 +148,7 @@ def _misspelt(requirement: FormalizedRequirement, method: str) -> Iterator[Diagn
 
 
 def _links(project: Project) -> Iterator[Diagnostic]:
-    """F522, F523 and F527: hazards that nothing prevents, requirements that reach none."""
+    """F522, F523 and F527: hazards without a requirement, requirements without a hazard."""
     active = [r for r in project.requirements if r.status != "retired"]
     above = {parent for requirement in active for parent in requirement.parents}
     for hazard in project.hazards.values():
@@ -156,7 +156,7 @@ def _links(project: Project) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 Code.UNCOVERED_HAZARD,
                 f"no requirement in force names {hazard.id} ({hazard.title}) as its parent",
-                help="write one, or name it in the `parents` of one",
+                help="write a requirement for it, or name it in the `parents` of one",
                 severity=Severity.WARNING,
                 subject=hazard.id,
             )
@@ -166,7 +166,7 @@ def _links(project: Project) -> Iterator[Diagnostic]:
                 Code.NO_PARENT,
                 f"{requirement.id} names no parent",
                 requirement.place("id"),
-                help="name the hazard or the requirement that it is there for in `parents`",
+                help="name in `parents` the hazard or requirement that it refines",
                 severity=Severity.WARNING,
             )
     declared = {*project.hazards, *project.parents}
@@ -175,7 +175,7 @@ def _links(project: Project) -> Iterator[Diagnostic]:
             Code.REACHES_NO_HAZARD,
             f"the parents of {requirement.id} lead to no hazard",
             requirement.place("parents"),
-            help="name the hazard in `parents`, or in those of a requirement above it",
+            help="name the hazard in its `parents`, or in the `parents` of a requirement above it",
             severity=Severity.WARNING,
         )
 
@@ -184,7 +184,7 @@ def _links(project: Project) -> Iterator[Diagnostic]:
 
 
 def _changes(project: Project, standings: Sequence[ReviewedRequirement]) -> Iterator[Diagnostic]:
-    """F512 for each requirement whose review no longer stands."""
+    """F512 for each requirement whose review is no longer valid."""
     places = {r.id: r.wording for r in project.requirements}
     for standing in standings:
         if not standing.is_suspect or standing.review is None:
@@ -192,26 +192,27 @@ def _changes(project: Project, standings: Sequence[ReviewedRequirement]) -> Iter
         id = standing.chain.requirement
         yield Diagnostic(
             Code.CHANGED_SINCE_REVIEW,
-            f"{id} was reviewed on {standing.review.date}, and since then "
-            f"this has changed: {in_words(standing.changes)}",
+            f"{id} was reviewed on {standing.review.date}, and has changed since then: "
+            f"{in_words(standing.changes)}",
             places.get(id, Source("", "").span()),
-            help=f"look at `fretc diff`, then accept it: `fretc lock {quote(id)} ...`",
+            help="inspect the change with `fretc diff`, then accept it: `fretc lock "
+            f"{quote(id)} ...`",
             severity=Severity.WARNING,
         )
         if standing.has_other_texts:
             yield Diagnostic(
                 Code.OTHER_TEXTS,
-                f"the texts that the review of {id} keeps are not those of its fingerprints: what "
-                "was accepted is not known",
+                f"the texts that the review of {id} keeps do not match its fingerprints: it is "
+                "not known which texts were accepted",
                 places.get(id, Source("", "").span()),
-                help="take the lock from version control again, or review anew: "
+                help="restore the lock from version control, or review again: "
                 f"`fretc lock {quote(id)} ...`",
                 severity=Severity.WARNING,
             )
 
 
 def unreviewed(project: Project, standings: Sequence[ReviewedRequirement]) -> Iterator[Diagnostic]:
-    """F544 for each requirement in force without a review; for a project that has a lock."""
+    """F544 for each requirement in force without a review."""
     by_id = {requirement.id: requirement for requirement in project.requirements}
     for standing in standings:
         requirement = by_id[standing.chain.requirement]

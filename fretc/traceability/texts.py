@@ -1,6 +1,6 @@
-"""What a review covers, as it is written: its sentence, header, bindings, hazards, and so on.
+"""The texts that a review covers: sentence, header, bindings, hazards, and so on.
 
-A lock keeps it beside the fingerprints, so that a later change has a before and an after.
+A lock stores them with the fingerprints, so that a later change can be shown with both texts.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from fretish.reading.toml_text import read as read_tables
 Table = dict[str, Any]
 _LARGEST = 2**63
 _DEEPEST = 20
-"""Tables and lists within each other; bindings need less than half of it."""
+"""Maximum nesting of tables and lists; bindings need less than half of it."""
 
 
 class ParentRequirement(Record, frozen=True, omit_defaults=True):
-    """A requirement above the one of the review."""
+    """A requirement above the reviewed one."""
 
     title: str = ""
     text: str = ""
@@ -35,7 +35,7 @@ class ParentRequirement(Record, frozen=True, omit_defaults=True):
 
 
 class HazardTexts(Record, frozen=True, omit_defaults=True):
-    """A hazard that it traces to."""
+    """A hazard above the reviewed requirement."""
 
     title: str = ""
     text: str = ""
@@ -60,11 +60,11 @@ class Bindings(Record, frozen=True, omit_defaults=True):
 
 
 class ReviewedTexts(Record, frozen=True, omit_defaults=True):
-    """One requirement and all that its review covers; a default is not written."""
+    """All texts that the review of a requirement covers; defaults are not written."""
 
     sentence: str
     canonical: str = ""
-    """Empty where it cannot be formalized."""
+    """The canonical sentence; "" if the requirement cannot be formalized."""
     title: str = ""
     text: str = ""
     rationale: str = ""
@@ -73,48 +73,48 @@ class ReviewedTexts(Record, frozen=True, omit_defaults=True):
     verify: tuple[str, ...] = ()
     params: dict[str, str] = field(default_factory=dict)
     accept: dict[str, str] = field(default_factory=dict)
-    """Each warning that is accepted with it → why."""
+    """Accepted warning → reason."""
     hazards: dict[str, HazardTexts] = field(default_factory=dict)
-    """All that it traces to, directly or through the requirements above it."""
+    """Id → hazard, for each hazard above the requirement."""
     elsewhere: dict[str, ExternalParent] = field(default_factory=dict)
     above: dict[str, ParentRequirement] = field(default_factory=dict)
     bindings: Bindings | None = None
-    """None: there are none."""
+    """None if the project has no bindings."""
     topics: tuple[str, ...] | None = None
-    """Those that the audit of the whole project reads; None: there was none."""
+    """The topics that the audit of the whole project reads; None if there was no audit."""
     proofs: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    """Each claim that was examined → its result, then its assumptions."""
+    """Claim → its result, then its assumptions."""
     loop: dict[str, Table] = field(default_factory=dict)
-    """`[interceptor]` and `[assume]`, where something was proved."""
+    """The tables `[interceptor]` and `[assume]`, if there are proofs."""
     analysis: tuple[str, ...] = ()
-    """Whether it can be kept with the others: the verdict, then conflicts and assumptions."""
+    """Result of the analysis: the verdict, then conflicts and assumptions."""
     fretc: str = ""
-    """The version that took the fingerprints."""
+    """The version of fretc that computed the fingerprints."""
 
 
 # Writing ---------------------------------------------------------------------------------------
 
 
 def as_table(texts: ReviewedTexts) -> Table:
-    """Plain values, for TOML and for a digest."""
+    """The texts as plain values, for TOML and for a digest."""
     table = plain(texts)
     assert isinstance(table, dict)
     return table
 
 
 def above(requirement: RequirementEntry) -> ParentRequirement:
-    """A requirement above another one."""
+    """The texts of a parent requirement."""
     texts = (requirement.title, requirement.text, requirement.rationale)
     return ParentRequirement(*texts, requirement.parents)
 
 
 def header_of(texts: ReviewedTexts) -> ParentRequirement:
-    """The same of the requirement itself."""
+    """The header texts of the requirement itself."""
     return ParentRequirement(texts.title, texts.text, texts.rationale, texts.parents)
 
 
 def hazard_texts(hazard: Hazard) -> HazardTexts:
-    """A hazard."""
+    """The texts of a hazard."""
     return HazardTexts(hazard.title, hazard.text, hazard.severity, hazard.source)
 
 
@@ -129,7 +129,7 @@ def canonical_text(requirement: FormalizedRequirement | None) -> str:
 
 
 def written_tables(declarations: Declarations | None) -> Mapping[str, Any]:
-    """The bindings as they are written: kind → name → table."""
+    """The tables of the bindings file: kind → name → table."""
     if declarations is None:
         return {}
     tables = read_tables(declarations.source.span(), Code.BAD_BINDINGS, "the bindings file")
@@ -142,9 +142,9 @@ def bindings(
     """The tables that a requirement reads.
 
     Args:
-        requirement: None where it cannot be formalized: then it reads the clock alone.
+        requirement: None if it cannot be formalized; then only the clock is returned.
         project: the bindings of the project.
-        written: their text, from `written_tables`.
+        written: the tables, from `written_tables`.
     """
     clock = dict(written.get("clock", {}))
     if requirement is None:
@@ -163,7 +163,7 @@ def bindings(
 
 
 def loop(written: Mapping[str, Any]) -> dict[str, Table]:
-    """The tables on which proofs about the closed loop rest."""
+    """The tables that proofs about the closed loop depend on."""
     return {name: dict(written[name]) for name in ("interceptor", "assume") if name in written}
 
 
@@ -176,9 +176,9 @@ def _chosen(written: Mapping[str, Any], kind: str, names: Iterable[str]) -> dict
 
 
 def read(value: object) -> ReviewedTexts | str:
-    """The texts from a table of a lock; or what is wrong with it."""
+    """The texts from a table of a lock, or an error message."""
     if not _is_plain(value):
-        return "it has a value that no requirement and no binding has"
+        return "it has a value of a type that no requirement and no binding has"
     try:
         return decoded(value, ReviewedTexts)
     except SchemaError as error:
@@ -186,7 +186,7 @@ def read(value: object) -> ReviewedTexts | str:
 
 
 def _is_plain(value: object) -> bool:
-    """Whether it is made of texts, truth values and numbers of 64 bits alone, and not deep."""
+    """Whether a value consists of strings, booleans and 64-bit numbers, with limited nesting."""
     waiting = [(value, 0)]
     while waiting:
         each, depth = waiting.pop()

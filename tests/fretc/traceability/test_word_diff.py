@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.report.traceability.word_diff import AFTER, BEFORE, _around, segments, short
+from fretc.traceability.word_diff import AFTER, BEFORE, _around, segments, short
 
 WORDS = st.lists(st.sampled_from(["x", "<", "0.4 m/s", "5 cm", "for", "(", ")", "ok", "&", "12"]))
 TEXTS = WORDS.map(" ".join)

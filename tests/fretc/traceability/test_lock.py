@@ -1,7 +1,7 @@
 import pytest
 
-from fretc.report.traceability.chain import Node
-from fretc.report.traceability.lock import Lock, Review, read, text
+from fretc.traceability.chain import Node
+from fretc.traceability.lock import Lock, Review, read, text
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import write
 
@@ -46,19 +46,19 @@ GOOD = text(Lock({"R1": Review("R1", "r", "s", "2026-01-02", "c", {Node("text", 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('"fretc-lock-3"', '"fretc-lock-9"', "the lock is not of the form `fretc-lock-3`"),
+        ('"fretc-lock-3"', '"fretc-lock-9"', "the lock does not have the schema `fretc-lock-3`"),
         ('reviewer = "r"', "", "the review of R1 has no `reviewer`"),
         ('reviewer = "r"', "reviewer = 1", "the review of R1 has no `reviewer`"),
-        ('"2026-01-02"', '"2026-13-02"', "`2026-13-02` is no date"),
-        (SHA, "xy", "`text:R1` of R1 is no fingerprint"),
-        ('"text:R1"', '"text"', "`text` of R1 is no fingerprint"),
+        ('"2026-01-02"', '"2026-13-02"', "`2026-13-02` is not a date"),
+        (SHA, "xy", "`text:R1` of R1 is not a fingerprint"),
+        ('"text:R1"', '"text"', "`text` of R1 is not a fingerprint"),
         (
             "[review.R1.verdicts]",
             "[review.R1.verdicts]\na = 1",
             "`verdicts` of R1 must be a table of texts",
         ),
-        ("schema", "R2 = 1\nschema", "`R2` is no part of a lock"),
-        ("[review.R1]", "[review]\nR2 = 1\n[review.R1]", "`R2` is no review"),
+        ("schema", "R2 = 1\nschema", "`R2` is not a field of the lock"),
+        ("[review.R1]", "[review]\nR2 = 1\n[review.R1]", "`R2` is not a review"),
         (
             "[review.R1]",
             "[review.R1",
@@ -101,7 +101,7 @@ def test_a_review_that_was_edited_by_hand_does_not_count(old: str, new: str) -> 
     diagnostic = read(write("fretc.lock", changed))
     assert isinstance(diagnostic, Diagnostic)
     assert diagnostic.code is Code.BAD_LOCK
-    assert diagnostic.message.endswith("is not as `fretc lock` wrote it: somebody has edited it")
+    assert diagnostic.message.endswith("was edited after `fretc lock` wrote it")
 
 
 @pytest.mark.parametrize(
@@ -117,7 +117,7 @@ def test_a_review_of_a_day_to_come_does_not_count(
         assert isinstance(lock, Lock)
     else:
         assert isinstance(lock, Diagnostic)
-        assert lock.message == f"the review of R1 is of {day}, a day that is still to come"
+        assert lock.message == f"the review of R1 is of {day}, a date in the future"
 
 
 @pytest.mark.parametrize("id", ["schema", "review", "fingerprints", "verdicts", "seal", "date"])
@@ -134,8 +134,9 @@ def test_a_lock_of_an_earlier_version_is_reported_with_what_to_do(first: str) ->
     assert isinstance(diagnostic, Diagnostic)
     assert (diagnostic.code, diagnostic.message) == (
         Code.BAD_LOCK,
-        "the lock was written by an earlier version of fretc, whose fingerprints are others",
+        "the lock was written by an earlier version of fretc, which computed fingerprints "
+        "differently",
     )
     assert diagnostic.help == (
-        "keep it under another name, look at what was accepted, and review anew: `fretc lock`"
+        "rename it, compare with what was accepted, and review again: `fretc lock`"
     )

@@ -10,21 +10,21 @@ from typing import Any
 from compiler.project.project import Project
 from compiler.project.stated_numbers import drifted
 from fretc.audit.evidence.verdicts import VERDICTS, severity
-from fretc.report.traceability.chain import ANALYSIS, VERDICT, Suspect
-from fretc.report.traceability.changes import Change
-from fretc.report.traceability.lock import Lock, Review, ReviewedRequirement
+from fretc.traceability.chain import ANALYSIS, VERDICT, Suspect
+from fretc.traceability.changes import Change
+from fretc.traceability.lock import Lock, Review, ReviewedRequirement
 from fretish.diagnostics.diagnostic import Code
 from monitors import kernel
 
 _MOST = 6
-"""The most runs of one requirement with other verdicts that `text` names."""
+"""Maximum number of runs with changed verdicts that `text` names per requirement."""
 _NAMED = 3
-"""The most changes that are named as the cause of suspect links."""
+"""Maximum number of changes that are named as causes of suspect links."""
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One requirement in both states."""
+    """The difference between a requirement and its review."""
 
     requirement: str
     state: str
@@ -32,16 +32,16 @@ class Difference:
     review: Review | None
     changes: tuple[Change, ...]
     contradictions: tuple[str, ...]
-    """What beside the changes has stayed as it was, and says something else."""
+    """Unchanged texts that contradict the changed ones."""
     verdicts: tuple[tuple[str, str, str], ...]
-    """Run, verdict in the baseline, verdict now; an empty word: none. The worst now comes first."""
+    """(run, verdict in the baseline, verdict now), worst first; "" for no verdict."""
     outdated: int
-    """Verdicts on what it was before a change."""
+    """Number of verdicts from before the change."""
     suspects: tuple[Suspect, ...]
     has_other_texts: bool = False
-    """The texts of the review are not those of its fingerprints."""
+    """Whether the texts of the review do not match its fingerprints."""
     has_old_analysis: bool = False
-    """Whether the analysis is about what one of its requirements or assumptions was before."""
+    """Whether the analysis is from before a change of its requirements or assumptions."""
 
     @property
     def consequences(self) -> tuple[str, ...]:
@@ -55,21 +55,19 @@ class Difference:
         lines += [f"{_runs(len(gone))} gone: {_in_words(gone)}"] if gone else []
         if self.outdated:
             verb = "is" if self.outdated == 1 else "are"
-            lines.append(f"{_verdicts(self.outdated)} {verb} of before the change: audit again")
+            lines.append(f"{_verdicts(self.outdated)} {verb} from before the change: audit again")
         if self.has_old_analysis:
-            lines.append(
-                "whether it can be kept with others is of before the change: analyze again"
-            )
+            lines.append("the realizability result is from before the change: analyze again")
         return tuple(lines)
 
     @property
     def suspicion(self) -> str:
-        """`5 links are suspect: max_age of x changed`; empty where there is none."""
+        """`5 links are suspect: max_age of x changed`; "" if no link is suspect."""
         return suspicion_of([self])
 
 
 def suspicion_of(differences: Sequence[Difference]) -> str:
-    """The number of suspect links of all these requirements, and why they are."""
+    """The number of suspect links of all these requirements, with the causes."""
     suspects = [suspect for each in differences for suspect in each.suspects]
     reasons = (
         change.what
@@ -89,7 +87,7 @@ def _counts(words: Sequence[str]) -> list[tuple[str, int]]:
 
 
 def _severity(word: str) -> tuple[int, bool]:
-    """By which words are sorted, the worst first; a lock may have one that is no verdict."""
+    """Sort key of verdicts, worst first; a lock may contain a word that is not a verdict."""
     return severity(word) if word in VERDICTS else (len(VERDICTS), False)
 
 
@@ -108,18 +106,18 @@ def _runs(count: int) -> str:
 def differences(
     standings: tuple[ReviewedRequirement, ...], baseline: Lock, project: Project | None = None
 ) -> tuple[Difference, ...]:
-    """Every requirement of either state, in the order of the project, then those that are gone."""
+    """The difference of each requirement, in the order of the project; removed ones come last."""
     now = tuple(difference(standing, project) for standing in standings)
     ids = {standing.chain.requirement for standing in standings}
     return (*now, *(_removed(id, baseline) for id in baseline.reviews if id not in ids))
 
 
 def difference(standing: ReviewedRequirement, project: Project | None = None) -> Difference:
-    """One requirement, against its review; `new` where it has none.
+    """The difference between a requirement and its review; `new` if it has no review.
 
     Args:
-        standing: the requirement beside its review.
-        project: whose numbers are compared with its words; None: no contradiction is looked for.
+        standing: the requirement with its review.
+        project: for contradictions between numbers and words; None: they are not searched.
     """
     chain, review = standing.chain, standing.review
     if review is None:
@@ -154,7 +152,7 @@ def _different(
 
 
 def _worst_first(pair: tuple[str, str, str]) -> tuple[bool, tuple[int, bool], str]:
-    """Runs that are gone come after what is known now."""
+    """Sort key of changed verdicts; removed runs come last."""
     return not pair[2], _severity(pair[2] or pair[1]), pair[0]
 
 
@@ -162,9 +160,9 @@ def _worst_first(pair: tuple[str, str, str]) -> tuple[bool, tuple[int, bool], st
 
 
 def contradictions(standing: ReviewedRequirement, project: Project) -> tuple[str, ...]:
-    """The words of a requirement that state another number than what is judged.
+    """Texts of a requirement that state another number than its sentence or parameters.
 
-    One that has stood there since the review `still` does.
+    A text that has not changed since the review "still" says so.
     """
     id = standing.chain.requirement
     then = standing.review.texts if standing.review else None
@@ -178,8 +176,12 @@ def contradictions(standing: ReviewedRequirement, project: Project) -> tuple[str
     found = [_statement(names, words, same) for (words, same), names in fields.items()]
     for failed in project.failed:
         if failed.requirement.id == id:
-            drifts = (each for each in failed.diagnostics if each.code is Code.NUMBER_DRIFT)
-            found.extend(each.message for each in drifts)
+            drifts = (
+                diagnostic
+                for diagnostic in failed.diagnostics
+                if diagnostic.code is Code.NUMBER_DRIFT
+            )
+            found.extend(drift.message for drift in drifts)
     return tuple(dict.fromkeys(found))
 
 
@@ -197,7 +199,7 @@ def _statement(fields: Sequence[str], words: str, still: bool) -> str:
 
 
 def as_record(difference: Difference) -> dict[str, Any]:
-    """Plain values, in a fixed order of keys."""
+    """The difference as plain values, in a fixed order of keys."""
     return {
         "requirement": difference.requirement,
         "state": difference.state,
@@ -222,7 +224,7 @@ def as_record(difference: Difference) -> dict[str, Any]:
 
 
 def text(differences: Sequence[Difference]) -> Iterator[str]:
-    """Lines for a person: what is not as it was, each change once, then what is as it was."""
+    """Lines for a person: changed requirements, each change once, then unchanged ones."""
     alike: dict[object, list[Difference]] = {}
     for each in differences:
         alike.setdefault(_likeness(each), []).append(each)
@@ -231,7 +233,7 @@ def text(differences: Sequence[Difference]) -> Iterator[str]:
 
 
 def _likeness(difference: Difference) -> object:
-    """Equal where two requirements differ alike, and no verdict of theirs is another one."""
+    """A key that is equal for requirements with equal changes and no changed verdict."""
     if difference.state == "same":
         return "same"
     if difference.verdicts or difference.state != "changed" or difference.review is None:
@@ -249,7 +251,7 @@ def _text(group: Sequence[Difference]) -> Iterator[str]:
         "same": f"as {'it was' if len(group) == 1 else 'they were'} reviewed",
         "changed": f"changed since {by}",
         "new": "not reviewed",
-        "gone": f"not there any more; there is {by}",
+        "gone": f"in {by}, but no longer in the project",
     }
     named = ", ".join(each.requirement for each in group[:_MOST])
     more = f" and {len(group) - _MOST} more" if len(group) > _MOST else ""
@@ -268,11 +270,11 @@ def _text(group: Sequence[Difference]) -> Iterator[str]:
         yield f"  {suspicion}"
 
 
-OTHER_TEXTS = "the texts in its review are not those of its fingerprints, and do not count"
+OTHER_TEXTS = "the texts in its review do not match its fingerprints, and are ignored"
 
 
 def _verdict_lines(difference: Difference) -> Iterator[str]:
-    """What became of verdicts; then runs by name, no violated one without being counted."""
+    """Lines about changed verdicts, then the runs; violated runs that are not named are counted."""
     for line in difference.consequences:
         yield f"  {line}"
     for run, before, now in difference.verdicts[:_MOST]:

@@ -2,7 +2,7 @@ import pytest
 
 from compiler.files.dates import today
 from fretc.audit.evidence import verdicts
-from fretc.report.traceability.waivers import VERDICTS, Waiver, read
+from fretc.traceability.waivers import VERDICTS, Waiver, read
 from fretish.diagnostics.rendering import render
 from tests.command import write
 
@@ -43,27 +43,27 @@ def test_a_waiver_counts_from_its_first_to_its_last_day() -> None:
 def test_a_waiver_that_has_ended_is_reported() -> None:
     _, (warning,) = read(write("waivers.toml", GOOD), ["R1"], "2027-01-01")
     assert render(warning) == (
-        "F514 warning: the waiver of R1 counts from 2026-11-01 to 2026-12-31 only\n"
+        "F514 warning: the waiver of R1 is valid only from 2026-11-01 to 2026-12-31\n"
         "  --> waivers.toml:7:11\n"
         '   | expires = "2026-12-31"\n'
         "   |           ^^^^^^^^^^^^\n"
-        "help: show the requirement, or have the waiver granted anew"
+        "help: show that the requirement holds, or have the waiver granted again"
     )
 
 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("[R1]", "[R2]", "R2 is waived, and is not among the requirements"),
-        ('by      = "A. Meier"\n', "", "the waiver of R1 needs `by`"),
-        ('"A. Meier"', '" "', "the waiver of R1 needs `by`"),
-        ('"2026-12-31"', '"31.12.2026"', "`31.12.2026` is no date"),
-        ('verdict = "no data"\n', "", "the waiver of R1 does not say which verdict it covers"),
-        ('"no data"', '"nodata"', "`nodata` is no verdict that can be waived"),
-        ('"no data"', '"satisfied"', "`satisfied` is no verdict that can be waived"),
-        ('"no data"', '"suspect"', "`suspect` is no verdict that can be waived"),
-        ('"no data"', "7", "`7` is no verdict that can be waived"),
-        ("reason", "raeson", "unknown field `raeson` in [R1]"),
+        ("[R1]", "[R2]", "R2 is waived, but is not among the requirements"),
+        ('by      = "A. Meier"\n', "", "the waiver of R1 has no `by`"),
+        ('"A. Meier"', '" "', "the waiver of R1 has no `by`"),
+        ('"2026-12-31"', '"31.12.2026"', "`31.12.2026` is not a date"),
+        ('verdict = "no data"\n', "", "the waiver of R1 does not name the verdict that it covers"),
+        ('"no data"', '"nodata"', "`nodata` is not a verdict that can be waived"),
+        ('"no data"', '"satisfied"', "`satisfied` is not a verdict that can be waived"),
+        ('"no data"', '"suspect"', "`suspect` is not a verdict that can be waived"),
+        ('"no data"', "7", "`7` is not a verdict that can be waived"),
+        ("reason", "raeson", "`raeson` is no field of [R1]"),
     ],
 )
 def test_a_waiver_with_a_mistake_waives_nothing(old: str, new: str, message: str) -> None:

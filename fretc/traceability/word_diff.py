@@ -1,4 +1,4 @@
-"""The difference of two texts, by words; a number and its unit are one word."""
+"""Word-by-word difference of two texts; a number and its unit are one word."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from fretish.clock import NANOSECONDS
 
 SAME, BEFORE, AFTER = "same", "before", "after"
 Segment = tuple[str, str]
-"""`SAME`, `BEFORE` or `AFTER`, and a stretch of both texts or of one of them."""
+"""`SAME`, `BEFORE` or `AFTER`, and a piece of both texts or of one of them."""
 _TOKEN = re.compile(
     r"(?P<number>[+-]?[0-9][0-9.]*)[ \u00a0\u202f]"
     r"(?P<unit>%|[A-Za-z]\w{0,12}(?:/[A-Za-z]\w{0,3})?)(?!\w)"
     r"|[()\[\]{},;]|[^\s()\[\]{},;]+|\s+"
 )
 _MOST_TOKENS = 300
-"""Longer texts are compared as wholes: the time grows with the square."""
+"""Longer texts are compared only at both ends, because the time grows with the square."""
 _CACHED = 2**12
-"""The same change is shown at each of its requirements, and at each of their runs."""
+"""Cached, because one change is shown for several requirements and runs."""
 _LEAD, _WHOLE, _LONGEST = 40, 240, 2000
-"""Characters: beside a difference, of a text on a line, and of a stretch of segments."""
+"""Maximum characters: beside a difference, of a text on a line, and of a segment."""
 
 
 @lru_cache(maxsize=_CACHED)
 def segments(before: str, after: str) -> tuple[Segment, ...]:
-    """Both texts as one: what they share, what one has, what the other has."""
+    """Segments of both texts: shared pieces, pieces of `before` only, pieces of `after` only."""
     found: list[Segment] = []
     for same, old, new, _ in _stretches(before, after):
         if same:
@@ -40,7 +40,7 @@ def segments(before: str, after: str) -> tuple[Segment, ...]:
 
 @lru_cache(maxsize=_CACHED)
 def short(before: str, after: str) -> str:
-    """`x < 0.40 m/s → 0.35 m/s` where one word differs, else `the one → the other`."""
+    """`x < 0.40 m/s → 0.35 m/s` if one word differs, else `before → after`."""
     different = [stretch for stretch in _stretches(before, after) if not stretch[0]]
     if len(different) == 1:
         _, old, new, (at, _) = different[0]
@@ -52,11 +52,11 @@ def short(before: str, after: str) -> str:
 
 
 _Stretch = tuple[bool, str, str, tuple[int, int]]
-"""Whether both texts have it, what each has, and where in each it begins."""
+"""(whether both texts are equal here, text before, text after, offset in each)."""
 
 
 def _stretches(before: str, after: str) -> list[_Stretch]:
-    """Both texts in stretches; white space alone between two differences is none of its own."""
+    """Both texts as aligned pieces; white space between two differences belongs to them."""
     left, right = _tokens(before), _tokens(after)
     if max(len(left), len(right)) > _MOST_TOKENS:
         return _around(before, after)
@@ -75,7 +75,7 @@ def _stretches(before: str, after: str) -> list[_Stretch]:
 
 
 def _around(before: str, after: str) -> list[_Stretch]:
-    """Long texts: what they begin with alike, what differs, what they end with alike."""
+    """Pieces of long texts: the common beginning, the difference, the common end."""
     if before == after:
         return [(True, before, after, (0, 0))]
     start = before.rfind(" ", 0, _shared(before, after)) + 1
@@ -91,13 +91,13 @@ def _around(before: str, after: str) -> list[_Stretch]:
 
 
 def _shared(before: str, after: str) -> int:
-    """The number of characters with which both begin."""
+    """The length of the common beginning."""
     pairs = enumerate(zip(before, after, strict=False))
     return next((i for i, (a, b) in pairs if a != b), min(len(before), len(after)))
 
 
 def _tokens(text: str) -> list[str]:
-    """Words, and the white space between them: together the whole text."""
+    """Words and the white space between them; joined, they are the whole text."""
     found: list[str] = []
     place = 0
     while place < len(text) and len(found) <= _MOST_TOKENS:
@@ -115,7 +115,7 @@ def _is_unit(word: str) -> bool:
 
 
 def _is_word(text: str) -> bool:
-    """Whether it is one word that can stand alone, and no sign."""
+    """Whether the text is one word and not punctuation."""
     return len(_tokens(text)) == 1 and any(map(str.isalnum, text))
 
 
@@ -128,7 +128,7 @@ def _lead(text: str) -> str:
 
 
 def _window(text: str, start: int) -> str:
-    """The text, or what stands around a place in it where it is long."""
+    """The text, or the part around `start` if the text is long."""
     if len(text) <= _WHOLE:
         return text
     begin = max(0, start - _LEAD)
@@ -138,11 +138,11 @@ def _window(text: str, start: int) -> str:
 
 
 def _middle(text: str) -> str:
-    """What two texts share, without its middle where it is long."""
+    """A shared piece, without its middle if it is long."""
     return text if len(text) <= _WHOLE else f"{text[: _WHOLE // 2]} … {text[-_WHOLE // 2 :]}"
 
 
 def _start(text: str) -> str:
-    """What one of two texts has; of what is very long the beginning, and how much more there is."""
+    """A differing piece; if it is very long, its beginning and the number of other characters."""
     left = len(text) - _LONGEST
     return text if left <= 0 else f"{text[:_LONGEST]} … (and {left} more characters)"

@@ -1,6 +1,6 @@
-"""`waivers.toml`: requirements that pass without being shown, with reason, person and last day.
+"""`waivers.toml`: requirements that may pass without being shown, with reason, person and expiry.
 
-A waiver hides nothing: the report has the verdict that it covers. It ends by itself.
+The report shows the verdict that a waiver covers. A waiver expires by itself.
 """
 
 from __future__ import annotations
@@ -38,26 +38,26 @@ them, because the person waived an earlier state."""
 
 @dataclass(frozen=True, slots=True)
 class Waiver:
-    """The waiver of one verdict of one requirement, up to a day."""
+    """The waiver of one verdict of one requirement, until a date."""
 
     requirement: str
     verdict: str
-    """The verdict that it covers: one of `VERDICTS`."""
+    """The waived verdict: one of `VERDICTS`."""
     reason: str
     by: str
     role: str
     granted: str
     expires: str
-    """The last day on which it counts; both dates as `2026-11-22`."""
+    """The last day on which the waiver is valid; dates are written as `2026-11-22`."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
     def seal(self) -> str:
-        """SHA-256 of all of it, as it is signed."""
+        """SHA-256 of the whole waiver, which a signature covers."""
         return digest([self.requirement, *(getattr(self, name) for name in _FIELDS)])
 
     def covers(self, day: str) -> bool:
-        """Whether it counts on that day."""
+        """Whether the waiver is valid on that day."""
         return self.granted <= day <= self.expires
 
 
@@ -69,7 +69,7 @@ def read(
     Args:
         path: the file.
         ids: the ids of the requirements; None: any may be waived.
-        day: on which they shall count; one that does not is a warning.
+        day: a warning is returned for each waiver that is not valid on that day.
     """
     source = read_text(path)
     if isinstance(source, Diagnostic):
@@ -95,12 +95,12 @@ def _mistakes(
     tables: Tables, id: str, fields: Any, ids: Sequence[str] | None
 ) -> Iterator[Diagnostic]:
     if not isinstance(fields, dict):
-        yield _wrong(tables, f"`{id}` is no waiver", f"write `[{id}]`, then its fields", id)
+        yield _wrong(tables, f"`{id}` is not a waiver", f"write `[{id}]`, then its fields", id)
         return
     if ids is not None and id not in ids:
         near = suggestion(id, ids)
         fix = f"did you mean `{near}`?" if near else "name a requirement of the project"
-        yield _wrong(tables, f"{id} is waived, and is not among the requirements", fix, id)
+        yield _wrong(tables, f"{id} is waived, but is not among the requirements", fix, id)
     for key in fields:
         if key not in _FIELDS:
             yield unknown_key(Code.BAD_WAIVER, key, _FIELDS, tables.place(id, key), f"[{id}]")
@@ -110,32 +110,35 @@ def _mistakes(
             yield _no_verdict(tables, id, value)
         elif not isinstance(value, str) or not value.strip():
             yield _wrong(
-                tables, f"the waiver of {id} needs `{name}`", f'add `{name} = "..."`', id, name
+                tables, f"the waiver of {id} has no `{name}`", f'add `{name} = "..."`', id, name
             )
         elif name in ("granted", "expires") and not is_date(value):
             fix = f'write it as `"{date(2026, 11, 22).isoformat()}"`'
-            yield _wrong(tables, f"`{value}` is no date", fix, id, name)
+            yield _wrong(tables, f"`{value}` is not a date", fix, id, name)
 
 
 def _no_verdict(tables: Tables, id: str, value: object) -> Diagnostic:
-    """A waiver without a verdict would cover whatever comes later."""
+    """The diagnostic for a missing or unknown verdict."""
     listed = ", ".join(f"`{word}`" for word in VERDICTS)
     if value is None:
-        what, fix = f"the waiver of {id} does not say which verdict it covers", 'add `verdict = "'
+        what, fix = (
+            f"the waiver of {id} does not name the verdict that it covers",
+            'add `verdict = "',
+        )
         return _wrong(tables, what, f'{fix}no data"`; it may be {listed}', id, "reason")
     near = suggestion(str(value), VERDICTS)
     fix = f"did you mean `{near}`?" if near else f"it may be {listed}"
-    return _wrong(tables, f"`{value}` is no verdict that can be waived", fix, id, "verdict")
+    return _wrong(tables, f"`{value}` is not a verdict that can be waived", fix, id, "verdict")
 
 
 def idle_waiver(waiver: Waiver, verdict: str) -> Diagnostic:
-    """F543: the requirement has another verdict than the one that is waived."""
+    """F543: the verdict of the requirement is not the waived one."""
     return Diagnostic(
         Code.IDLE_WAIVER,
-        f"the waiver of {waiver.requirement} is for `{waiver.verdict}`, and the verdict is "
-        f"`{verdict}`: it covers nothing",
+        f"the waiver of {waiver.requirement} is for `{waiver.verdict}`, but the verdict is "
+        f"`{verdict}`: the waiver has no effect",
         waiver.span,
-        help="take it out, or have one granted for what is there now",
+        help="remove the waiver, or have one granted for the present verdict",
         severity=Severity.WARNING,
     )
 
@@ -147,8 +150,9 @@ def _wrong(tables: Tables, what: str, fix: str, *path: str) -> Diagnostic:
 def _ended(tables: Tables, waiver: Waiver) -> Diagnostic:
     return Diagnostic(
         Code.EXPIRED_WAIVER,
-        f"the waiver of {waiver.requirement} counts from {waiver.granted} to {waiver.expires} only",
+        f"the waiver of {waiver.requirement} is valid only from {waiver.granted} to "
+        f"{waiver.expires}",
         tables.value(waiver.requirement, "expires"),
-        help="show the requirement, or have the waiver granted anew",
+        help="show that the requirement holds, or have the waiver granted again",
         severity=Severity.WARNING,
     )

@@ -1,7 +1,7 @@
-"""`fretc.lock`: what was reviewed, by whom, and the fingerprint of each thing at that time.
+"""`fretc.lock`: reviewed requirements, their reviewers, and the fingerprints at that time.
 
-Sorted TOML, a table for each requirement, so that two reviews merge like code. A lock is written
-by `fretc lock` only; waivers stand in `waivers.toml` (`fretc.report.traceability.waivers`).
+Sorted TOML with a table for each requirement, so that two reviews merge like code. Only `fretc
+lock` writes a lock; waivers are in `waivers.toml` (`fretc.traceability.waivers`).
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from compiler.files.text_files import read as read_text
 from fretc.analysis.findings import Verdict
 from fretc.audit.evidence.basis import SENTENCE
 from fretc.audit.evidence.reader import VERDICTS
-from fretc.report.traceability.analyses import Answer
-from fretc.report.traceability.chain import (
+from fretc.traceability.analyses import Answer
+from fretc.traceability.chain import (
     ACCEPTANCE,
     FORMULAS,
     IN_FORCE,
@@ -29,13 +29,13 @@ from fretc.report.traceability.chain import (
     Node,
     Suspect,
     changed,
-    in_force,
+    status_node,
     suspects,
 )
-from fretc.report.traceability.changes import Change, changes
-from fretc.report.traceability.meanings import agree
-from fretc.report.traceability.texts import ReviewedTexts, as_table
-from fretc.report.traceability.texts import read as read_texts
+from fretc.traceability.changes import Change, changes
+from fretc.traceability.meanings import agree
+from fretc.traceability.texts import ReviewedTexts, as_table
+from fretc.traceability.texts import read as read_texts
 from fretish.bindings.canonical import digest
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
@@ -48,7 +48,7 @@ from monitors import kernel
 NAME = "fretc.lock"
 SCHEMA = "fretc-lock-3"
 _SCHEMAS = ("fretc-lock-2", SCHEMA)
-"""Those that are read; a lock of the first has no texts."""
+"""Schemas that are read; a lock of the first one has no texts."""
 _OLDER = ("fretc-lock-1",)
 _TABLE = "review"
 _TEXTS = ("reviewer", "role", "date", "comment")
@@ -58,7 +58,7 @@ _HEAD = "# Written by `fretc lock`: what was reviewed, and what it was like then
 
 @dataclass(frozen=True, slots=True)
 class Review:
-    """One requirement as somebody accepted it."""
+    """The review of one requirement."""
 
     requirement: str
     reviewer: str
@@ -67,31 +67,31 @@ class Review:
     """ISO 8601, as `2026-11-22`."""
     comment: str
     prints: Mapping[Node, str]
-    """SHA-256 of everything upstream of the review."""
+    """Node upstream of the review → SHA-256."""
     verdicts: Mapping[str, str]
-    """Run → the word of its verdict."""
+    """Run → its verdict."""
     texts: ReviewedTexts | None = None
-    """What was accepted, as it was written; None: an earlier version of fretc wrote the review."""
+    """The accepted texts; None if an earlier version of fretc wrote the review."""
 
     @property
     def was_in_force(self) -> bool:
-        """Whether the requirement was not retired then."""
-        return self.prints.get(in_force(self.requirement)) == IN_FORCE
+        """Whether the requirement was not retired at the review."""
+        return self.prints.get(status_node(self.requirement)) == IN_FORCE
 
     @property
     def was_claimed(self) -> bool:
-        """Whether runs were judged by it: it was in force, and a sentence that has a meaning."""
+        """Whether the requirement was in force and formalized, so that runs were judged."""
         return self.was_in_force and Node(FORMULAS, self.requirement) in self.prints
 
     @property
     def verdict_summary(self) -> str:
-        """The verdicts that were accepted, in words, and the answer for all together."""
+        """The accepted verdicts in words, with the result of the analysis of all requirements."""
         together = self.texts.analysis if self.texts else ()
         return "; ".join(filter(None, (_in_words(self.verdicts), _together(together))))
 
     @property
     def seal(self) -> str:
-        """SHA-256 of all of it: a review that is edited by hand is nobody's."""
+        """SHA-256 of the whole review, to detect a review that was edited by hand."""
         texts = {name: getattr(self, name) for name in ("requirement", *_TEXTS)}
         prints = {str(node): sha for node, sha in self.prints.items()}
         written = [] if self.texts is None else [as_table(self.texts)]
@@ -100,7 +100,7 @@ class Review:
 
 @dataclass(frozen=True, slots=True)
 class Lock:
-    """A whole lock: requirement → its review, sorted."""
+    """A lock: requirement → its review, sorted."""
 
     reviews: Mapping[str, Review]
 
@@ -114,13 +114,13 @@ def accepted(chain: Chain, reviewer: str, role: str, date: str, comment: str) ->
 
 
 def verdicts_of(chain: Chain) -> str:
-    """The verdicts that a review would accept, in words, the worst first."""
+    """The verdicts that a review would accept, in words, worst first."""
     together = chain.answer.texts if chain.answer else ()
     return "; ".join(filter(None, (_in_words(chain.verdicts), _together(together))))
 
 
 def _together(texts: Sequence[str]) -> str:
-    """The verdict of an analysis with its findings; empty where nobody has asked."""
+    """The verdict of an analysis with its findings; "" if there is no analysis."""
     if not texts:
         return ""
     verdict, *findings = texts
@@ -129,7 +129,7 @@ def _together(texts: Sequence[str]) -> str:
 
 
 def warnings_of(chain: Chain) -> str:
-    """The warnings that a review of it would accept, in words; empty where there is none."""
+    """The warnings that a review would accept, in words; "" if there are none."""
     names = sorted(node.name for node in chain.prints if node.kind == ACCEPTANCE)
     return f"; accepted warnings: {', '.join(names)}" if names else ""
 
@@ -144,19 +144,19 @@ def _in_words(verdicts: Mapping[str, str]) -> str:
         rest = len(runs) - (_NAMED if named else 0)
         more = f"{rest} {'more ' if named else ''}run{'' if rest == 1 else 's'}" if rest > 0 else ""
         parts.append(f"{word} in {' and '.join(part for part in (named, more) if part)}")
-    return "; ".join(parts) or "no run of it was audited"
+    return "; ".join(parts) or "not audited in any run"
 
 
 _NAMED = 3
-"""The most violating runs that a summary names."""
+"""Maximum number of violating runs that a summary names."""
 
 
 def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tuple[Diagnostic, ...]:
-    """F529 for each requirement to accept that runs break, or that fights with others.
+    """F529 for each requirement to accept that runs violate, or that conflicts with others.
 
     Args:
         chosen: the chains to accept.
-        refuted: ids of the requirements with a probability that all runs together refute.
+        refuted: ids of requirements with a probability that the estimate over all runs refutes.
     """
     violations = {
         c.requirement: verdicts_of(c) for c in chosen if kernel.VIOLATED in c.verdicts.values()
@@ -171,7 +171,7 @@ def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tup
         Diagnostic(
             Code.UNREVIEWED_VIOLATION,
             f"{id} is {verdicts}",
-            help="fix it, or accept it as it is: add `--accept-violations`",
+            help="fix it, or accept the violation: add `--accept-violations`",
         )
         for id, verdicts in violations.items()
     )
@@ -179,34 +179,38 @@ def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tup
 
 @dataclass(frozen=True, slots=True)
 class Acceptance:
-    """What the runs say of the requirements that one review accepts."""
+    """Summary of the verdicts on the requirements that one `fretc lock` accepts."""
 
     verdicts: Mapping[str, Mapping[str, str]]
     """Requirement → run → verdict."""
     violated: tuple[str, ...]
-    """Those that some run violates, or that all runs together refute."""
+    """Requirements that a run violates, or that the estimate over all runs refutes."""
     not_shown: tuple[str, ...]
-    """Of the others those that were not audited, or are not satisfied in each run."""
+    """Other requirements that were not audited, or are not satisfied in each run."""
     answers: Mapping[str, Answer]
-    """What is known of each and the others together; what nobody has asked is not there."""
+    """Requirement → result of the analysis; without requirements that were not analyzed."""
 
     @classmethod
     def of(cls, subjects: Sequence[Chain], refuted: Collection[str]) -> Acceptance:
-        """That of the requirements; `refuted` as in `unnamed_violations`."""
+        """The summary for some requirements; `refuted` as in `unnamed_violations`."""
         verdicts = {chain.requirement: chain.verdicts for chain in subjects}
         violated = [
             id for id, runs in verdicts.items() if kernel.VIOLATED in runs.values() or id in refuted
         ]
         good = [id for id, runs in verdicts.items() if {*runs.values()} == {kernel.SATISFIED}]
         unshown = [id for id in verdicts if id not in violated and id not in good]
-        answers = {each.requirement: each.answer for each in subjects if each.answer is not None}
+        answers = {
+            subject.requirement: subject.answer
+            for subject in subjects
+            if subject.answer is not None
+        }
         return cls(verdicts, tuple(violated), tuple(unshown), answers)
 
     @property
     def text(self) -> str:
         """One line, with the number of each kind."""
         count = len(self.verdicts)
-        together = Counter(each.verdict for each in self.answers.values())
+        together = Counter(answer.verdict for answer in self.answers.values())
         with_others = (
             f", {together[word]} {word} with the others"
             for word in (Verdict.UNREALIZABLE, Verdict.NOT_CHECKED)
@@ -219,7 +223,7 @@ class Acceptance:
 
     @property
     def as_record(self) -> dict[str, Any]:
-        """Plain values."""
+        """The summary as plain values."""
         return {
             "accepted": {id: dict(runs) for id, runs in self.verdicts.items()},
             "violated": list(self.violated),
@@ -229,7 +233,7 @@ class Acceptance:
 
 
 def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
-    """F541 for each requirement whose evidence is about something else; F542 for unknown logs."""
+    """F541 for each requirement with outdated evidence; F542 for logs without a SHA-256."""
     diagnostics = []
     for chain in chosen:
         causes = dict.fromkeys(cause for nodes in chain.outdated.values() for cause in nodes)
@@ -238,25 +242,24 @@ def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
             diagnostics.append(
                 Diagnostic(
                     Code.OUTDATED_RESULT,
-                    f"what was shown of {chain.requirement} is about something else than what is "
-                    f"here now: {what}",
-                    help="make it again (`fretc audit`, `verify` or `analyze`), then lock",
+                    f"the evidence for {chain.requirement} is about another version: {what}",
+                    help="run `fretc audit`, `verify` or `analyze` again, then lock",
                 )
             )
         if chain.unhashed:
             diagnostics.append(
                 Diagnostic(
                     Code.UNKNOWN_LOG,
-                    f"nothing tells the log `{chain.unhashed[0]}` of {chain.requirement} from "
-                    "another one: there is no SHA-256 of it",
-                    help="audit again where the log can be read, then lock",
+                    f"the evidence does not identify the log `{chain.unhashed[0]}` of "
+                    f"{chain.requirement}, because it has no SHA-256",
+                    help="audit again on a machine that can read the log, then lock",
                 )
             )
     return tuple(diagnostics)
 
 
 def text(lock: Lock) -> str:
-    """The file."""
+    """The text of the lock file."""
     reviews: dict[str, Any] = {}
     tables: dict[str, Any] = {"schema": SCHEMA, _TABLE: reviews}
     for id in sorted(lock.reviews, key=natural):
@@ -275,7 +278,7 @@ def text(lock: Lock) -> str:
 
 
 def read(path: str) -> Lock | Diagnostic:
-    """A lock from its file, or what is wrong with it; F901 as a note where there is none yet."""
+    """The lock of a file, or diagnostics; F901 as a note if there is no lock yet."""
     source = read_text(path)
     if isinstance(source, Diagnostic):
         return _none_yet(path) if source.code is Code.NO_SUCH_FILE else source
@@ -292,7 +295,7 @@ def read(path: str) -> Lock | Diagnostic:
 def _none_yet(path: str) -> Diagnostic:
     return Diagnostic(
         Code.NO_SUCH_FILE,
-        f"nothing has been reviewed: there is no `{path}`",
+        f"no requirement is reviewed: there is no `{path}`",
         help="accept the present state: `fretc lock --reviewer NAME --role ROLE --comment TEXT`",
         severity=Severity.NOTE,
     )
@@ -305,23 +308,24 @@ def _reviews(tables: Tables) -> Iterable[tuple[str, Any]]:
 
 def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
     schema = tables.data.get("schema")
-    if schema in _OLDER or isinstance(schema, dict):  # a review of a requirement called `schema`
+    # A table `schema` is the review of a requirement of that name.
+    if schema in _OLDER or isinstance(schema, dict):
         yield _older(tables)
         return
     if schema not in _SCHEMAS:
-        yield _wrong(tables, f"the lock is not of the form `{SCHEMA}`", "schema")
+        yield _wrong(tables, f"the lock does not have the schema `{SCHEMA}`", "schema")
     for name, value in tables.data.items():
         if name not in ("schema", _TABLE) or (name == _TABLE and not isinstance(value, dict)):
-            yield _wrong(tables, f"`{name}` is no part of a lock", name)
+            yield _wrong(tables, f"`{name}` is not a field of the lock", name)
     for id, fields in _reviews(tables):
         if not isinstance(fields, dict):
-            yield _wrong(tables, f"`{id}` is no review", _TABLE, id)
+            yield _wrong(tables, f"`{id}` is not a review", _TABLE, id)
             continue
         for name in (*_TEXTS, "seal"):
             if not isinstance(fields.get(name), str):
                 yield _wrong(tables, f"the review of {id} has no `{name}`", _TABLE, id, name)
         if isinstance(fields.get("date"), str) and not is_date(fields["date"]):
-            yield _wrong(tables, f"`{fields['date']}` is no date", _TABLE, id, "date")
+            yield _wrong(tables, f"`{fields['date']}` is not a date", _TABLE, id, "date")
         for name in ("fingerprints", "verdicts"):
             table = fields.get(name)
             if not isinstance(table, dict) or not all(isinstance(v, str) for v in table.values()):
@@ -338,27 +342,28 @@ def _no_prints(tables: Tables, id: str, table: Mapping[str, str]) -> Iterator[Di
     for name, sha in table.items():
         if ":" not in name or not _SHA256.fullmatch(sha):
             path = (_TABLE, id, "fingerprints", name)
-            yield _wrong(tables, f"`{name}` of {id} is no fingerprint", *path)
+            yield _wrong(tables, f"`{name}` of {id} is not a fingerprint", *path)
 
 
 def _broken(tables: Tables, lock: Lock) -> Iterator[Diagnostic]:
-    """A diagnostic for each review that is edited, or dated in the future."""
+    """A diagnostic for each review that was edited, or is dated in the future."""
     for id, review in lock.reviews.items():
         fields = tables.data[_TABLE][id]
         if fields["seal"] != review.seal:
-            what = f"the review of {id} is not as `fretc lock` wrote it: somebody has edited it"
+            what = f"the review of {id} was edited after `fretc lock` wrote it"
             yield _wrong(tables, what, _TABLE, id, "seal")
         elif is_in_future(review.date):
-            what = f"the review of {id} is of {review.date}, a day that is still to come"
+            what = f"the review of {id} is of {review.date}, a date in the future"
             yield _wrong(tables, what, _TABLE, id, "date")
 
 
 def _older(tables: Tables) -> Diagnostic:
     return Diagnostic(
         Code.BAD_LOCK,
-        "the lock was written by an earlier version of fretc, whose fingerprints are others",
+        "the lock was written by an earlier version of fretc, which computed fingerprints "
+        "differently",
         tables.place("schema"),
-        help="keep it under another name, look at what was accepted, and review anew: `fretc lock`",
+        help="rename it, compare with what was accepted, and review again: `fretc lock`",
     )
 
 
@@ -367,7 +372,7 @@ def _wrong(tables: Tables, what: str, *path: str) -> Diagnostic:
         Code.BAD_LOCK,
         what,
         tables.place(*path),
-        help="take the file from your repository again, or review anew: `fretc lock`",
+        help="restore the file from version control, or review again: `fretc lock`",
     )
 
 
@@ -397,18 +402,18 @@ def _node(text: str) -> Node:
 
 @dataclass(frozen=True, slots=True)
 class ReviewedRequirement:
-    """A requirement as it is now, beside its review."""
+    """A present requirement with its review."""
 
     chain: Chain
     review: Review | None
-    """None: it has never been reviewed, or the review has been taken back."""
+    """None if the requirement was never reviewed, or its review was withdrawn."""
 
     suspects: tuple[Suspect, ...]
-    """The suspect links; none where there is no review."""
+    """The suspect links; empty if there is no review."""
     changes: tuple[Change, ...]
-    """What has changed since the review, without what only follows from it."""
+    """Changes since the review, without changes that follow from others."""
     has_other_texts: bool = False
-    """The texts of the review are not those of its fingerprints: they count for nothing."""
+    """Whether the texts of the review do not match its fingerprints, and are ignored."""
 
     @property
     def is_suspect(self) -> bool:
@@ -417,12 +422,12 @@ class ReviewedRequirement:
 
     @property
     def causes(self) -> tuple[Node, ...]:
-        """The changes that make links suspect, each once."""
-        return tuple(dict.fromkeys(cause for each in self.suspects for cause in each.causes))
+        """The changes that make links suspect, without duplicates."""
+        return tuple(dict.fromkeys(cause for suspect in self.suspects for cause in suspect.causes))
 
 
 def standings(chains: Sequence[Chain], lock: Lock | None) -> tuple[ReviewedRequirement, ...]:
-    """Each requirement beside its review."""
+    """Each requirement with its review."""
     reviews = lock.reviews if lock else {}
     return tuple(_standing(chain, reviews.get(chain.requirement)) for chain in chains)
 
@@ -435,26 +440,26 @@ def _standing(chain: Chain, review: Review | None) -> ReviewedRequirement:
     if not suspect and not changed(chain.prints, prints):
         return ReviewedRequirement(chain, review, (), ())
     vouched = texts is None or agree(chain.requirement, texts, prints)
-    causes = tuple(dict.fromkeys(cause for each in suspect for cause in each.causes))
+    causes = tuple(dict.fromkeys(cause for item in suspect for cause in item.causes))
     found = changes(chain, prints, review.verdicts, texts if vouched else None, causes)
     return ReviewedRequirement(chain, review, suspect, found, not vouched)
 
 
 @dataclass(frozen=True, slots=True)
 class WithdrawnRequirement:
-    """A requirement that was reviewed when it was claimed, and is claimed no more."""
+    """A requirement that was in force when it was reviewed, and is no longer."""
 
     review: Review
     retired: bool
-    """Whether it has been retired; else it is not among the requirements."""
+    """True if the requirement was retired, False if it was removed."""
     successor: str = ""
-    """The requirement that has its sentence now, and had none when it was reviewed."""
+    """Id of a requirement that is new since the review and has the same sentence, or ""."""
 
     @property
     def text(self) -> str:
-        """A sentence, with the verdicts of the review."""
-        how = "is retired now" if self.retired else "is not among the requirements any more"
-        renamed = f"; {self.successor} has its sentence" if self.successor else ""
+        """A sentence with the verdicts of the review."""
+        how = "is retired now" if self.retired else "is no longer among the requirements"
+        renamed = f"; {self.successor} has the same sentence" if self.successor else ""
         id, verdicts = self.review.requirement, self.review.verdict_summary
         return f"{id} was reviewed ({verdicts}) and {how}{renamed}"
 
@@ -462,7 +467,7 @@ class WithdrawnRequirement:
 def withdrawn_requirements(
     requirements: Iterable[RequirementEntry], chains: Iterable[Chain], lock: Lock | None
 ) -> tuple[WithdrawnRequirement, ...]:
-    """The requirements of the lock that are removed, renamed, split or retired."""
+    """The reviewed requirements that were removed, renamed, split or retired."""
     if lock is None:
         return ()
     status = {requirement.id: requirement.status for requirement in requirements}
@@ -488,11 +493,11 @@ def withdrawal_warnings(
     """F511 or F540 for each requirement that was withdrawn since its review."""
     return tuple(
         Diagnostic(
-            Code.RETIRED_SINCE_REVIEW if one.retired else Code.ORPHANED_REVIEW,
-            one.text,
+            Code.RETIRED_SINCE_REVIEW if withdrawal.retired else Code.ORPHANED_REVIEW,
+            withdrawal.text,
             Source(path, "").span(),
-            help=f"if that is meant, accept it: `fretc lock {one.review.requirement} ...`",
+            help=f"to accept this: `fretc lock {withdrawal.review.requirement} ...`",
             severity=Severity.WARNING,
         )
-        for one in withdrawn
+        for withdrawal in withdrawn
     )

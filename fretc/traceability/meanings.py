@@ -1,4 +1,4 @@
-"""What the texts of a review mean: each by itself, and the fingerprints that they give."""
+"""The meaning of each text of a review, and the fingerprints computed from the texts."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalize import formalize
 from compiler.project.hazards import Hazard
 from fretc.audit.evidence import basis
-from fretc.report.traceability.chain import (
+from fretc.traceability.chain import (
     ACCEPTANCE,
     ANALYSIS,
     ARTEFACT,
@@ -28,14 +28,14 @@ from fretc.report.traceability.chain import (
     TEXT,
     WORDS,
     Node,
-    in_force,
     print_of_hazard,
     print_of_header,
     print_of_proof,
     print_of_status,
     print_of_words,
+    status_node,
 )
-from fretc.report.traceability.texts import (
+from fretc.traceability.texts import (
     Bindings,
     ReviewedTexts,
     Table,
@@ -56,14 +56,14 @@ class Leaf:
     """One text of a review."""
 
     node: Node
-    """Whose fingerprint covers it."""
+    """The node whose fingerprint covers the text."""
     what: str
-    """`title`, `max_age of vx`: its name for a reader."""
+    """Name of the text for a reader, such as `title` or `max_age of vx`."""
     text: str
     meaning: Any
-    """Equal where two ways of writing mean the same."""
+    """A value that is equal for two texts with the same meaning."""
     owner: str = ""
-    """The table that it is in, as `signal vx`; empty where it is in none that comes and goes."""
+    """The table of the text, such as `signal vx`; "" if the table cannot be added or removed."""
 
 
 Key = tuple[str, str, str]
@@ -74,7 +74,7 @@ Key = tuple[str, str, str]
 
 
 def leaves(id: str, texts: ReviewedTexts) -> Mapping[Key, Leaf]:
-    """Every text of a requirement, in the order in which changes are listed."""
+    """Each text of a requirement, in the order in which changes are listed."""
     found = dict(_of_sentence(id, texts))
     declarations = _declarations(texts.bindings) if texts.bindings else None
     if texts.bindings is not None:
@@ -87,7 +87,7 @@ def _of_sentence(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
     written = _line(texts.sentence)
     sentence = texts.canonical or written
     yield ("", "", "sentence"), Leaf(Node(basis.SENTENCE, id), "sentence", written, sentence)
-    # A monitor quotes its sentence; what is in it means the same.
+    # A monitor quotes its sentence: another wording changes its text and not its meaning.
     wording = Leaf(Node(ARTEFACT, id), "wording", written, (sentence, written))
     yield ("", "", "wording"), wording
     for name, text in texts.params.items():
@@ -103,7 +103,7 @@ def _of_header(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
         yield ("", "", name), Leaf(node, name, text, text)
     yield ("", "", "parents"), Leaf(node, "parents", ", ".join(texts.parents), {*texts.parents})
     retired = texts.status == "retired"
-    yield ("", "", "status"), Leaf(in_force(id), "status", texts.status, retired)
+    yield ("", "", "status"), Leaf(status_node(id), "status", texts.status, retired)
     plan = Node(PLAN, id)
     yield ("", "", "verify"), Leaf(plan, "verify", ", ".join(texts.verify), {*texts.verify})
     for name, reason in texts.accept.items():
@@ -113,7 +113,7 @@ def _of_header(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
 
 
 def _of_parents(texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
-    """Of hazards, and of the requirements between."""
+    """The texts of hazards and of the requirements between them and this one."""
     tables: list[tuple[str, str, Mapping[str, str]]] = []
     for id, header in texts.above.items():
         texts_of = {name: text for name, text in _fields(header).items() if name != "parents"}
@@ -167,14 +167,14 @@ def _fields(record: Record) -> dict[str, Any]:
 _WORDS = ("text", "role", "kind")
 _OUTLINE = ("footprint", "sensor")
 _FIRST = {"expr", "value"}
-"""What a reader looks at first."""
+"""Fields that are listed first."""
 _CLOCK = ("tick", "time", "end", "phase", "rounding")
 
 
 def _of_bindings(
     id: str, bindings: Bindings, declarations: Declarations | None
 ) -> Mapping[Key, Leaf]:
-    """Of the clock and of every table; where these cannot be read, each text means itself."""
+    """The texts of clock and tables; if they cannot be read, a text is its own meaning."""
     found: dict[Key, Leaf] = {}
     for name, table in bindings.proposition.items():
         found |= _of_table(id, "proposition", name, table, _proposition(name, declarations))
@@ -196,7 +196,7 @@ def _of_bindings(
 def _of_table(
     id: str, kind: str, name: str, table: Table, meanings: Mapping[str, Any]
 ) -> Mapping[Key, Leaf]:
-    """Each field that is written or has a meaning of its own."""
+    """The fields of a table that are written or have a meaning of their own."""
     return {
         (kind, name, field): Leaf(
             Node(_covered_by(kind, field), id),
@@ -210,7 +210,7 @@ def _of_table(
 
 
 def _covered_by(kind: str, field: str) -> str:
-    """The kind of the node whose fingerprint the field changes."""
+    """The kind of node whose fingerprint covers the field."""
     if kind == "proposition" and field in _WORDS:
         return WORDS
     if kind == "variable":
@@ -250,7 +250,7 @@ def _variable(name: str, declarations: Declarations | None) -> Mapping[str, Any]
 
 @with_recursion_limit
 def _in_toml(value: Any) -> str:
-    """A text as it is; of anything else what the file says, on one line."""
+    """A string unchanged; any other value as TOML on one line."""
     if isinstance(value, str):
         return _line(value)
     if isinstance(value, dict):
@@ -271,7 +271,7 @@ def _line(text: str) -> str:
 
 @with_recursion_limit
 def _declarations(bindings: Bindings) -> Declarations | None:
-    """The tables, read as bindings are; None where they are none."""
+    """The declarations of the tables, or None if the tables are not valid bindings."""
     tables = {"clock": bindings.clock, "signal": bindings.signal}
     tables |= {"proposition": bindings.proposition, "variable": bindings.variable}
     text = tomli_w.dumps({kind: table for kind, table in tables.items() if table})
@@ -282,10 +282,10 @@ def _declarations(bindings: Bindings) -> Declarations | None:
 
 
 def agree(id: str, texts: ReviewedTexts, prints: Mapping[Node, str]) -> bool:
-    """Whether the texts of a review are those that its fingerprints were taken of.
+    """Whether the texts of a review match its fingerprints.
 
-    A lock may be untrusted. What its fingerprints do not vouch for is never shown as what was
-    accepted; the seal of a review, and so its signature, covers both.
+    A lock may be untrusted, so texts that do not match the fingerprints are never shown as
+    accepted. The seal of a review, and so its signature, covers fingerprints and texts.
     """
     own = dict(_fingerprints(id, texts))
     ours = {node for node in prints if node.kind in _COVERED}
@@ -298,7 +298,7 @@ _COVERED = (
     TEXT, HAZARD, PARENT, STATUS, PLAN, ACCEPTANCE, WORDS,
     PROOF, ANALYSIS,
 )  # fmt: skip
-"""The kinds of things that have texts; formulas and artefacts follow from them."""
+"""Kinds of nodes that have texts; formulas and artefacts are derived from them."""
 
 
 def _of(value: Any) -> str:
@@ -306,8 +306,8 @@ def _of(value: Any) -> str:
 
 
 def _fingerprints(id: str, texts: ReviewedTexts) -> Iterator[tuple[Node, str]]:
-    """What fretc would write of these texts."""
-    yield in_force(id), print_of_status(texts.status)
+    """The fingerprints that fretc computes from these texts."""
+    yield status_node(id), print_of_status(texts.status)
     for method in texts.verify:
         yield Node(PLAN, f"{id} {method}"), _of(method)
     for name, reason in texts.accept.items():
@@ -331,7 +331,7 @@ def _fingerprints(id: str, texts: ReviewedTexts) -> Iterator[tuple[Node, str]]:
 
 
 def _of_meaning(id: str, texts: ReviewedTexts) -> Iterator[tuple[Node, str]]:
-    """Of the sentence, its numbers, the clock and the bindings, read again."""
+    """Fingerprints of the sentence, its numbers, the clock and the bindings, parsed again."""
     declarations = _declarations(texts.bindings) if texts.bindings is not None else None
     wording = Source("fretc.lock", texts.sentence).span()
     requirement = (

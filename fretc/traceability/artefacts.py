@@ -1,4 +1,4 @@
-"""The files that targets make of a requirement, by name and hash."""
+"""The files that targets generate from a requirement, by name and hash."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from fretish.bindings.declarations import Declarations
 
 @dataclass(frozen=True, slots=True)
 class Product:
-    """A file that a target makes; where the target refuses, `sha256` is empty."""
+    """A file that a target generates; `sha256` is empty if the target refuses the requirement."""
 
     target: str
     file: str
@@ -32,8 +32,8 @@ _ALWAYS = ("monitor", "ltl", "ajpf", "json")
 def products(requirement: FormalizedRequirement | None) -> tuple[Product, ...]:
     """A product for each file of the requirement, and for each target that refuses it.
 
-    Other targets than `_ALWAYS` count only where `verify` of the requirement names them: all of
-    them may take longer than the rest of the report.
+    Targets outside of `_ALWAYS` are run only if `verify` of the requirement names them, because all
+    targets together may take longer than the rest of the report.
     """
     if requirement is None:
         return ()
@@ -43,7 +43,7 @@ def products(requirement: FormalizedRequirement | None) -> tuple[Product, ...]:
 
 
 def monitors(products_of: Mapping[int, Sequence[Product]]) -> Mapping[int, str]:
-    """The SHA-256 of each monitor that can be made, by the same keys."""
+    """Key of `products_of` → SHA-256 of the monitor, for each monitor that can be generated."""
     return {
         id: product.sha256
         for id, some in products_of.items()
@@ -53,38 +53,41 @@ def monitors(products_of: Mapping[int, Sequence[Product]]) -> Mapping[int, str]:
 
 
 _LANGUAGES = {"_monitor.c": "c", "lib.rs": "rust", "_monitor.mjs": "js"}
-"""How the names of monitors in other languages than Python end, and their target."""
+"""End of a file name → target, for monitors in other languages than Python."""
 
 
 def compiled_monitor(requirement: FormalizedRequirement, file: str) -> str:
-    """SHA-256 of the monitor of the requirement alone that would be in such a file; or nothing.
+    """SHA-256 of the file of this name that a target generates for the requirement alone, or "".
 
     Args:
         requirement: the requirement.
-        file: its name.
+        file: the name of the file.
     """
     for end, target in _LANGUAGES.items():
         if file.endswith(end):
             made = _of_target(TARGETS[target], requirement)
-            return next((one.sha256 for one in made if PurePath(one.file).name == file), "")
+            return next(
+                (product.sha256 for product in made if PurePath(product.file).name == file), ""
+            )
     return ""
 
 
 _JOINT = {"monitors.py": "monitor", "monitors.c": "c", "lib.rs": "rust", "monitors.mjs": "js"}
-"""The names of files with the monitor of many requirements, and their target."""
+"""Name of a file with a monitor for several requirements → target."""
 
 
 def joint_monitors(
     requirements: Sequence[FormalizedRequirement], proofs: Iterable[Proof]
 ) -> frozenset[str]:
-    """SHA-256 of each file with one monitor for several of the requirements, as it is made now.
+    """SHA-256 of each joint monitor that would be generated now for several requirements.
 
-    It is made of all of them, and of those that the proofs about one text are of: anyone who names
-    some requirements gets a file of these.
+    Joint monitors are generated for all requirements, and for each group of requirements whose
+    proofs are about the same file.
 
     Args:
-        requirements: all of a project, in its order; those that a target refuses are in no file.
-        proofs: about such files, among others.
+        requirements: all requirements of a project, in its order; refused ones are left out of
+        files.
+        proofs: the recorded proofs, about these and other files.
     """
     groups: dict[tuple[str, str], list[str]] = {}
     for proof in proofs:
@@ -97,19 +100,19 @@ def joint_monitors(
         named = [by_id[id] for id in dict.fromkeys(ids) if id in by_id]
         in_order = [requirement for requirement in requirements if requirement in named]
         orders = {
-            tuple(requirement.id for requirement in some): some
-            for some in (requirements, in_order, named)
+            tuple(requirement.id for requirement in group): group
+            for group in (requirements, in_order, named)
         }
-        found.update(_of_joint(file, some) for some in orders.values())
+        found.update(_of_joint(file, order) for order in orders.values())
     return frozenset(found - {""})
 
 
 def _of_joint(file: str, requirements: Sequence[FormalizedRequirement]) -> str:
-    """SHA-256 of one monitor for all requirements; empty where the target refuses all."""
+    """SHA-256 of one monitor for all requirements, or "" if the target refuses all of them."""
     target = TARGETS[_JOINT[file]]
-    accepted = [each for each in requirements if target.refuse(each) is None]
+    accepted = [requirement for requirement in requirements if target.refuse(requirement) is None]
     made = target.emit(accepted, Options(one_file=True)) if accepted else ()
-    return next((sha256(each.text) for each in made if each.path.name == file), "")
+    return next((sha256(product.text) for product in made if product.path.name == file), "")
 
 
 def _of_target(target: Target, requirement: FormalizedRequirement) -> tuple[Product, ...]:
@@ -125,7 +128,7 @@ def _of_target(target: Target, requirement: FormalizedRequirement) -> tuple[Prod
 
 
 def shared_products(declarations: Declarations | None) -> tuple[Product, ...]:
-    """The products of the bindings alone: the interceptor, and its declared assumptions."""
+    """The products of the bindings: the interceptor, and its declared assumptions."""
     declared = declarations.interceptor if declarations else None
     if declarations is None or declared is None:
         return ()

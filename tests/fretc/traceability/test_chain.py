@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from compiler.project.project import Project
 from fretc.audit.evidence import reader as reading
 from fretc.audit.evidence.result_summaries import ResultSummaries
-from fretc.report.traceability.chain import Chain, Link, Node, chains, suspects
+from fretc.traceability.chain import Chain, Link, Node, chains, suspects
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.fretc.report import cases
 

@@ -1,4 +1,4 @@
-"""What has changed since a review: each change by itself, with its texts before and after."""
+"""Changes since a review, each with its text before and after."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 
 from compiler.files.records import replace
 from fretc.audit.evidence import basis
-from fretc.report.traceability import word_diff
-from fretc.report.traceability.chain import (
+from fretc.traceability import word_diff
+from fretc.traceability.chain import (
     ACCEPTANCE,
     ADDED,
     ANALYSIS,
@@ -32,60 +32,60 @@ from fretc.report.traceability.chain import (
     changed,
     upstream_of,
 )
-from fretc.report.traceability.meanings import Key, Leaf, leaves
-from fretc.report.traceability.texts import Bindings, ReviewedTexts
-from fretc.report.traceability.word_diff import Segment
+from fretc.traceability.meanings import Key, Leaf, leaves
+from fretc.traceability.texts import Bindings, ReviewedTexts
+from fretc.traceability.word_diff import Segment
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One thing that is not as it was reviewed."""
+    """One change since a review."""
 
     node: Node
-    """What it is part of."""
+    """The node that the changed text is part of."""
     what: str
-    """`title`, `max_age of vx`."""
+    """Name of the changed text, such as `title` or `max_age of vx`."""
     before: str | None
-    """As it was written; empty: it was not there; None: the lock does not say."""
+    """Text at the review; "" if there was none; None if the lock does not record it."""
     after: str | None
-    """As it is written; empty: it is not there; None: it has no text."""
+    """Text now; "" if there is none; None if the item has no text."""
     is_of_evidence: bool = False
-    """The evidence is about another one; since the review it has not changed."""
+    """Whether only the evidence is about another version, without a change since the review."""
     is_table: bool = False
-    """It came or went as a whole: what is not there has no default."""
+    """Whether a whole table was added or removed, so that an absent text has no default."""
 
     @property
     def text(self) -> str:
-        """`speed: vx <= 0.40 m/s → 0.35 m/s`: only what differs, where that is one word."""
+        """`speed: vx <= 0.40 m/s → 0.35 m/s`: only the differing word, if there is only one."""
         if self.is_of_evidence:
             if self.node.kind == MEMBER:
-                return f"the analysis is not about {self.node.name} as it is now"
+                return f"the analysis used another version of {self.node.name}"
             known = self.node.kind in (*basis.KINDS, basis.FRETC)
-            about = f"what was audited or proved is about another {self.what}"
+            about = f"the evidence is about another version of: {self.what}"
             return basis.why(self.node.kind) if known else about
         if self.before is None:
             now = f" is {self.after} now" if self.after else " changed"
-            return f"{self.what}{now}; what it was is not in the lock"
+            return f"{self.what}{now}; the lock does not record the earlier value"
         if self.after is None:
             return f"{self.what} changed"
         return f"{self.what}: {word_diff.short(*self._texts)}"
 
     @property
     def _absent(self) -> str:
-        """What stands for a text that is not there: a field that is left out has a default."""
+        """The words for an absent text; an omitted field has a default."""
         has_default = self.node.kind in _WITH_DEFAULTS and not self.is_table
         return "not stated" if has_default else "none"
 
     @property
     def brief(self) -> str:
-        """The same in a sentence: of a long one the beginning."""
+        """`text` within a sentence, cut if it is long."""
         if not self.is_of_evidence and (self.before is None or self.after is None):
             return f"{self.what} changed"
         return self.text if len(self.text) <= _BRIEF else f"{self.text[: _BRIEF - 2]} …"
 
     @property
     def segments(self) -> tuple[Segment, ...]:
-        """Both texts as one, word by word; none where one of them is not known."""
+        """Word difference of both texts; empty if one of them is unknown."""
         if self.before is None or self.after is None:
             return ()
         return word_diff.segments(*self._texts)
@@ -95,7 +95,7 @@ class Change:
         return self.before or self._absent, self.after or self._absent
 
     def makes_suspect(self, link: Suspect) -> bool:
-        """Whether a link is suspect because of it."""
+        """Whether this change makes the link suspect."""
         kind = self.node.kind
         return any(c == self.node or (c.kind == kind and kind in _MANY) for c in link.causes)
 
@@ -112,7 +112,7 @@ class Change:
 
 
 _BRIEF = 120
-"""Characters of a change within a sentence."""
+"""Maximum number of characters of a change within a sentence."""
 _WITH_DEFAULTS = (basis.BINDINGS, basis.CLOCK, WORDS, FORMULAS, ARTEFACT)
 
 
@@ -123,14 +123,14 @@ def changes(
     texts: ReviewedTexts | None,
     causes: Collection[Node],
 ) -> tuple[Change, ...]:
-    """Each change of a requirement since its review, and nothing that follows from another one.
+    """Each change of a requirement since its review, without changes that follow from others.
 
     Args:
-        chain: as it is now.
-        prints: the fingerprints of the review.
-        verdicts: those of the review, by run.
-        texts: those of the review; None: it has none that its fingerprints vouch for.
-        causes: what makes links of the requirement suspect: none of it is left out.
+        chain: the present chain.
+        prints: node → SHA-256 at the review.
+        verdicts: run → verdict at the review.
+        texts: the texts of the review; None if its fingerprints do not confirm them.
+        causes: the nodes that make links of the requirement suspect; each of them is reported.
     """
     comparison = _Comparison(chain, prints, verdicts, texts)
     found = [*comparison.of_texts(), *comparison.of_nodes()]
@@ -138,9 +138,9 @@ def changes(
 
 
 def in_words(changes: Sequence[Change]) -> str:
-    """The first changes in one sentence, those of requirements before those of evidence."""
-    own = [each.brief for each in changes if not each.is_of_evidence]
-    named = own or [each.brief for each in changes]
+    """One sentence with the first changes, changes of requirements before changes of evidence."""
+    own = [change.brief for change in changes if not change.is_of_evidence]
+    named = own or [change.brief for change in changes]
     left = len(named) - _IN_A_SENTENCE
     more = [f"and {left} more"] if left > 0 else []
     return "; ".join([*named[:_IN_A_SENTENCE], *more])
@@ -150,7 +150,7 @@ _IN_A_SENTENCE = 3
 
 
 class _Comparison:
-    """One requirement beside its review."""
+    """Comparison of one requirement with its review."""
 
     def __init__(
         self,
@@ -169,7 +169,7 @@ class _Comparison:
     # Texts
 
     def of_texts(self) -> Iterator[Change]:
-        """Each text that is another one, and means something else."""
+        """Changes of texts whose meaning has changed."""
         now = self._chain.texts
         if self._texts is None or now is None or not self._nodes:
             return
@@ -198,7 +198,7 @@ class _Comparison:
     # Things without a text
 
     def of_nodes(self) -> Iterator[Change]:
-        """Each thing that has changed, whose texts do not show it, and that follows from none."""
+        """Changes of nodes that no text shows and that do not follow from another change."""
         above = upstream_of(self._now, self._chain.links) if self._nodes - self._explained else {}
         for node in sorted(self._nodes - self._explained):
             is_new = node not in self._prints and node.kind in ADDED
@@ -208,17 +208,17 @@ class _Comparison:
                 yield self._named(node)
 
     def _follows(self, node: Node) -> bool:
-        """Whether it is made of something else that has changed, without a link."""
+        """Whether the change of the node follows from a changed node to which it has no link."""
         id = self._chain.requirement
         kinds = {each.kind for each in self._nodes if each.kind != TEXT or each.name == id}
-        if node.kind == basis.FRETC:  # it has no version where it has no formulas
+        if node.kind == basis.FRETC:  # A node has no version if it has no formulas.
             is_other = node in self._prints and node in self._now
             return not is_other and basis.SENTENCE in kinds
         sources = _SOURCES if self._texts is None else {**_SOURCES, **_SOURCES_OF_TEXTS}
         return bool(kinds & sources.get(node.kind, frozenset()))
 
     def _named(self, node: Node) -> Change:
-        """The change of a thing that is known by its fingerprint."""
+        """The change of a node of which only the fingerprint is recorded."""
         run = node.name.removeprefix(f"{self._chain.requirement} ")
         before, after = self._prints.get(node, ""), self._now.get(node, "")
         if node.kind == LOG and node not in self._now:
@@ -233,7 +233,7 @@ class _Comparison:
         return Change(node, thing(node), None, None)
 
     def of_causes(self, causes: Collection[Node], found: Collection[Change]) -> Iterator[Change]:
-        """Of what makes links suspect that which no other change names."""
+        """Causes of suspect links that no change in `found` reports."""
         own = Node(MEMBER, self._chain.requirement)
         for cause in causes:
             if cause == own and found:
@@ -245,7 +245,7 @@ class _Comparison:
 
 
 def thing(node: Node) -> str:
-    """A thing of the chain from hazard to review: `artefact r1_monitor.py`, `the clock`."""
+    """The name of a node for a reader: `artefact r1_monitor.py`, `the clock`."""
     if node.kind in (basis.CLOCK, basis.TOPICS):
         return f"the {node.kind}"
     return f"{node.kind} {node.name}"
@@ -256,22 +256,22 @@ def _digest(sha256: str) -> str:
 
 
 _MANY = (ARTEFACT, FORMULAS, PLAN, SHARED)
-"""Kinds of which a requirement has several, and a text is about all of them."""
+"""Kinds with several nodes per requirement, all of which one text is about."""
 _ONLY_OF_EVIDENCE = (VERDICT, basis.TOPICS)
-"""Kinds of things that are there where runs are: their log says that it is gone."""
+"""Kinds of nodes that exist only if there are runs; the node of the log reports a removed run."""
 _SOURCES: Mapping[str, frozenset[str]] = {
     ARTEFACT: frozenset({TEXT, basis.PARAMS, basis.BINDINGS, WORDS, FORMULAS, PLAN}),
     FORMULAS: frozenset({basis.BINDINGS}),
     SHARED: frozenset({PROOF}),
 }
-"""What else a thing may be made of, without a link to it."""
+"""Kind of a node → other kinds that it may be derived from without a link."""
 _SOURCES_OF_TEXTS: Mapping[str, frozenset[str]] = {
     basis.BINDINGS: frozenset({basis.SENTENCE}),
     WORDS: frozenset({basis.SENTENCE, basis.BINDINGS}),
     basis.TOPICS: frozenset({basis.SENTENCE, basis.BINDINGS}),
     PROOF: frozenset({basis.SENTENCE, basis.BINDINGS}),
 }
-"""The same, where no text shows that the thing itself is another one."""
+"""`_SOURCES` for kinds whose texts do not show a change of the node itself."""
 
 
 # One change of many texts ----------------------------------------------------------------------
@@ -283,7 +283,7 @@ _ABOVE = (HAZARD, PARENT, TEXT)
 def _without_equal_tables(
     then: ReviewedTexts, now: ReviewedTexts
 ) -> tuple[ReviewedTexts, ReviewedTexts]:
-    """Both without the tables of bindings that are the same: to read them takes time."""
+    """Both texts without equal tables of bindings, which would take time to read."""
     before, after = then.bindings, now.bindings
     if before is None or after is None:
         return then, now
@@ -302,7 +302,7 @@ def _tables(bindings: Bindings) -> tuple[Any, ...]:
 def _merged(
     different: _Pairs, before: Mapping[Key, Leaf], after: Mapping[Key, Leaf]
 ) -> Iterator[Change]:
-    """A change for each text; one for a table that came or went, if it follows from no other."""
+    """A change for each text, or for each added or removed table that follows from no other."""
     owners = [{leaf.owner for leaf in side.values()} for side in (before, after)]
     lone = {owner for owner in owners[0] ^ owners[1] if owner}
     for key, (then, now) in different.items():
@@ -316,7 +316,7 @@ def _merged(
 
 
 def _is_repetition(key: Key, different: _Pairs) -> bool:
-    """Whether another text that differs says as much."""
+    """Whether another changed text already implies this change."""
     if key == _WORDING:
         return _SENTENCE in different
     own = _SENTENCE in different or any(field == "path" for _, _, field in different)
@@ -335,7 +335,7 @@ _FACE = {
     "proposition": "expr", "signal": "path", "variable": "value", HAZARD: "title", PARENT: "title",
     TEXT: "title", PROOF: "result", ANALYSIS: "verdict", "params": "", ACCEPTANCE: "",
 }  # fmt: skip
-"""The field that stands for a table that came or went."""
+"""Kind of a table → the field that represents an added or removed table."""
 
 
 def _name(key: Key, leaf: Leaf) -> str:
@@ -344,7 +344,7 @@ def _name(key: Key, leaf: Leaf) -> str:
 
 
 def _comes_with(kind: str, different: _Pairs, lone: Collection[str]) -> bool:
-    """Whether a table comes or goes because something else names it now, or does no more."""
+    """Whether a table is added or removed only because another text began or ceased to use it."""
     if kind in _ABOVE:
         return any(field == "parents" for _, _, field in different)
     sentences = [key for key in different if key == _SENTENCE or key[0] == "variable"]

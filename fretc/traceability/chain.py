@@ -1,7 +1,7 @@
-"""The chain from hazard to review as a graph: a fingerprint for each thing, a link for each step.
+"""The chain from hazard to review as a graph: nodes with fingerprints, and dependency links.
 
-A change since a review makes the links downstream of it suspect, and no others: a suspect link
-names what to review again, and the rest still stands.
+A change since a review makes only the links downstream of it suspect. A suspect link names what to
+review again; the other reviews stay valid.
 
 Source: ISO 26262-8 clause 6 (traceability of safety requirements) asks for links
 that can be followed both ways; Doorstop and StrictDoc call a link suspect whose parent changed.
@@ -25,11 +25,11 @@ from fretc.audit.bases import audited_topics, bases
 from fretc.audit.evidence import basis
 from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.result_summaries import Recorded, ResultSummaries, ResultSummary
-from fretc.report.traceability import texts
-from fretc.report.traceability.analyses import Answer, answers
-from fretc.report.traceability.artefacts import Product, monitors, shared_products
-from fretc.report.traceability.artefacts import products as products_of
-from fretc.report.traceability.texts import ReviewedTexts
+from fretc.traceability import texts
+from fretc.traceability.analyses import Answer, answers
+from fretc.traceability.artefacts import Product, monitors, shared_products
+from fretc.traceability.artefacts import products as products_of
+from fretc.traceability.texts import ReviewedTexts
 from fretish.bindings.canonical import described, digest
 from fretish.documents import RequirementEntry
 
@@ -40,26 +40,26 @@ LOG, VERDICT, REVIEW = "log", "verdict", "review"
 PROOF, SHARED = "proof", "shared"
 ANALYSIS, MEMBER = "analysis", "member"
 DERIVED = (FORMULAS, ARTEFACT, VERDICT, PROOF, ANALYSIS)
-"""Kinds of nodes that are made of those upstream; of any other the fingerprint is its own."""
+"""Kinds of nodes that are derived from nodes upstream."""
 ADDED = (LOG, VERDICT, PROOF, ANALYSIS, SHARED, PLAN, ARTEFACT, basis.TOPICS)
-"""Kinds of nodes that may come after a review without a change of what was reviewed."""
+"""Kinds of nodes that may be added after a review without invalidating it."""
 _READINGS = ("ltl", "json")
-"""Targets that only print formulas, which have fingerprints of their own."""
+"""Targets that only print formulas; formulas have nodes of their own."""
 
 
 class Node(NamedTuple):
-    """One thing of the chain: `hazard` HAZ-001, `artefact` r1_monitor.py, `log` traces/a.mcap."""
+    """One item of the chain: `hazard` HAZ-001, `artefact` r1_monitor.py, `log` traces/a.mcap."""
 
     kind: str
     name: str
 
     def __str__(self) -> str:
-        """The text in a lock."""
+        """The text of the node in a lock."""
         return f"{self.kind}:{self.name}"
 
 
 class Link(NamedTuple):
-    """The target depends on the source."""
+    """A dependency: the target depends on the source."""
 
     source: Node
     target: Node
@@ -69,30 +69,30 @@ class Link(NamedTuple):
 class Chain:
     """All nodes and links of one requirement.
 
-    Those of its runs are many and all alike: they are made when they are asked for.
+    Nodes and links of runs are computed on demand, because there are many of them.
     """
 
     requirement: str
     definition: Mapping[Node, str]
-    """SHA-256 of each node but the review, and those of the runs."""
+    """SHA-256 of each node, except the review and the nodes of runs."""
     steps: tuple[Link, ...]
-    """All links but those of the runs, sorted."""
+    """All links except those of runs, sorted."""
     results: Sequence[ResultSummary] = ()
-    """Of each run."""
+    """The result of the requirement in each run."""
     sources: tuple[Node, ...] = ()
-    """What each verdict depends on, beside its log."""
+    """The nodes that each verdict depends on, except its log."""
     differences: Mapping[Recorded, tuple[Node, ...]] = field(default_factory=dict)
-    """What a verdict may rest on that is out of date → the nodes that differ."""
+    """Outdated inputs of verdicts → the nodes that differ."""
     outdated_proofs: Mapping[Node, tuple[Node, ...]] = field(default_factory=dict)
-    """Each proof or analysis that is out of date → the nodes that differ."""
+    """Each outdated proof or analysis → the nodes that differ."""
     texts: ReviewedTexts | None = None
-    """What the fingerprints are taken of, as it is written."""
+    """The texts that the fingerprints are computed from."""
     answer: Answer | None = None
-    """What is known of it and the others together; None: nobody has asked."""
+    """The result of the analysis of all requirements; None if there is none."""
 
     @property
     def prints(self) -> Mapping[Node, str]:
-        """SHA-256 of each node but the review; white space, comments and order do not count."""
+        """SHA-256 of each node except the review; white space, comments and order are ignored."""
         prints = dict(self.definition)
         for result in self.results:
             prints[Node(LOG, result.run)] = _print_of_log(result)
@@ -101,7 +101,7 @@ class Chain:
 
     @property
     def links(self) -> tuple[Link, ...]:
-        """All of them, sorted."""
+        """All links, sorted."""
         review = Node(REVIEW, self.requirement)
         links = dict.fromkeys(self.steps)
         for result in self.results:
@@ -113,15 +113,17 @@ class Chain:
 
     @property
     def verdicts(self) -> Mapping[str, str]:
-        """Run → the word of its verdict."""
+        """Run → its verdict."""
         return {result.run: result.verdict for result in self.results}
 
     @property
     def outdated(self) -> Mapping[Node, tuple[Node, ...]]:
-        """Each verdict, proof or analysis that is out of date → the nodes that differ."""
+        """Each outdated verdict, proof or analysis → the nodes that differ."""
         if not self.differences:
             return self.outdated_proofs
-        pairs = ((_verdict(each), self.differences.get(each.rests_on)) for each in self.results)
+        pairs = (
+            (_verdict(result), self.differences.get(result.rests_on)) for result in self.results
+        )
         return {node: nodes for node, nodes in pairs if nodes} | {**self.outdated_proofs}
 
     @property
@@ -145,12 +147,12 @@ def chains(
     """The chain of each requirement, in the order of the project.
 
     Args:
-        project: with or without errors; the chain of what is not formalized ends early.
-        briefs: of the evidence; None where no run has been audited.
-        artefacts: the products of each requirement, by its `id()`; None: `products` makes them.
+        project: with or without errors; the chain of an unformalized requirement ends early.
+        briefs: results of the evidence; None if no run was audited.
+        artefacts: `id()` of a requirement → its products; None: computed by `products`.
         proofs: the results of verification.
-        known: what a verdict on each requirement rests on now; None: `bases` makes it.
-        analyzed: whether all can be kept together; None: nobody has asked.
+        known: the present inputs of a verdict on each requirement; None: computed by `bases`.
+        analyzed: the file of `fretc analyze`; None if there is none.
     """
     requirements = {id(requirement.entry): requirement for requirement in project.formalized}
     results = briefs.by_requirement if briefs else {}
@@ -171,7 +173,7 @@ def chains(
 
 @dataclass(frozen=True, slots=True)
 class _Common:
-    """What all chains of a project share."""
+    """Data that all chains of a project share."""
 
     project: Project
     texts: Mapping[str, RequirementEntry]
@@ -179,15 +181,15 @@ class _Common:
     audited_by: str
     """The version of fretc that wrote the evidence."""
     acceptances: Mapping[int | None, Sequence[Acceptance]]
-    """Those in the header of each requirement, by its `id()`; None → those in the settings."""
+    """`id()` of a requirement → acceptances in its header; None → acceptances in the settings."""
     shared: Mapping[str, str]
-    """Name of each shared product → its SHA-256; empty where there is no proof."""
+    """Name of each shared product → its SHA-256; empty if there is no proof."""
     topics: frozenset[str]
-    """Those that an audit of the project reads."""
+    """Topics that an audit of the project reads."""
     written: Mapping[str, Any]
     """The tables of the bindings."""
     answers: Mapping[str, Answer]
-    """What is known of all requirements together, by id."""
+    """Requirement id → result of the analysis of all requirements."""
 
 
 def _common(
@@ -217,8 +219,10 @@ def _by_requirement(
     acceptances: Iterable[Acceptance],
 ) -> Mapping[int | None, Sequence[Acceptance]]:
     found: dict[int | None, list[Acceptance]] = {}
-    for each in acceptances:
-        found.setdefault(id(each.requirement) if each.requirement else None, []).append(each)
+    for acceptance in acceptances:
+        found.setdefault(id(acceptance.requirement) if acceptance.requirement else None, []).append(
+            acceptance
+        )
     return found
 
 
@@ -285,7 +289,7 @@ class _ChainBuilder:
         *,
         audited: bool,
     ) -> ReviewedTexts:
-        """What the fingerprints are taken of."""
+        """The texts that the fingerprints are computed from."""
         declarations, written = self._project.declarations, self._common.written
         return ReviewedTexts(
             sentence=entry.wording.text,
@@ -303,7 +307,7 @@ class _ChainBuilder:
             above=self._above,
             bindings=texts.bindings(requirement, declarations, written) if declarations else None,
             topics=tuple(sorted(self._common.topics)) if audited and declarations else None,
-            proofs={_claim(each): (each.result, *each.assumptions) for each in proofs}
+            proofs={_claim(proof): (proof.result, *proof.assumptions) for proof in proofs}
             if requirement
             else {},
             loop=texts.loop(written) if proofs and declarations else {},
@@ -312,22 +316,22 @@ class _ChainBuilder:
         )
 
     def _add_status_and_plans(self, requirement: RequirementEntry) -> None:
-        """Add status and planned methods: a review depends on them, and no verdict does."""
-        self._add(in_force(self._id), print_of_status(requirement.status))
+        """Add status and planned methods; only the review depends on them, no verdict."""
+        self._add(status_node(self._id), print_of_status(requirement.status))
         for method in requirement.verify:
             self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
 
     def _accepted(self, entry: RequirementEntry, requirement: FormalizedRequirement | None) -> None:
-        """The warnings that a reviewer accepts with it: no verdict depends on them."""
+        """Add the warnings that a reviewer accepts; no verdict depends on them."""
         topics = _topics(requirement, self._project)
         known = self._common.acceptances
-        for each in (*known.get(id(entry), ()), *known.get(None, ())):
-            if each.about != TOPIC or each.subject in ("", *topics):
-                self._accept[each.name] = each.reason
-                self._add(Node(ACCEPTANCE, each.name), print_of_words(each.reason))
+        for acceptance in (*known.get(id(entry), ()), *known.get(None, ())):
+            if acceptance.about != TOPIC or acceptance.subject in ("", *topics):
+                self._accept[acceptance.name] = acceptance.reason
+                self._add(Node(ACCEPTANCE, acceptance.name), print_of_words(acceptance.reason))
 
     def _add_parents(self, requirement: RequirementEntry, visited: set[str]) -> None:
-        """Add the hazards and requirements that it traces to, all the way up."""
+        """Add all hazards and requirements above the requirement."""
         text = Node(TEXT, requirement.id)
         self._add(text, print_of_header(texts.above(requirement)))
         for parent in requirement.parents:
@@ -350,7 +354,7 @@ class _ChainBuilder:
     def _add_artefacts(
         self, requirement: FormalizedRequirement, sentence: Node, artefacts: Iterable[Product]
     ) -> Mapping[str, Node]:
-        """Add formulas, words and artefacts; gives the artefact of each target."""
+        """Add formulas, meanings and artefacts; return target → artefact."""
         formulas, words = Node(FORMULAS, requirement.id), Node(WORDS, requirement.id)
         clock, fretc = self._add_clock(), Node(basis.FRETC, _VERSION)
         self._add(formulas, _formulas(requirement))
@@ -377,7 +381,7 @@ class _ChainBuilder:
         return node
 
     def _add_sources(self, monitor: Node | None, *, audited: bool) -> Mapping[str, Node]:
-        """Add the nodes that a verdict rests on; gives them by kind."""
+        """Add the inputs of a verdict; return kind → node."""
         nodes = {
             basis.FRETC: Node(basis.FRETC, _VERSION),
             basis.SENTENCE: Node(basis.SENTENCE, self._id),
@@ -392,7 +396,7 @@ class _ChainBuilder:
         return nodes
 
     def _sources_of_verdicts(self, sources: Mapping[str, Node]) -> tuple[Node, ...]:
-        """What each verdict depends on; a monitor stands between the sentence and the verdict."""
+        """The direct inputs of each verdict; the monitor takes the place of the sentence."""
         has_monitor = sources[basis.MONITOR] in self._prints
         return tuple(
             source
@@ -403,7 +407,7 @@ class _ChainBuilder:
     def _differences(
         self, results: Sequence[ResultSummary], sources: Mapping[str, Node]
     ) -> Mapping[Recorded, tuple[Node, ...]]:
-        """Each basis of results that is out of date → the nodes that differ."""
+        """Outdated inputs of results → the nodes that differ."""
         kinds_of = {
             recorded: outdated(recorded, self._common.audited_by, self._basis)
             for recorded in {result.rests_on for result in results}
@@ -415,7 +419,7 @@ class _ChainBuilder:
         }
 
     def _add_proofs(self, requirement: FormalizedRequirement, proofs: Sequence[Proof]) -> None:
-        """Add each proof, with the texts and assumptions that it is about."""
+        """Add each proof, with its files and assumptions."""
         now = self._common.shared
         for proof in proofs:
             node = Node(PROOF, f"{requirement.id} {_claim(proof)}")
@@ -433,7 +437,7 @@ class _ChainBuilder:
                     self._outdated_proofs[node] = (*before, source)
 
     def _add_answer(self, answer: Answer) -> None:
-        """Add what is known of it and the others together, with those that it is not about."""
+        """Add the result of the analysis, with the members that have changed since."""
         node = Node(ANALYSIS, self._id)
         self._add(node, print_of_proof(answer.verdict, answer.findings))
         self._link(Node(FORMULAS, self._id), node)
@@ -451,32 +455,32 @@ class _ChainBuilder:
 
 _VERSION = "version"
 IN_FORCE = digest("in force")
-"""The fingerprint of the status of a requirement that is claimed, as a draft or approved."""
+"""The fingerprint of the status of a draft or approved requirement."""
 
 
 def print_of_status(status: str) -> str:
-    """Whether it is claimed: a draft and an approved one are."""
+    """Fingerprint of a status: drafts and approved requirements share one."""
     return digest("retired") if status == "retired" else IN_FORCE
 
 
-def in_force(requirement: str) -> Node:
-    """Whether a requirement is claimed, or retired."""
+def status_node(requirement: str) -> Node:
+    """The node of the status of a requirement."""
     return Node(STATUS, requirement)
 
 
 def outdated(recorded: Recorded, audited_by: str, now: Basis) -> tuple[str, ...]:
-    """The kinds of things that a result rests on and that have changed since its audit."""
+    """The kinds of inputs of a result that have changed since its audit."""
     then = {**dict(zip(basis.KINDS, recorded, strict=True)), basis.FRETC: audited_by}
     return basis.outdated(then, {**now, basis.FRETC: __version__})
 
 
 def _print_of_log(result: ResultSummary) -> str:
-    """SHA-256 of the log, or of its summary where the audit read its index only; or ""."""
+    """SHA-256 of the log, or of its summary if the audit read only its index; or "" if unknown."""
     return result.log or result.fingerprints.log_summary or ""
 
 
 def _topics(requirement: FormalizedRequirement | None, project: Project) -> set[str]:
-    """Which the propositions of a requirement are read from."""
+    """The topics from which the propositions of a requirement are computed."""
     if requirement is None or project.declarations is None:
         return set()
     read = project.declarations.restricted_to(requirement.watched)
@@ -490,17 +494,17 @@ def print_of_header(header: texts.ParentRequirement) -> str:
 
 
 def print_of_hazard(hazard: Hazard) -> str:
-    """Its texts and its id."""
+    """Fingerprint of the texts and the id of a hazard."""
     return print_of_words(asdict(hazard))
 
 
 def print_of_words(value: Any) -> str:
-    """Texts, whatever their white space."""
+    """Fingerprint of texts, without regard to white space."""
     return digest(_normal(value))
 
 
 def print_of_proof(result: str, assumptions: Iterable[str]) -> str:
-    """What was proved of a claim, or analyzed, and under which assumptions."""
+    """Fingerprint of the result and the assumptions of a proof or analysis."""
     return digest([result, sorted(assumptions)])
 
 
@@ -531,28 +535,28 @@ def _normal(value: Any) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class Suspect:
-    """A link that no longer stands on what was reviewed."""
+    """A link that depends on an item that has changed since the review."""
 
     link: Link
     causes: tuple[Node, ...]
-    """The first changes upstream of it, without changes that follow from these."""
+    """The original changes upstream of the link, without changes that follow from them."""
 
 
 def changed(prints: Mapping[Node, str], locked: Mapping[Node, str]) -> tuple[Node, ...]:
-    """The nodes with another fingerprint than in the lock, new nodes, and gone ones; sorted."""
+    """The nodes that were changed, added or removed since the lock, sorted."""
     return tuple(
         sorted(node for node in {*prints, *locked} if prints.get(node) != locked.get(node))
     )
 
 
 def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
-    """The links downstream of what has changed since the lock, those nearest to it first.
+    """The links downstream of changes since the lock, those nearest to a change first.
 
-    A verdict or proof that is out of date is suspect too, whatever the lock has: a verdict on
-    another binding stays one when the binding of the review has come back.
+    An outdated verdict or proof is suspect too, whatever the lock records: a verdict on changed
+    bindings stays outdated when the reviewed bindings are restored.
 
     Args:
-        chain: as it is now.
+        chain: the present chain.
         locked: the fingerprints in the review.
     """
     prints, links, outdated_nodes = chain.prints, chain.links, chain.outdated
@@ -602,8 +606,10 @@ def upstream_of(nodes: Iterable[Node], links: Sequence[Link]) -> dict[Node, froz
 
     def reach(node: Node) -> frozenset[Node]:
         if node not in upstream:
-            upstream[node] = frozenset()  # a requirement may be its own ancestor
-            upstream[node] = frozenset(above[node]).union(*(reach(each) for each in above[node]))
+            upstream[node] = frozenset()  # A requirement may be its own ancestor.
+            upstream[node] = frozenset(above[node]).union(
+                *(reach(source) for source in above[node])
+            )
         return upstream[node]
 
     for node in above:
