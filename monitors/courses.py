@@ -80,7 +80,7 @@ class _Persistence:
     def __init__(self, duration: int) -> None:
         self.duration = duration
         self.ends: dict[Truth, int] = {}
-        """Truth value → the time at which it last ended."""
+        """Truth value -> the time at which it last ended."""
         self.current: Truth = None
         self.state: Truth = None
 

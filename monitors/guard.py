@@ -91,7 +91,7 @@ class Guard:
         self._heard: dict[str, float] = {}
         self._counts = dict.fromkeys(setting.topics, 0)
         self._unreadable: dict[str, str] = {}
-        """Topic whose last message could not be read → the reason."""
+        """Topic whose last message could not be read -> the reason."""
         self._owed: tuple[Truth, ...] = (None,) * len(self._ids)
         self._violated: set[str] = set()
         """The requirements that were violated in earlier runs."""
@@ -276,7 +276,7 @@ def single_signals(
         setting: the configuration from the bindings.
         topic: the topic of the message.
         message: an empty message.
-        types: function that gives field → type name of a message, as the middleware names it.
+        types: function that gives field -> type name of a message, as the middleware names it.
 
     Raises:
         ValueError: the message does not have a field of the bindings.

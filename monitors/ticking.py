@@ -161,7 +161,7 @@ class Ticking:
         return range(0) if found is None else range(found + self._phase, passed, self._period)
 
     def _begun(self, passed: int) -> dict[str, int]:
-        """Topic that began before `passed` → the time of its first message."""
+        """Topic that began before `passed` -> the time of its first message."""
         return {topic: first for topic, first in self._firsts.items() if first < passed}
 
     def _origin(self, passed: int, *, ended: bool) -> int | None:

@@ -197,7 +197,7 @@ _COMPARE: Mapping[str, Callable[[float, float], bool]] = {
     "!=": operator.ne,
 }
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "!=": "!="}
-"""Comparison operator → the equivalent operator for exchanged sides."""
+"""Comparison operator -> the equivalent operator for exchanged sides."""
 
 
 def compared(left: Term, sign: str, right: Term) -> Truth:

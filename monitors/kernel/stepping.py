@@ -238,7 +238,7 @@ class Monitor:
     """SHA-256 of the generated code: a state fits no other."""
     REQUIREMENTS: ClassVar[tuple[Requirement, ...]]
     PROPOSITIONS: ClassVar[Mapping[str, str]]
-    """Proposition → its parameter of `step`."""
+    """Proposition -> its parameter of `step`."""
     LITERALS: ClassVar[tuple[tuple[str, str, bool], ...]]
     """Each parameter of `columns`, its proposition, and False if it is negated."""
     RAIL: ClassVar[type[Rail]]
