@@ -148,7 +148,7 @@ def test_the_frame_of_a_model() -> None:
 
 def test_the_frame_says_that_it_is_one() -> None:
     text = emitted("prism", PROBABLE)["r1.prism"]
-    assert "A frame to be replaced: it runs, and it says nothing about your system." in text
+    assert "A frame to be replaced: it runs, but it is not a model of your system." in text
     assert "//   prism r1.prism r1.props -const p_p=0.5,p_q=0.5\n" in text
 
 
