@@ -22,14 +22,14 @@ from fretc.api.refusal import too_deep
 from fretc.terminal.completion import answered
 from fretc.terminal.group import DEFAULT, Commands, Registry
 from fretc.terminal.output import (
-    BAD,
-    INTERRUPTED,
-    SHOWN,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
     final_status,
     not_written,
-    say,
-    say_accepted,
-    say_line,
+    print_accepted_count,
+    print_diagnostics,
+    print_status,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.limits import ExceededError, exceeded
@@ -125,36 +125,36 @@ def main() -> None:
     try:
         _run()
         sys.stdout.flush()
-        raise SystemExit(SHOWN)
+        raise SystemExit(EXIT_OK)
     except click.exceptions.Exit as exit_:
         raise SystemExit(exit_.exit_code) from None
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
-        raise SystemExit(SHOWN) from None
+        raise SystemExit(EXIT_OK) from None
     except click.ClickException as error:
-        say([_bad_usage(error)])
-        raise SystemExit(BAD) from None
+        print_diagnostics([_bad_usage(error)])
+        raise SystemExit(EXIT_USAGE) from None
     except (click.Abort, KeyboardInterrupt):
-        say_line("stopped")
-        raise SystemExit(INTERRUPTED) from None
+        print_status("stopped")
+        raise SystemExit(EXIT_INTERRUPTED) from None
     except ExceededError as error:
-        say([exceeded(error)])
-        raise SystemExit(BAD) from None
+        print_diagnostics([exceeded(error)])
+        raise SystemExit(EXIT_USAGE) from None
     except RecursionError:
-        say([too_deep()])
-        raise SystemExit(BAD) from None
+        print_diagnostics([too_deep()])
+        raise SystemExit(EXIT_USAGE) from None
     except OSError as error:
         _no_output(error)
-        raise SystemExit(BAD) from None
+        raise SystemExit(EXIT_USAGE) from None
     except Exception as error:
         said = getattr(error, "diagnostic", None)  # as of a store that is damaged in the middle
         if isinstance(said, Diagnostic):
-            say([said])
-            raise SystemExit(BAD) from None
+            print_diagnostics([said])
+            raise SystemExit(EXIT_USAGE) from None
         if "FRETC_TRACEBACK" in os.environ:
             raise
-        say([_internal(error)])
-        raise SystemExit(BAD) from None
+        print_diagnostics([_internal(error)])
+        raise SystemExit(EXIT_USAGE) from None
 
 
 _GARBAGE = 200_000
@@ -186,17 +186,17 @@ def _run() -> None:
     with cli.make_context("fretc", sys.argv[1:]) as context:
         try:
             cli.invoke(context)
-            status = SHOWN
+            status = EXIT_OK
         except SystemExit as exit_:
-            status = int(exit_.code or SHOWN)
-        say_accepted(context)
+            status = int(exit_.code or EXIT_OK)
+        print_accepted_count(context)
         raise SystemExit(final_status(context, status))
 
 
 def _no_output(error: OSError) -> None:
     """The reader of standard output has gone, or it cannot be written."""
     if not isinstance(error, BrokenPipeError):
-        say([not_written("standard output", error.strerror or str(error))])
+        print_diagnostics([not_written("standard output", error.strerror or str(error))])
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

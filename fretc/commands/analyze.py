@@ -20,16 +20,16 @@ from fretc.terminal.options import (
     requirements_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    INTERRUPTED,
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
+    EXIT_INCONCLUSIVE,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
     coloured,
-    deliver,
-    say_briefly,
-    say_line,
-    stop,
+    fail,
+    print_project_diagnostics,
+    print_status,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
 
@@ -114,12 +114,12 @@ def analyze(
     project, first = project_of(files, requirements, bindings, ("environment",))
     formalized = active_requirements(project, component)
     assumed, remarks = assumptions(formalized, project.declarations)
-    say_briefly(remarks, first)
+    print_project_diagnostics(remarks, first)
     if has_errors(remarks):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     chosen = roles([*formalized, *assumed])
     if isinstance(chosen, tuple):
-        stop(*chosen)
+        fail(*chosen)
     analysis, stopped = asked(formalized, assumed, chosen, Options(seconds, as_fret))
     evidence = f"{to_json(plain(document(formalized, assumed, analysis, as_fret=as_fret)))}\n"
     if emitted is not None and emit_to == "-":
@@ -134,12 +134,12 @@ def analyze(
         click.echo(coloured([*lines(analysis, sentences, left_out)]), nl=False)
     if output != "-":
         sources = [entry.wording.source.name for entry in project.requirements]
-        deliver(
+        write_outputs(
             {Path(output): evidence}, [*sources, *companions(sources), *filter(None, [bindings])]
         )
     if emitted is not None and not stopped:
         _emit(analysis, formalized, assumed, chosen, Options(seconds, as_fret), emitted, emit_to)
-    raise SystemExit(INTERRUPTED if stopped else _status(analysis))
+    raise SystemExit(EXIT_INTERRUPTED if stopped else _status(analysis))
 
 
 def asked(
@@ -183,19 +183,19 @@ def _emit(
     from fretish.printer import sentence as printed
 
     if analysis.verdict is not Verdict.REALIZABLE:
-        say_line(f"no strategy is written: {analysis.why}")
+        print_status(f"no strategy is written: {analysis.why}")
         return
     form = Form(emitted)
     try:
         found = [*findings(controllers(requirements, chosen, assumed, options, form), at_work)]
     except Stopped:
-        raise SystemExit(INTERRUPTED) from None
+        raise SystemExit(EXIT_INTERRUPTED) from None
     circuits = [each for each in found if isinstance(each, Circuit)]
     machines = [each for each in found if isinstance(each, Mealy)]
     for each in found:
         if isinstance(each, OpenQuestion):
             message = f"no strategy can be written: {each.why}"
-            stop(Diagnostic(Code.TOO_LARGE, message, help=_smaller(form)))
+            fail(Diagnostic(Code.TOO_LARGE, message, help=_smaller(form)))
     if form is Form.PYTHON:
         sentences = {requirement.id: printed(requirement.written) for requirement in requirements}
         promises = {each.id: each.sentence for each in analysis.assumptions}
@@ -203,9 +203,9 @@ def _emit(
     else:
         artifacts = [*automata(machines, form)]
     if output == "-":
-        deliver({Path("-"): "".join(each.text for each in artifacts)})
+        write_outputs({Path("-"): "".join(each.text for each in artifacts)})
     else:
-        deliver({Path(output) / each.path: each.text for each in artifacts})
+        write_outputs({Path(output) / each.path: each.text for each in artifacts})
 
 
 def _smaller(form: str) -> str:
@@ -224,7 +224,7 @@ def active_requirements(
     if component is not None:
         requirements = _of_component(requirements, component)
     if not requirements:
-        stop(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to analyze"))
+        fail(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to analyze"))
     return requirements
 
 
@@ -237,7 +237,7 @@ def _of_component(
     if not chosen:
         known = tuple(dict.fromkeys(requirement.sentence.component for requirement in requirements))
         near = suggestion(component, known)
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
                 f"no requirement is about the component `{component}`",
@@ -252,8 +252,8 @@ def _status(analysis: Analysis) -> int:
 
     match analysis.verdict:
         case Verdict.REALIZABLE:
-            return SHOWN
+            return EXIT_OK
         case Verdict.UNREALIZABLE:
-            return VIOLATION
+            return EXIT_VIOLATION
         case Verdict.NOT_CHECKED:
-            return NOT_SHOWN
+            return EXIT_INCONCLUSIVE

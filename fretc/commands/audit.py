@@ -20,7 +20,6 @@ from fretc.terminal.group import Grouped
 from fretc.terminal.options import (
     OF_LOGS,
     PATH,
-    Renamed,
     bindings_option,
     extras,
     format_option,
@@ -31,19 +30,19 @@ from fretc.terminal.options import (
     requirements_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
-    deliver,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
+    fail,
     not_written,
     painted,
+    print_diagnostics,
+    print_diagnostics_below,
+    print_project_diagnostics,
+    print_status,
     protect,
-    say,
-    say_also,
-    say_briefly,
-    say_line,
-    stop,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
@@ -90,8 +89,6 @@ _AUDIT = {
 @requirements_option
 @bindings_option
 @output_option(
-    cls=Renamed,
-    earlier="--evidence",
     help="Evidence file (NAME.json), or folder of an evidence store (any other name). `-` "
     "prints the evidence.  [default: build/evidence.json for one log, build/evidence for "
     "several]",
@@ -195,7 +192,6 @@ _AUDIT = {
 @path_option(
     "--parquet", help="Also write a Parquet table with one row for each run and requirement."
 )
-@click.option("--resume", is_flag=True, hidden=True)
 @click.option(
     "--summary",
     is_flag=True,
@@ -233,7 +229,6 @@ def audit(
     keep_columns: bool,
     command: str | None,
     parquet: str | None,
-    resume: bool,
     summary: bool,
     query: str | None,
 ) -> None:
@@ -255,8 +250,6 @@ def audit(
     if summary or query is not None:
         summarize(paths, query, form)
     began = time.perf_counter()
-    if resume:
-        say_line("`--resume` is not needed any more: what a stopped audit has finished is known")
     from compiler.project.folder import load
     from compiler.project.paths import companions, requirement_files, sibling_path
     from fretc.audit.log_paths import files_of
@@ -269,24 +262,24 @@ def audit(
     hook = None if command is None else words(command)
     given_labels = given(labels)
     if isinstance(given_labels, Diagnostic):
-        stop(given_labels)
+        fail(given_labels)
     logs, selection = selected(paths, since, sample, seed)
     limits = time_limits(log_time, whole_time, logs, engine)
     target = outputs.target(output, selection.named if selection else len(logs))
     outputs.check(target, parquet)
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
-        stop(files)
+        fail(files)
     inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
     protect([target.path, *([Path(parquet)] if parquet else [])], inputs)
     project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
-    say_briefly(project.diagnostics, requirements)
+    print_project_diagnostics(project.diagnostics, requirements)
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
-        stop(*(reason for reason in plan if reason not in project.diagnostics))
+        fail(*(reason for reason in plan if reason not in project.diagnostics))
     plan = replace(plan, labels=given_labels, selection=selection)
     refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
-    say_also(refusals, project.diagnostics)
+    print_diagnostics_below(refusals, project.diagnostics)
     kept = _samples(target, rehash=rehash) if keep_columns else None
     with ExitStack() as stack:
         if target.is_store:
@@ -297,7 +290,7 @@ def audit(
         else:
             result = audit_in_memory(plan, logs, _engine(engine, jobs, limits, kept))
         diagnostics = project.answered(result.diagnostics)
-        say_also(diagnostics, (*project.diagnostics, *refusals))
+        print_diagnostics_below(diagnostics, (*project.diagnostics, *refusals))
         if result.read:  # a mistyped name must not cost the evidence of the last audit
             wanted = annotate or annotations is not None
             made = outputs.annotation_files(result, project, annotations) if wanted else {}
@@ -305,11 +298,11 @@ def audit(
                 made[Path(parquet)] = outputs.table(result)
             _deliver(result, target, made, inputs)
         elif os.path.lexists(target.path):
-            say_line(visible(f"no log could be read: `{target.path}` stays as it was"))
+            print_status(visible(f"no log could be read: `{target.path}` stays as it was"))
         source, not_judged = result.source, {one.id for one in plan.refused}
         marks = Marks.of((each for _, each in source.briefs()), result.estimates, not_judged)
         is_bad = plan.refused or has_errors((*project.diagnostics, *diagnostics))
-        status = BAD if is_bad else _status(marks)
+        status = EXIT_USAGE if is_bad else _status(marks)
         from fretc.commands.audit_text import Places, Subject, lines
         from fretc.commands.audit_text import summary as summary_of
 
@@ -335,7 +328,7 @@ def audit(
 
 
 def _status(marks: Marks) -> int:
-    return VIOLATION if marks.violated else SHOWN if marks.shown else NOT_SHOWN
+    return EXIT_VIOLATION if marks.violated else EXIT_OK if marks.shown else EXIT_INCONCLUSIVE
 
 
 def _session(folder: Path, plan: Plan, logs: Sequence[str], *, rehash: bool) -> StoreWriter:
@@ -344,14 +337,14 @@ def _session(folder: Path, plan: Plan, logs: Sequence[str], *, rehash: bool) -> 
 
     key = user_key()
     if isinstance(key, Diagnostic):
-        say([key])
+        print_diagnostics([key])
     known = None if isinstance(key, Diagnostic) else key
     try:
         return StoreWriter(folder, plan, logs, known, rehash=rehash)
     except BlockingIOError:
-        stop(busy(folder))
+        fail(busy(folder))
     except OSError as error:
-        stop(not_written(str(folder), error.strerror or str(error)))
+        fail(not_written(str(folder), error.strerror or str(error)))
 
 
 def _deliver(
@@ -366,10 +359,10 @@ def _deliver(
         assert isinstance(result, Audit), "what is no store is in memory"
         own = {target.path: result.evidence}
     if {*map(os.path.realpath, own)} & {*map(os.path.realpath, others)}:
-        stop(not_written(str(target.path), "two outputs would go there"))
-    deliver({**own, **others}, inputs)
+        fail(not_written(str(target.path), "two outputs would go there"))
+    write_outputs({**own, **others}, inputs)
     if target.is_store:
-        say_line(visible(f"wrote {target.path}"))
+        print_status(visible(f"wrote {target.path}"))
     remove_other(target)
 
 
@@ -379,10 +372,10 @@ def _samples(target: Target, *, rehash: bool) -> SampleCache | None:
     from fretc.audit.store.recordings import SUFFIX, SampleCache
 
     if str(target.path) == "-":
-        stop(_no_place_for_columns("evidence is printed", "name a file with `-o`"))
+        fail(_no_place_for_columns("evidence is printed", "name a file with `-o`"))
     key = user_key()
     if isinstance(key, Diagnostic):
-        say([key])
+        print_diagnostics([key])
         return None
     return SampleCache(target.path.with_name(f"{target.path.name}{SUFFIX}"), key, rehash)
 
@@ -407,10 +400,10 @@ def _engine(
         return local_executor(jobs, kept, earlier.results, limits)
     if kept is not None:
         why = f"`--engine {name}` reads the logs elsewhere"
-        stop(_no_place_for_columns(why, "leave out one of the two"))
+        fail(_no_place_for_columns(why, "leave out one of the two"))
     from fretc.audit import dask_executor
 
     engine = dask_executor.engine(name, jobs)
     if isinstance(engine, Diagnostic):
-        stop(engine)
+        fail(engine)
     return engine

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fretc.terminal.output import NOT_SHOWN, say_line, stop
+from fretc.terminal.output import EXIT_INCONCLUSIVE, fail, print_status
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 if TYPE_CHECKING:
@@ -31,16 +31,16 @@ def selected(
 
     than = None if since is None else time_of(since)
     if isinstance(than, Diagnostic):
-        stop(than)
+        fail(than)
     logs = logs_of(paths)
     if isinstance(logs, Diagnostic):
-        stop(logs)
+        fail(logs)
     some, selection = chosen(logs, than, sample, seed)
     if selection is not None:
-        say_line(in_words(selection))
+        print_status(in_words(selection))
     if not some:
-        say_line("no log is audited; the evidence is unchanged")
-        raise SystemExit(NOT_SHOWN)
+        print_status("no log is audited; the evidence is unchanged")
+        raise SystemExit(EXIT_INCONCLUSIVE)
     return some, selection
 
 
@@ -59,7 +59,7 @@ def time_limits(log: str | None, whole: str | None, logs: Sequence[str], engine:
     limits = Limits(_seconds("--log-time", log), _seconds("--time", whole))
     if limits != ENDLESS and (STDIN in logs or engine != "local"):
         what = "standard input" if STDIN in logs else f"`--engine {engine}`"
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
                 f"{what} has no limits of time",
@@ -74,7 +74,7 @@ def _seconds(option: str, text: str | None) -> float | None:
 
     length = None if text is None else nanoseconds(text)
     if text is not None and length is None:
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
                 f"`{option} {text}` is no time",

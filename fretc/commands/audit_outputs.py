@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from fretc.terminal.output import EVIDENCE, STORE, not_written, say_line, stop
+from fretc.terminal.output import EVIDENCE, STORE, fail, not_written, print_status
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 if TYPE_CHECKING:
@@ -74,23 +74,23 @@ def check(target: Target, parquet: str | None) -> None:
         return
     if not target.is_store:
         if path.exists() and not path.is_file():
-            stop(not_written(str(path), "it is no regular file"))
+            fail(not_written(str(path), "it is no regular file"))
         return
     if not path.is_dir():
-        stop(_no_folder(path))
+        fail(_no_folder(path))
     from fretc.audit.store.writer import is_store
 
     if any(path.iterdir()) and not is_store(path):
-        stop(_no_store(path))
+        fail(_no_store(path))
 
 
 def _check_table(parquet: str, evidence: Path) -> None:
     if parquet == "-":
-        stop(not_written(parquet, "a table is a file"))
+        fail(not_written(parquet, "a table is a file"))
     if os.path.exists(parquet) and not os.path.isfile(parquet):
-        stop(not_written(parquet, "it is no regular file"))
+        fail(not_written(parquet, "it is no regular file"))
     if os.path.realpath(parquet) == os.path.realpath(evidence):
-        stop(not_written(parquet, "two outputs would go there"))
+        fail(not_written(parquet, "two outputs would go there"))
 
 
 def table(outcome: Outcome) -> bytes:
@@ -110,10 +110,10 @@ def remove_other(target: Target) -> None:
 
         if is_store(other):
             remove(other)
-            say_line(f"removed {other}, the evidence of an earlier audit")
+            print_status(f"removed {other}, the evidence of an earlier audit")
     elif other.is_file() and not other.is_symlink() and _is_evidence(other):
         other.unlink()
-        say_line(f"removed {other}, the evidence of an earlier audit")
+        print_status(f"removed {other}, the evidence of an earlier audit")
 
 
 def _is_evidence(path: Path) -> bool:

@@ -7,7 +7,13 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from fretc.terminal.output import BAD, INTERRUPTED, say, say_line, stop
+from fretc.terminal.output import (
+    EXIT_INTERRUPTED,
+    EXIT_USAGE,
+    fail,
+    print_diagnostics,
+    print_status,
+)
 from fretc.terminal.progress import progress
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -25,10 +31,10 @@ def audit_in_memory(plan: Plan, logs: Sequence[str], engine: Engine) -> Audit:
         with shown(logs) as show:
             result = audit_logs(plan, logs, engine, tell=lambda log, _: show(log))
     except KeyboardInterrupt:
-        say_line("stopped")
-        raise SystemExit(INTERRUPTED) from None
+        print_status("stopped")
+        raise SystemExit(EXIT_INTERRUPTED) from None
     if isinstance(result, Diagnostic):
-        stop(result)
+        fail(result)
     return result
 
 
@@ -36,23 +42,23 @@ def audit_into(session: StoreWriter, engine: Engine) -> StoredAudit:
     """Audit the logs of a session; whatever ends that early, what is finished is in its store."""
     if session.known:
         count = len(session.known) + len(session.new)
-        say_line(
+        print_status(
             f"{len(session.known)} of {count} logs are unchanged: their earlier results are used "
             "again"
         )
     elif session.earlier.claims:
-        say_line(
+        print_status(
             "requirements or bindings have changed: results of unchanged logs by "
             f"{len(session.earlier.claims)} unchanged requirements are taken over"
         )
     elif session.earlier.stale:
-        say_line("requirements, bindings or fretc have changed: all logs are audited again")
+        print_status("requirements, bindings or fretc have changed: all logs are audited again")
     if session.missing:
         what = "log of the store is" if session.missing == 1 else "logs of the store are"
         whose = "its" if session.missing == 1 else "their"
-        say_line(f"{session.missing} {what} not named this time: {whose} results leave it")
+        print_status(f"{session.missing} {what} not named this time: {whose} results leave it")
     if session.earlier.foreign:
-        say_line(
+        print_status(
             f"`{session.folder}` was written by another user or in another folder: its results "
             "are not used again"
         )
@@ -60,13 +66,13 @@ def audit_into(session: StoreWriter, engine: Engine) -> StoredAudit:
         with shown(session.new) as show:
             result = session.run(engine, show)
     except KeyboardInterrupt:
-        say_line(f"stopped{_kept(session)}")
-        raise SystemExit(INTERRUPTED) from None
+        print_status(f"stopped{_kept(session)}")
+        raise SystemExit(EXIT_INTERRUPTED) from None
     if isinstance(result, Diagnostic):
-        say([result])
+        print_diagnostics([result])
         if session.kept:
-            say_line(f"not finished{_kept(session)}")
-        raise SystemExit(BAD)
+            print_status(f"not finished{_kept(session)}")
+        raise SystemExit(EXIT_USAGE)
     return result
 
 

@@ -22,15 +22,15 @@ from fretc.terminal.options import (
     requirements_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    NOT_SHOWN,
-    SHOWN,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
     coloured,
-    deliver,
-    fail_at_the_end,
-    say,
-    say_briefly,
-    stop,
+    fail,
+    fail_at_end,
+    print_diagnostics,
+    print_project_diagnostics,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
@@ -75,15 +75,17 @@ def bind(
     """
     drafts = source is not None
     if drafts == check:
-        stop(_not_one_mode())
+        fail(_not_one_mode())
     if source is not None:
         if paths:
-            stop(_second_log(paths[0]))
+            fail(_second_log(paths[0]))
         project = _project(requirements, bindings, replaced=output)
-        say([each for each in project.diagnostics if each.is_error and not _is_in(each, output)])
+        print_diagnostics(
+            [each for each in project.diagnostics if each.is_error and not _is_in(each, output)]
+        )
         _draft(source, project, output, force=force)
     elif not paths:
-        stop(Diagnostic(Code.NOTHING_TO_DO, "no log was given to check", help="name the logs"))
+        fail(Diagnostic(Code.NOTHING_TO_DO, "no log was given to check", help="name the logs"))
     else:
         project = _project(requirements, bindings)
         _check(paths, project, requirements, form, jobs)
@@ -106,14 +108,14 @@ def _project(requirements: str, bindings: str | None, replaced: str | None = Non
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         if is_given("requirements"):
-            stop(files)
+            fail(files)
         files = []
     project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
     relevant = [d for d in project.diagnostics if replaced is None or not _is_in(d, replaced)]
     if has_errors(relevant):
-        fail_at_the_end()
+        fail_at_end()
     if has_errors(each for each in project.general if each in relevant):
-        stop(*relevant)
+        fail(*relevant)
     return project
 
 
@@ -136,16 +138,16 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
-        stop(_exists(output))
+        fail(_exists(output))
     contents = look(log, words=True)
     if isinstance(contents, Diagnostic):
-        stop(contents)
-    say(contents.recording.findings)
+        fail(contents)
+    print_diagnostics(contents.recording.findings)
     text = draft(
         contents, missing_propositions(project), durations(project), missing_signals(project)
     )
-    deliver({Path(output): text}, (log,))
-    raise SystemExit(SHOWN)
+    write_outputs({Path(output): text}, (log,))
+    raise SystemExit(EXIT_OK)
 
 
 def _exists(path: str) -> Diagnostic:
@@ -187,19 +189,21 @@ def _check(
 
     logs = logs_of(paths)
     if isinstance(logs, Diagnostic):
-        stop(logs)
+        fail(logs)
     if project.declarations is None:
-        stop(_no_bindings())
+        fail(_no_bindings())
     plan = planned(project)  # not a plan where no requirement can be audited: bindings still can
     result = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
     if isinstance(result, Diagnostic):
-        stop(*([each for each in project.diagnostics if each.is_error] or [result]))
+        fail(*([each for each in project.diagnostics if each.is_error] or [result]))
     unbound = [each for each in _unbound(project) if each not in project.diagnostics]
     diagnostics = [*unbound, *project.diagnostics, *project.answered(result.diagnostics)]
-    say_briefly(diagnostics, requirements)
+    print_project_diagnostics(diagnostics, requirements)
     list_mistaken(project)
     click.echo(result.as_json if form == "json" else coloured(result.text), nl=False)
-    raise SystemExit(BAD if has_errors(diagnostics) else SHOWN if result.shown else NOT_SHOWN)
+    raise SystemExit(
+        EXIT_USAGE if has_errors(diagnostics) else EXIT_OK if result.shown else EXIT_INCONCLUSIVE
+    )
 
 
 def _unbound(project: Project) -> list[Diagnostic]:

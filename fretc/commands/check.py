@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import click
 
 from fretc.terminal.options import (
-    PATH,
     analysis_option,
     bindings_option,
     evidence_option,
@@ -17,11 +16,18 @@ from fretc.terminal.options import (
     format_option,
     hazards_option,
     is_given,
-    places,
     requirements_option,
     verification_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say_all, say_line, stop
+from fretc.terminal.output import (
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
+    fail,
+    print_diagnostic_groups,
+    print_status,
+    write_outputs,
+)
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.rendering import as_json, visible
 
@@ -33,7 +39,6 @@ if TYPE_CHECKING:
 @click.command(
     epilog=extras({"reqif": "parents in a .reqif"}),
 )
-@click.argument("folder", required=False, type=PATH, metavar="")
 @requirements_option
 @bindings_option
 @hazards_option
@@ -54,7 +59,6 @@ if TYPE_CHECKING:
 )
 @format_option()
 def check(
-    folder: str | None,
     requirements: str,
     bindings: str | None,
     hazards: str | None,
@@ -93,12 +97,11 @@ def check(
     from fretc.report.traceability.waivers import read as read_waivers
     from fretc.verification.reader import known as proven
 
-    (requirements,) = places([folder] if folder is not None else [], requirements)
     if fix:
         _fix(requirements)
     project = load_folder(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
-        stop(project)
+        fail(project)
     units = first_unit(project.formalized)
     diagnostics = [*project.diagnostics, *([units] if units is not None else [])]
     audited = (required_source if is_given("evidence") else source)(evidence)
@@ -170,12 +173,12 @@ def _fix(folder: str) -> None:
 
     paths = requirement_files(folder)
     files = () if isinstance(paths, Diagnostic) else fixed(paths)
-    deliver({Path(file.path): file.text for file in files})
+    write_outputs({Path(file.path): file.text for file in files})
     for fix in (fix for file in files for fix in file.fixes):
         place = f"{fix.span.source.name}:{fix.span.line}:{fix.span.column}"
-        say_line(visible(f"fixed {place}: {fix.change}"))
+        print_status(visible(f"fixed {place}: {fix.change}"))
     if files:
-        say_line("")
+        print_status("")
 
 
 def _finish(diagnostics: tuple[Diagnostic, ...], count: int, form: str) -> None:
@@ -194,13 +197,13 @@ def _finish(diagnostics: tuple[Diagnostic, ...], count: int, form: str) -> None:
         }
         click.echo(to_json({**counts, "diagnostics": [as_json(d) for d in diagnostics]}))
     else:
-        say_all([d for d in diagnostics if not d.accepted], accepted)
+        print_diagnostic_groups([d for d in diagnostics if not d.accepted], accepted)
         if diagnostics:
-            say_line("")
+            print_status("")
         counts_in_words = f"{_many(errors, 'mistake')}, {_many(warnings, 'warning')}"
         also = f", {len(accepted)} accepted" if accepted else ""
-        say_line(f"{_many(count, 'requirement')}: {counts_in_words}{also}")
-    raise SystemExit(BAD if errors else NOT_SHOWN if warnings else SHOWN)
+        print_status(f"{_many(count, 'requirement')}: {counts_in_words}{also}")
+    raise SystemExit(EXIT_USAGE if errors else EXIT_INCONCLUSIVE if warnings else EXIT_OK)
 
 
 def _many(count: int, what: str) -> str:

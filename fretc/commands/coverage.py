@@ -24,13 +24,13 @@ from fretc.terminal.options import (
     tests_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    NOT_SHOWN,
-    SHOWN,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
     coloured,
-    say_also,
-    say_line,
-    stop,
+    fail,
+    print_diagnostics_below,
+    print_status,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
@@ -86,7 +86,7 @@ def coverage(
     from fretc.coverage.directions import is_complete
 
     if paths and is_given("evidence"):
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
                 "logs and `--evidence` are both named: runs are in one of them",
@@ -105,8 +105,8 @@ def coverage(
         found = text_output.lines(covered, titles, known, every=verbose)
         click.echo(coloured((visible(text), colour) for text, colour in found), nl=False)
     if is_bad:
-        raise SystemExit(BAD)
-    raise SystemExit(SHOWN if is_complete(covered, known) else NOT_SHOWN)
+        raise SystemExit(EXIT_USAGE)
+    raise SystemExit(EXIT_OK if is_complete(covered, known) else EXIT_INCONCLUSIVE)
 
 
 def _directions(covered: Coverage, named: str | None) -> Directions:
@@ -131,12 +131,14 @@ def suite_of(named: str | None, fingerprints: Mapping[str, str]) -> Suite | None
         return None
     suite = read(named or DEFAULT)
     if isinstance(suite, Diagnostic):
-        stop(suite)
+        fail(suite)
     known = {each.id: each.fingerprint for each in suite.requirements}
     other = [id for id, own in fingerprints.items() if known.get(id, own) != own]
     if other:
         which = ", ".join(other)
-        say_line(visible(f"the tests are of other sentences of {which}: `fretc test` makes them"))
+        print_status(
+            visible(f"the tests are of other sentences of {which}: `fretc test` makes them")
+        )
     return suite
 
 
@@ -145,7 +147,7 @@ def _recorded(evidence: str) -> EvidenceSource:
 
     source = required_source(evidence)
     if isinstance(source, Diagnostic):
-        stop(source)
+        fail(source)
     return source
 
 
@@ -164,9 +166,9 @@ def _audited(
     logs, _ = selected(paths, None, None, 0)
     audit = audit_in_memory(plan, logs, local_executor(jobs))
     diagnostics = project.answered(audit.diagnostics)
-    say_also(diagnostics, project.diagnostics)
+    print_diagnostics_below(diagnostics, project.diagnostics)
     if not audit.read:
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     titles = {each.id: each.name for each in project.requirements}
     return audit.source, titles, has_errors(diagnostics)
 
@@ -178,6 +180,6 @@ def planned_project(requirements: str, bindings: str | None) -> tuple[Project, P
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
-        stop(files)
+        fail(files)
     project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
     return project, plan_of(project, requirements)

@@ -19,7 +19,14 @@ from fretc.terminal.options import (
     path_option,
     requirements_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, deliver, fail_at_the_end, say, stop
+from fretc.terminal.output import (
+    EXIT_INCONCLUSIVE,
+    EXIT_USAGE,
+    fail,
+    fail_at_end,
+    print_diagnostics,
+    write_outputs,
+)
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
 
 if TYPE_CHECKING:
@@ -52,7 +59,7 @@ def explain(
     code = None if is_file else _code(what)
     if code is not None:
         if picture is not None:
-            stop(Diagnostic(Code.BAD_USAGE, "a code has no picture", help="leave `--svg` out"))
+            fail(Diagnostic(Code.BAD_USAGE, "a code has no picture", help="leave `--svg` out"))
         _explain_code(code, form)
         return
     if is_sentence(what):
@@ -61,7 +68,7 @@ def explain(
         formalized = _rules(what, requirements, bindings, is_file=is_file)
     if picture is not None and len(formalized) > 1:
         fix = f"name one of them: `fretc explain {quote(formalized[0].id)}`"
-        stop(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=fix))
+        fail(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=fix))
     _explain_rules(formalized, form, picture)
 
 
@@ -106,7 +113,7 @@ def _explain_rules(
 
     for requirement in requirements:
         if (requirement.ticks or 0) > _MOST_TICKS:
-            stop(_too_long(requirement))
+            fail(_too_long(requirement))
     explained = [explanation.explanation(requirement) for requirement in requirements]
     if picture != "-":
         if form == "json":
@@ -115,7 +122,7 @@ def _explain_rules(
             click.echo("\n".join(map(explanation.text, explained)), nl=False)
     if picture is not None:
         sources = [requirement.entry.wording.source.name for requirement in requirements]
-        deliver({Path(picture): svg(explained[0].picture)}, protected=sources)
+        write_outputs({Path(picture): svg(explained[0].picture)}, protected=sources)
 
 
 def _typed(sentence: str, folder: str, bindings: str | None) -> list[FormalizedRequirement]:
@@ -130,15 +137,15 @@ def _typed(sentence: str, folder: str, bindings: str | None) -> list[FormalizedR
     project = load([], bindings or sibling_path(folder, BINDINGS), reads=())
     entry = RequirementEntry("sentence", Source("<sentence>", sentence.strip()).span())
     requirement, remarks = formalize(entry, project.declarations)
-    say([*project.diagnostics, *remarks])
+    print_diagnostics([*project.diagnostics, *remarks])
     if has_errors(project.diagnostics):
-        fail_at_the_end()
+        fail_at_end()
     if requirement is None or has_errors((*project.general, *remarks)):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     if requirement.declarations is not None and [
         *broken_tables(requirement, requirement.declarations)
     ]:
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     return [requirement]
 
 
@@ -151,20 +158,20 @@ def _rules(
 
     paths = listed([what]) if is_file else requirement_files(folder)
     if isinstance(paths, Diagnostic):
-        stop(_unknown_code(what) or paths)
+        fail(_unknown_code(what) or paths)
     project = load(paths, bindings, reads=())
     ids = [entry.id for entry in project.requirements]
     matches = ids if is_file else [id for id in ids if id.casefold() == what.casefold()]
     if not matches:
         _say_of(project, ())
-        stop(_unknown(what, ids, folder, is_file=is_file))
+        fail(_unknown(what, ids, folder, is_file=is_file))
     subjects = [r for r in project.requirements if r.id in matches]
     _say_of(project, subjects)
     requirements = [
         requirement for requirement in project.sound.formalized if requirement.id in matches
     ]
     if not requirements:
-        raise SystemExit(NOT_SHOWN)  # free text, or a mistake, which wins
+        raise SystemExit(EXIT_INCONCLUSIVE)  # free text, or a mistake, which wins
     refused = {r.requirement.id: r.why for r in project.refused if r.requirement.id in matches}
     list_refused(refused, len(subjects))
     return requirements
@@ -182,9 +189,9 @@ def _say_of(project: Project, subjects: Sequence[RequirementEntry]) -> None:
         and _nearest(project, diagnostic) is requirement
     }
     own = [diagnostic for diagnostic in project.diagnostics if diagnostic not in others]
-    say(own)
+    print_diagnostics(own)
     if has_errors(own):
-        fail_at_the_end()
+        fail_at_end()
 
 
 def _nearest(project: Project, diagnostic: Diagnostic) -> RequirementEntry | None:

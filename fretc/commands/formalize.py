@@ -15,15 +15,15 @@ from fretc.commands.opening import sound_part
 from fretc.terminal.group import DEFAULT, Compile
 from fretc.terminal.options import PATH, format_option, output_option, path_option
 from fretc.terminal.output import (
-    BAD,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
     REQUIREMENTS_FOLDER,
-    SHOWN,
-    VIOLATION,
-    deliver,
-    fail_at_the_end,
-    say,
-    say_line,
-    stop,
+    fail,
+    fail_at_end,
+    print_diagnostics,
+    print_status,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
@@ -90,19 +90,19 @@ def compile_(
     if one_file and not any(TARGETS[kind].joins for kind in kinds):
         *most, last = (f"`--emit {name}`" for name, each in TARGETS.items() if each.joins)
         joining = f"{', '.join(most)} and {last}"
-        stop(Diagnostic(Code.BAD_USAGE, f"`--one-file` is for {joining}", help="add one of them"))
+        fail(Diagnostic(Code.BAD_USAGE, f"`--one-file` is for {joining}", help="add one of them"))
     if weaken:
         _check_weaken(kinds)
     paths = listed(files)
     if isinstance(paths, Diagnostic):
-        stop(paths)
+        fail(paths)
     of_loop = any(TARGETS[kind].of_loop for kind in kinds)
     project = load(paths, bindings, reads=("interceptor", "assume") if of_loop else ())
     undecided = _undecided(project.sound.formalized)
-    say([*project.diagnostics, *project.answered(undecided)])
+    print_diagnostics([*project.diagnostics, *project.answered(undecided)])
     if form == "json" and set(kinds) <= {"ltl"} and not has_errors(project.general):
         if has_errors(project.diagnostics):
-            fail_at_the_end()
+            fail_at_end()
         _deliver_formulas(project, output if kinds else "-")
         return
     project = sound_part(project, others=any(TARGETS[kind].of_bindings for kind in kinds))
@@ -140,7 +140,7 @@ def _check_weaken(kinds: Sequence[str]) -> None:
     weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
     if not any(TARGETS[kind].weak for kind in kinds):
         message = f"`--weaken` is for {' and '.join(weak)}"
-        stop(Diagnostic(Code.BAD_USAGE, message, help="other files never weaken a requirement"))
+        fail(Diagnostic(Code.BAD_USAGE, message, help="other files never weaken a requirement"))
 
 
 def _deliver_formulas(project: Project, output: str) -> None:
@@ -156,7 +156,7 @@ def _deliver_formulas(project: Project, output: str) -> None:
     records |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
     records |= {id(r.requirement): failed(r.requirement, r.why[0]) for r in project.refused}
     text = to_json([records[id(r)] for r in project.requirements])
-    deliver({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})
+    write_outputs({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})
 
 
 def _print_formulas(project: Project, options: Options) -> None:
@@ -182,15 +182,15 @@ def _emit(
     jobs = [
         (target, requirements) for target, requirements, _ in outputs if requirements is not None
     ]
-    say(refusals)
+    print_diagnostics(refusals)
     of_rules = [
         d
         for target, requirements in jobs
         for requirement in requirements
         if (d := target.remark(requirement))
     ]
-    say(project.answered(remark for remark in of_rules if remark not in remarks))
-    say(project.answered(d for target, _ in jobs for d in target.remarks(options)))
+    print_diagnostics(project.answered(remark for remark in of_rules if remark not in remarks))
+    print_diagnostics(project.answered(d for target, _ in jobs for d in target.remarks(options)))
     files = {
         target.name: {str(a.path): a.text for a in target.emit(requirements, options)}
         for target, requirements in jobs
@@ -199,11 +199,11 @@ def _emit(
     first_time = output != "-" and not any((Path(output) / path).exists() for path in texts)
     _deliver_all(texts, output)
     if first_time and texts:
-        say_line(
+        print_status(
             _next_steps(project, {kind: next(iter(f)) for kind, f in files.items() if f}, output)
         )
     if refusals:
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
 
 
 def _next_steps(project: Project, firsts: Mapping[str, str], output: str) -> str:
@@ -284,21 +284,21 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
 
     paths = listed(files)
     if isinstance(paths, Diagnostic):
-        stop(paths)
+        fail(paths)
     texts, wrong = formatted(paths)
     if wrong:
-        stop(*wrong)
+        fail(*wrong)
     changed = [file for file in texts if file.before != file.after]
     if output == "-" or files == ("-",):
         click.echo("".join(file.after for file in texts), nl=False)
     elif check:
         for file in changed:
-            say_line(f"would change {file.path}")
-        raise SystemExit(VIOLATION if changed else SHOWN)
+            print_status(f"would change {file.path}")
+        raise SystemExit(EXIT_VIOLATION if changed else EXIT_OK)
     else:
         for file in changed:
             path = Path(file.path)
-            deliver({path: file.after})
+            write_outputs({path: file.after})
 
 
 @click.command("import")
@@ -329,27 +329,27 @@ def import_(
 
     source = read(file)
     if isinstance(source, Diagnostic):
-        stop(source)
+        fail(source)
     columns = {"id": id_column, "text": text_column, "project": project_column}
     result = read_export(source, {part: name for part, name in columns.items() if name})
-    say(result.diagnostics)
+    print_diagnostics(result.diagnostics)
     if has_errors(result.diagnostics):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     files = {str(artifact.path): artifact.text for artifact in result.artifacts}
     clashes = [path for path in files if (Path(output) / path).exists()]
     if clashes and output != "-" and not force:
-        stop(_exists(str(Path(output) / clashes[0])))
+        fail(_exists(str(Path(output) / clashes[0])))
     _deliver_all(files, output)
     counts = f"{result.requirements} requirements, {result.variables} variables"
-    say_line(f"imported {counts}")
+    print_status(f"imported {counts}")
 
 
 def _deliver_all(files: Mapping[str, str], output: str) -> None:
     """Below the folder; or one after the other on standard output, for `-`."""
     if output == "-":
-        deliver({Path("-"): "".join(files.values())})
+        write_outputs({Path("-"): "".join(files.values())})
     else:
-        deliver({Path(output) / path: text for path, text in files.items()})
+        write_outputs({Path(output) / path: text for path, text in files.items()})
 
 
 def _exists(path: str) -> Diagnostic:

@@ -9,7 +9,13 @@ from shlex import quote
 import click
 
 from fretc.terminal.options import OF_LOGS, PATH, extras, path_option
-from fretc.terminal.output import REQUIREMENTS_FOLDER, deliver, say, say_line, stop
+from fretc.terminal.output import (
+    REQUIREMENTS_FOLDER,
+    fail,
+    print_diagnostics,
+    print_status,
+    write_outputs,
+)
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import visible
 
@@ -36,17 +42,17 @@ def init(folder: str, log: str | None) -> None:
 
     requirements = Path(folder) / REQUIREMENTS_FOLDER
     if os.path.lexists(requirements) and not _is_empty_folder(requirements):
-        stop(_exists(str(requirements)))
+        fail(_exists(str(requirements)))
     if log == "-":
-        stop(_standard_input())
+        fail(_standard_input())
     beginning = without_log() if log is None else from_log(log)
     if isinstance(beginning, Diagnostic):
-        stop(beginning)
-    say(beginning.findings)
+        fail(beginning)
+    print_diagnostics(beginning.findings)
     files = {requirements / name: text for name, text in beginning.files.items()}
     if not _has_settings(Path(folder)):
         files[requirements / SETTINGS] = _settings_to_fill_in()
-    deliver(files, [log] if log else [])
+    write_outputs(files, [log] if log else [])
     _say_next_commands(folder, requirements, log)
 
 
@@ -56,8 +62,8 @@ def _say_next_commands(folder: str, requirements: Path, log: str | None) -> None
 
     option = "" if folder == "." else f" --requirements {quote(str(requirements))}"
     log_argument = "LOG" if log is None else shell_word(log)
-    say_line(visible(f"next: `fretc check{option}` says what is wrong or missing"))
-    say_line(visible(f"next: `fretc audit {log_argument}{option}` judges a log"))
+    print_status(visible(f"next: `fretc check{option}` says what is wrong or missing"))
+    print_status(visible(f"next: `fretc audit {log_argument}{option}` judges a log"))
 
 
 def _has_settings(folder: Path) -> bool:

@@ -18,7 +18,15 @@ from fretc.terminal.options import (
     requirements_option,
     tests_option,
 )
-from fretc.terminal.output import BAD, INTERRUPTED, NOT_SHOWN, SHOWN, coloured, say_also, say_line
+from fretc.terminal.output import (
+    EXIT_INCONCLUSIVE,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
+    coloured,
+    print_diagnostics_below,
+    print_status,
+)
 
 
 @click.command(
@@ -78,11 +86,11 @@ def mutate(
         with shown(logs) as show:
             found = survey(asked, logs, jobs, show)
     except KeyboardInterrupt:
-        say_line("stopped")
-        raise SystemExit(INTERRUPTED) from None
-    say_also(found.diagnostics, project.diagnostics)
+        print_status("stopped")
+        raise SystemExit(EXIT_INTERRUPTED) from None
+    print_diagnostics_below(found.diagnostics, project.diagnostics)
     if not found.runs:
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     suite = suite_of(tests, {each.id: each.fingerprint for each in found.suspects})
     if suite is not None:
         found = found.with_proofs(suite)
@@ -93,5 +101,5 @@ def mutate(
         all_lines = mutation_output.lines(found, titles, every=verbose)
         click.echo(coloured((visible(text), colour) for text, colour in all_lines), nl=False)
     if plan.refused or found.diagnostics:
-        raise SystemExit(BAD)
-    raise SystemExit(SHOWN if found.is_complete else NOT_SHOWN)
+        raise SystemExit(EXIT_USAGE)
+    raise SystemExit(EXIT_OK if found.is_complete else EXIT_INCONCLUSIVE)

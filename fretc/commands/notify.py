@@ -9,7 +9,7 @@ import shlex
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fretc.terminal.output import say, say_line, stop
+from fretc.terminal.output import fail, print_diagnostics, print_status
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import visible
 
@@ -26,7 +26,7 @@ def words(command: str, option: str = "--notify") -> list[str]:
     else:
         why = "it is empty"
     if not found:
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
                 f"`{option}` names no command: {why}",
@@ -53,14 +53,14 @@ def notify(command: Sequence[str], summary: Mapping[str, Any]) -> None:
             check=False,
         )
     except subprocess.TimeoutExpired:
-        say([_failed(command, f"took longer than {_PATIENCE} s")])
+        print_diagnostics([_failed(command, f"took longer than {_PATIENCE} s")])
     except OSError as error:
-        say([_failed(command, f"cannot be started: {error.strerror or error}")])
+        print_diagnostics([_failed(command, f"cannot be started: {error.strerror or error}")])
     else:
         if done.returncode:
-            say([_failed(command, f"ended with exit status {done.returncode}")])
+            print_diagnostics([_failed(command, f"ended with exit status {done.returncode}")])
         else:
-            say_line(visible(f"notified by `{command[0]}`"))
+            print_status(visible(f"notified by `{command[0]}`"))
 
 
 def _failed(command: Sequence[str], how: str) -> Diagnostic:

@@ -9,7 +9,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fretc.terminal.options import places
-from fretc.terminal.output import BAD, fail_at_the_end, say_also, say_briefly, say_line, stop
+from fretc.terminal.output import (
+    EXIT_USAGE,
+    fail,
+    fail_at_end,
+    print_diagnostics_below,
+    print_project_diagnostics,
+    print_status,
+)
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
 
@@ -41,9 +48,9 @@ def project_of(
     (first, *_) = places(files, requirements)
     paths = listed(files) if files else requirement_files(requirements)
     if isinstance(paths, Diagnostic):
-        stop(paths)
+        fail(paths)
     project = load(paths, bindings, reads=reads)
-    say_briefly(project.diagnostics, first)
+    print_project_diagnostics(project.diagnostics, first)
     return sound_part(project), first
 
 
@@ -57,10 +64,10 @@ def sound_part(project: Project, *, others: bool = False) -> Project:
         others: whether something is made of the bindings alone.
     """
     if has_errors(project.diagnostics):
-        fail_at_the_end()
+        fail_at_end()
     sound = project.sound
     if project.refused and not sound.formalized and not (others and project.declarations):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     list_mistaken(project)
     return sound
 
@@ -74,15 +81,15 @@ def plan_of(project: Project, requirements: str) -> Plan:
     """
     from fretc.audit.plan import Plan, planned
 
-    say_briefly(project.diagnostics, requirements)
+    print_project_diagnostics(project.diagnostics, requirements)
     if has_errors(project.diagnostics):
-        fail_at_the_end()
+        fail_at_end()
     plan = planned(project)
     if not isinstance(plan, Plan):
-        stop(*(reason for reason in plan if reason not in project.diagnostics))
+        fail(*(reason for reason in plan if reason not in project.diagnostics))
     if plan.refused:
-        fail_at_the_end()
-    say_also(
+        fail_at_end()
+    print_diagnostics_below(
         [each for each in plan.refusals if each not in project.diagnostics], project.diagnostics
     )
     list_refused({each.id: each.why for each in plan.refused}, len(plan.named))
@@ -114,7 +121,7 @@ def list_refused(refused: Mapping[str, Sequence[Diagnostic]], count: int) -> Non
     lines += [f"  {where:<{width}}  {_some(ids[where])}" for where in worst]
     if len(ids) > _MOST_LINES:
         lines.append(f"  and those of {len(ids) - _MOST_LINES} more mistakes")
-    say_line("\n" + "\n".join(map(visible, lines)))
+    print_status("\n" + "\n".join(map(visible, lines)))
 
 
 _MOST_LINES, _MOST_IDS = 20, 8

@@ -17,7 +17,7 @@ from fretc.terminal.options import (
     requirements_option,
     tests_option,
 )
-from fretc.terminal.output import BAD, SHOWN, deliver, say, stop
+from fretc.terminal.output import EXIT_OK, EXIT_USAGE, fail, print_diagnostics, write_outputs
 from fretish.diagnostics.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def play(
     now, refusals = _side(project)
     known = now.requirements
     if not known:
-        stop(*refusals)
+        fail(*refusals)
     earlier = (
         project_of((against,), requirements, bindings, ("environment",))[0]
         if against is not None
@@ -94,8 +94,8 @@ def play(
     shown = [*side_by_side(changes, known)]
     clashing = [*name_collisions(shown)]
     if clashing:
-        stop(*clashing)
-    say(refusals)
+        fail(*clashing)
+    print_diagnostics(refusals)
     recorded = [*_recorded(project, known, logs)]
     starts = [
         *(start for run in recorded for start in run.starts),
@@ -110,8 +110,8 @@ def play(
     wordings = [*project.requirements, *(earlier.requirements if earlier else ())]
     sources = [requirement.wording.source.name for requirement in wordings]
     inputs = filter(None, [bindings, tests, analysis, *logs])
-    deliver({Path(output): page}, [*sources, *companions(sources), *inputs])
-    raise SystemExit(BAD if refusals else SHOWN)
+    write_outputs({Path(output): page}, [*sources, *companions(sources), *inputs])
+    raise SystemExit(EXIT_USAGE if refusals else EXIT_OK)
 
 
 def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
@@ -143,11 +143,11 @@ def _recorded(
         return
     plan = planned(project)
     if not isinstance(plan, Plan):
-        stop(*plan)
-    say([*plan.refusals])
+        fail(*plan)
+    print_diagnostics([*plan.refusals])
     for log in logs:
         found = _good(of_log(known, plan, log))
-        say(found.findings)
+        print_diagnostics(found.findings)
         yield found
 
 
@@ -169,18 +169,18 @@ def of_files(
         suite = _good(read_suite(path))
         old = changed(suite, requirements)
         if old:
-            say([stale(path, f"{', '.join(old)} changed since", "fretc test")])
+            print_diagnostics([stale(path, f"{', '.join(old)} changed since", "fretc test")])
         yield from of_suite(suite, known)
     path = analysis or default_path()
     if path is not None:
         found = _good(read_analysis(path)).document
         old = others(found, requirements)
         if old:
-            say([stale(path, f"{', '.join(old)} changed since", "fretc analyze")])
+            print_diagnostics([stale(path, f"{', '.join(old)} changed since", "fretc analyze")])
         yield from of_analysis(found, old)
 
 
 def _good(found: T | Diagnostic) -> T:
     if isinstance(found, Diagnostic):
-        stop(found)
+        fail(found)
     return found

@@ -24,7 +24,15 @@ from fretc.terminal.options import (
     requirements_option,
     verification_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say_briefly, stop
+from fretc.terminal.output import (
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
+    fail,
+    print_project_diagnostics,
+    write_outputs,
+)
 from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
 
 if TYPE_CHECKING:
@@ -142,15 +150,15 @@ def report(
     for kind, _ in outputs:
         absent = kind.missing()
         if absent is not None:
-            stop(absent)
+            fail(absent)
     if is_given("evidence") and not os.path.lexists(evidence):
-        stop(replace(not_audited(evidence), severity=Severity.ERROR))
+        fail(replace(not_audited(evidence), severity=Severity.ERROR))
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
-        stop(files)
+        fail(files)
     project = load_folder(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
-        stop(project)
+        fail(project)
     lock = lock or sibling_path(requirements, "fretc.lock")
     waivers = waivers or sibling_path(requirements, "waivers.toml")
     signers = signers or sibling_path(requirements, SIGNERS)
@@ -167,9 +175,9 @@ def report(
         signers=signers,
         analysis=analysis,
     )
-    say_briefly([*project.diagnostics, *outcome.diagnostics], requirements)
+    print_project_diagnostics([*project.diagnostics, *outcome.diagnostics], requirements)
     if outcome.report is None or outcome.details is None:
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     inset = _inset(project, outcome.details.evidence, analysis) if play else None
     subject = Subject(outcome.report, project, outcome.details, outcome.diagnostics, inset)
     others = (bindings, hazards, verification, analysis, lock, waivers, signers)
@@ -177,8 +185,8 @@ def report(
     read = [evidence, *files, *companions(files), *inputs, *outcome.details.logs]
     _deliver(outputs, subject, read)
     if has_errors([*project.diagnostics, *outcome.diagnostics]):
-        raise SystemExit(BAD)
-    raise SystemExit(_status(outcome.report) if strict else SHOWN)
+        raise SystemExit(EXIT_USAGE)
+    raise SystemExit(_status(outcome.report) if strict else EXIT_OK)
 
 
 def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | None) -> Inset | None:
@@ -231,9 +239,9 @@ def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequ
     paths: dict[Path, str | Iterable[str]] = {}
     for form, path in outputs:
         if Path(path) in paths:
-            stop(not_written(path, "two outputs would go there"))
+            fail(not_written(path, "two outputs would go there"))
         paths[Path(path)] = form.text(subject)
-    deliver(paths, inputs)
+    write_outputs(paths, inputs)
 
 
 def _status(whole: Report) -> int:
@@ -244,11 +252,11 @@ def _status(whole: Report) -> int:
     if any(mark.word in BROKEN or mark.suspect for mark in marks) or any(
         map(is_refuted, whole.requirements)
     ):
-        return VIOLATION
+        return EXIT_VIOLATION
     together = whole.analysis
     if whole.withdrawn or (together and (together.is_broken or together.mark.suspect)):
-        return VIOLATION
+        return EXIT_VIOLATION
     in_force = [mark for mark in marks if mark.word != RETIRED]
     shown = all(mark.shows or mark.word == WAIVED for mark in in_force)
     shown = shown and (together is None or together.is_good)
-    return SHOWN if in_force and shown else NOT_SHOWN
+    return EXIT_OK if in_force and shown else EXIT_INCONCLUSIVE

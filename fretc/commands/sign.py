@@ -13,7 +13,13 @@ from typing import TYPE_CHECKING
 import click
 
 from fretc.terminal.options import PATH, extras, path_option
-from fretc.terminal.output import VIOLATION, deliver, say, say_line, stop
+from fretc.terminal.output import (
+    EXIT_VIOLATION,
+    fail,
+    print_diagnostics,
+    print_status,
+    write_outputs,
+)
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.source import Source
@@ -73,10 +79,10 @@ def sign(files: tuple[str, ...], key: str, reviewer: str | None, verification: s
     signables = [_signable(path, key, reviewer, verification) for path in dict.fromkeys(files)]
     for each in signables:
         for line in each.lines:
-            say_line(visible(line))
+            print_status(visible(line))
     mine = private(key)
-    deliver(_merged(signed(each, mine) for each in signables), [*files, key])
-    say_line(f"signed with {mine.public.text}")
+    write_outputs(_merged(signed(each, mine) for each in signables), [*files, key])
+    print_status(f"signed with {mine.public.text}")
 
 
 def _merged(parts: Iterable[Mapping[Path, str]]) -> dict[Path, str]:
@@ -89,7 +95,7 @@ def installed() -> None:
 
     absent = missing()
     if absent is not None:
-        stop(absent)
+        fail(absent)
 
 
 def private(path: str) -> PrivateKey:
@@ -103,9 +109,9 @@ def private(path: str) -> PrivateKey:
     try:
         return private_key(content(path), lambda: _passphrase(path))
     except OSError as error:
-        stop(unreadable(path, error))
+        fail(unreadable(path, error))
     except UnusableKeyError as error:
-        stop(bad_key(path, error))
+        fail(bad_key(path, error))
 
 
 def _passphrase(path: str) -> str:
@@ -113,7 +119,7 @@ def _passphrase(path: str) -> str:
     if known is not None:
         return known
     if not sys.stdin.isatty():
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_KEY,
                 f"the key in `{path}` has a passphrase, and nobody can be asked for it here",
@@ -133,12 +139,12 @@ def signed(what: Signable, key: PrivateKey) -> dict[Path, str]:
 
     envelopes = read(what.path)
     if isinstance(envelopes, Diagnostic):
-        stop(envelopes)
+        fail(envelopes)
     new = envelope(signed_envelope(text(what.statement), key))
     omissions = len(envelopes) - len(kept(envelopes, new, what.current))
     if omissions:
         noun = "earlier signature is" if omissions == 1 else "earlier signatures are"
-        say_line(
+        print_status(
             f"{omissions} {noun} left out: yours of the same, or of what is not there any more"
         )
     return {Path(beside(what.path)): appended(envelopes, new, what.current)}
@@ -152,10 +158,10 @@ def _signable(path: str, key: str, reviewer: str | None, verification: str | Non
     if os.path.isdir(path):
         return _json(path, verification)
     if reviewer is not None and suffix not in (".lock", ".toml"):
-        stop(_usage(f"`{path}` is by no reviewer", "leave `--reviewer` out"))
+        fail(_usage(f"`{path}` is by no reviewer", "leave `--reviewer` out"))
     if suffix not in (".lock", ".toml", ".json", *_REPORTS):
         fix = "name evidence (`.json`, or a store), a lock (`.lock`), waivers (`.toml`) or a report"
-        stop(_usage(f"`{path}` is nothing that fretc signs", fix))
+        fail(_usage(f"`{path}` is nothing that fretc signs", fix))
     match suffix:
         case ".lock":
             return _lock(path, key, reviewer)
@@ -186,7 +192,7 @@ def _json(path: str, verification: str | None) -> Signable:
     if not os.path.isdir(path):
         source = read_text(path)
         if isinstance(source, Diagnostic):
-            stop(source)
+            fail(source)
         schema = _schema(source)
         if schema == proved.SCHEMA:
             return _proved(path)
@@ -196,7 +202,7 @@ def _json(path: str, verification: str | None) -> Signable:
             return _report(path)
     audited = read(path)
     if isinstance(audited, Diagnostic):
-        stop(_as_error(audited))
+        fail(_as_error(audited))
     place = verification or default_path()
     return _evidence(audited, _proofs(place) if place is not None else None)
 
@@ -209,7 +215,7 @@ def _schema(source: Source) -> object:
         whole = Shape(plain(source.text))
         return whole.field("schema").value
     except SchemaError as error:
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_EVIDENCE,
                 f"`{source.name}` is nothing that fretc signs: {error}",
@@ -232,7 +238,7 @@ def _evidence(audited: EvidenceSource, proofs: Proofs | None) -> Signable:
     place = Path(audited.file)
     _same_bytes(str(place / MANIFEST if place.is_dir() else place), audited.sha256)
     if next(audited.briefs(), None) is None:
-        stop(_usage(f"`{audited.file}` tells of no run", "audit one: `fretc audit LOG...`"))
+        fail(_usage(f"`{audited.file}` tells of no run", "audit one: `fretc audit LOG...`"))
     statement = attestation.evidence(audited, proofs)
     lines = (*_summary_of_evidence(audited), *(_summary_of_proofs(proofs) if proofs else ()))
     return Signable(audited.file, statement, statement.main, lines)
@@ -263,7 +269,7 @@ def _proofs(path: str) -> Proofs:
 
     proofs = read(path)
     if isinstance(proofs, Diagnostic):
-        stop(proofs)
+        fail(proofs)
     _same_bytes(path, proofs.sha256)
     return proofs
 
@@ -282,7 +288,7 @@ def _analyzed(path: str) -> Signable:
 
     known = read(path)
     if isinstance(known, Diagnostic):
-        stop(known)
+        fail(known)
     _same_bytes(path, known.sha256)
     found = known.document.analysis
     lines = (
@@ -310,7 +316,7 @@ def _same_bytes(path: str, sha256: str) -> None:
     from compiler.files.text_files import file_sha256
 
     if file_sha256(path) != sha256:
-        stop(
+        fail(
             Diagnostic(
                 Code.UNREADABLE,
                 f"`{path}` is no plain file of UTF-8 without a mark at its start, or is being "
@@ -327,7 +333,7 @@ def _report(path: str) -> Signable:
 
     digest = file_sha256(path)
     if digest is None:
-        stop(unreadable(path, FileNotFoundError()))
+        fail(unreadable(path, FileNotFoundError()))
     statement = attestation.report(path, digest)
     return Signable(path, statement, statement.main, (f"report {path}",))
 
@@ -337,7 +343,7 @@ def _lock(path: str, key: str, reviewer: str | None) -> Signable:
 
     lock = read(path)
     if isinstance(lock, Diagnostic):
-        stop(_as_error(lock))
+        fail(_as_error(lock))
     names = _names(path, [each.reviewer for each in lock.reviews.values()], key, reviewer)
     mine = [each for each in lock.reviews.values() if each.reviewer in names]
     return of_reviews(path, mine, lock.reviews.values())
@@ -366,7 +372,7 @@ def _waivers(path: str, key: str, reviewer: str | None) -> Signable:
 
     waivers, wrong = read(path, None, today())
     if any(each.is_error for each in wrong):
-        stop(*wrong)
+        fail(*wrong)
     names = _names(path, [each.by for each in waivers.values()], key, reviewer)
     mine = [each for each in waivers.values() if each.by in names]
     return Signable(
@@ -388,12 +394,12 @@ def _names(path: str, written: Sequence[str], key: str, reviewer: str | None) ->
     authors = ", ".join(f"`{name}`" for name in names) or "nobody"
     if reviewer is not None:
         if reviewer not in names:
-            stop(_usage(f"nothing in `{path}` is by `{reviewer}`", f"it is by {authors}"))
+            fail(_usage(f"nothing in `{path}` is by `{reviewer}`", f"it is by {authors}"))
         return [reviewer]
     mine = _by_key(path, names, key) if len(names) > 1 else names
     if not mine:
         what = f"`{path}` does not say what is yours: it is by {authors}"
-        stop(_usage(what, "add `--reviewer NAME`"))
+        fail(_usage(what, "add `--reviewer NAME`"))
     return mine
 
 
@@ -408,7 +414,7 @@ def _by_key(path: str, names: Sequence[str], key: str) -> Sequence[str]:
         return []
     signers, mine = read(str(place)), _public(str(public))
     if isinstance(signers, Diagnostic):
-        stop(signers)
+        fail(signers)
     own = [signer for signer in signers.signers if signer.key.fingerprint == mine]
     return [name for name in names if any(signer.goes_by(name) for signer in own)]
 
@@ -419,7 +425,7 @@ def _public(path: str) -> str:
 
     found = trusted(path)
     if isinstance(found, Diagnostic):
-        stop(found)
+        fail(found)
     return next((signer.key.fingerprint for signer in found.signers), "")
 
 
@@ -443,11 +449,11 @@ def require(evidence: EvidenceSource, by: str, others: Mapping[str, str | None])
 
     keys = trusted(by)
     if isinstance(keys, Diagnostic):
-        stop(keys)
+        fail(keys)
     companions = {kind: path for kind, path in others.items() if path is not None}
     signatures = book([evidence.file, *companions.values()], keys)
     if isinstance(signatures, Diagnostic):
-        stop(signatures)
+        fail(signatures)
     mistakes = list(signatures.diagnostics())
     signature = signatures.agreed(evidence)
     if not signature.is_good:
@@ -456,10 +462,10 @@ def require(evidence: EvidenceSource, by: str, others: Mapping[str, str | None])
         one = signatures.of_file(kind, file_sha256(path) or "")
         if not one.is_good:
             mistakes.append(_unsigned(path, by, one.text))
-    say(mistakes)
+    print_diagnostics(mistakes)
     if any(each.is_error for each in mistakes):
-        raise SystemExit(VIOLATION)
-    say_line(visible(f"{evidence.file} is {signature.text}"))
+        raise SystemExit(EXIT_VIOLATION)
+    print_status(visible(f"{evidence.file} is {signature.text}"))
 
 
 def _unsigned(path: str, by: str, why: str) -> Diagnostic:

@@ -14,14 +14,20 @@ import click
 
 from fretc.terminal.options import (
     PATH,
-    Renamed,
     extras,
     format_option,
     jobs_option,
     output_option,
     path_option,
 )
-from fretc.terminal.output import SHOWN, VIOLATION, deliver, not_written, say_line, stop
+from fretc.terminal.output import (
+    EXIT_OK,
+    EXIT_VIOLATION,
+    fail,
+    not_written,
+    print_status,
+    write_outputs,
+)
 from fretc.terminal.progress import progress
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import missing_extra
@@ -36,8 +42,6 @@ if TYPE_CHECKING:
 )
 @click.argument("scenarios", nargs=-1, type=PATH, metavar="[SCENARIO]...")
 @output_option(
-    cls=Renamed,
-    earlier="--out",
     help="MCAP file of the recording; with --campaign, folder for all recordings.",
 )
 @click.option(
@@ -115,7 +119,7 @@ def demand_simulation() -> None:
 
     absent = missing()
     if absent:
-        stop(missing_extra("the simulated robot needs", absent, "sim"))
+        fail(missing_extra("the simulated robot needs", absent, "sim"))
 
 
 def _scenario(name: str) -> Scenario:
@@ -127,9 +131,9 @@ def _scenario(name: str) -> Scenario:
         possible(scenario)
         _known(scenario)
     except OSError as error:
-        stop(_bad_scenario(name, error.strerror or str(error)))
+        fail(_bad_scenario(name, error.strerror or str(error)))
     except (ScenarioError, ValueError) as error:
-        stop(_bad_scenario(name, str(error)))
+        fail(_bad_scenario(name, str(error)))
     return scenario
 
 
@@ -182,11 +186,11 @@ def _file(out: str) -> Path:
     try:
         path = destination(Path(out))
     except OSError as error:
-        stop(not_written(out, error.strerror or str(error)))
+        fail(not_written(out, error.strerror or str(error)))
     if out == "-":
-        stop(not_written(out, "it is a file of its own"))
+        fail(not_written(out, "it is a file of its own"))
     if path.exists() and not path.is_file():
-        stop(not_written(out, "it is no regular file"))
+        fail(not_written(out, "it is no regular file"))
     _folder(path.parent, out)
     return path
 
@@ -196,7 +200,7 @@ def _folder(folder: Path, out: str) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        stop(not_written(out, error.strerror or str(error)))
+        fail(not_written(out, error.strerror or str(error)))
 
 
 def _record(
@@ -216,10 +220,10 @@ def _record(
     path = _file(out)
     images = {form: _file(name) for form, name in pictures.items() if name is not None}
     if len({path, *images.values()}) <= len(images):
-        stop(not_written(out, "two outputs would go there"))
+        fail(not_written(out, "two outputs would go there"))
     limit = scenario.duration if duration is None else duration
     if not math.isfinite(limit):
-        stop(not_written(out, "a mission ends"))
+        fail(not_written(out, "a mission ends"))
     decision = safety_function(scenario.safety.threshold)
     with progress(int(limit), "simulating") as show:
         try:
@@ -235,13 +239,13 @@ def _record(
                 {"fretc": __version__},
             )
         except OSError as error:
-            stop(not_written(out, error.strerror or str(error)))
-    say_line(f"wrote {out}")
+            fail(not_written(out, error.strerror or str(error)))
+    print_status(f"wrote {out}")
     if images:
         from simulation.picture import animate, draw
 
         painters = {"png": draw, "gif": animate}
-        deliver({Path(str(pictures[form])): painters[form](mission) for form in images})
+        write_outputs({Path(str(pictures[form])): painters[form](mission) for form in images})
     click.echo(
         f"{scenario.name}, seed {mission.seed}: {mission.duration:.1f} s, "
         f"{mission.goals_reached} of {mission.goals_total} goals, {len(mission.stops)} stops, "
@@ -273,9 +277,9 @@ def _count(
                 lambda done: show(done, f"{done}/{total} missions"),
             )
         except OSError as error:
-            stop(not_written(out or "a folder for temporary files", error.strerror or str(error)))
+            fail(not_written(out or "a folder for temporary files", error.strerror or str(error)))
     if form == "json":
         click.echo(json.dumps([asdict(run) for run in runs], indent=2))
     else:
         click.echo(table(runs), nl=False)
-    raise SystemExit(VIOLATION if any(run.wrong for run in runs) else SHOWN)
+    raise SystemExit(EXIT_VIOLATION if any(run.wrong for run in runs) else EXIT_OK)

@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from fretc.terminal.output import NOT_SHOWN, SHOWN, VIOLATION, say, stop
+from fretc.terminal.output import (
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_VIOLATION,
+    fail,
+    print_diagnostics,
+)
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import visible
 
@@ -23,20 +29,22 @@ def summarize(paths: Sequence[str], query: str | None, form: str) -> NoReturn:
     from fretc.audit.outputs.table import read
 
     if form not in ("text", "json"):
-        stop(_no_form(form))
+        fail(_no_form(form))
     table = read(paths)
     if isinstance(table, Diagnostic):
-        stop(table)
+        fail(table)
     if query is not None:
         answer = answered(table, query)
         if isinstance(answer, Diagnostic):
-            stop(answer)
+            fail(answer)
         click.echo(_json(answer.records) if form == "json" else _listed(answer), nl=False)
-        raise SystemExit(SHOWN)
+        raise SystemExit(EXIT_OK)
     summary = summarized(table)
-    say(summary.remarks)
+    print_diagnostics(summary.remarks)
     click.echo(_json(summary.as_record) if form == "json" else _text(summary), nl=False)
-    raise SystemExit(VIOLATION if summary.violated else SHOWN if summary.shown else NOT_SHOWN)
+    raise SystemExit(
+        EXIT_VIOLATION if summary.violated else EXIT_OK if summary.shown else EXIT_INCONCLUSIVE
+    )
 
 
 def _no_form(form: str) -> Diagnostic:

@@ -22,15 +22,15 @@ from fretc.terminal.options import (
     requirements_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    INTERRUPTED,
-    NOT_SHOWN,
-    SHOWN,
+    EXIT_INCONCLUSIVE,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
     coloured,
-    deliver,
-    say_briefly,
-    say_line,
-    stop,
+    fail,
+    print_project_diagnostics,
+    print_status,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
 from fretish.diagnostics.rendering import visible
@@ -149,18 +149,18 @@ def test(
     if show is not None:
         _check_shown(show, [requirement.id for requirement in formalized])
     assumed, remarks = assumptions(formalized, project.declarations)
-    say_briefly(remarks, first)
+    print_project_diagnostics(remarks, first)
     if has_errors(remarks):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     sources = [entry.wording.source.name for entry in project.requirements]
     protected = [*sources, *companions(sources), *filter(None, [bindings])]
     if languages and emitted != "pytest":
         why = "`--language` is about the tests of `--emit pytest`"
-        stop(Diagnostic(Code.BAD_USAGE, why, help="ask for these, or leave it out"))
+        fail(Diagnostic(Code.BAD_USAGE, why, help="ask for these, or leave it out"))
     if against is not None:
         if emitted is not None or show is not None:
             clash = "`--against` tests a program, and makes no tests to emit or show"
-            stop(Diagnostic(Code.BAD_USAGE, clash, help="ask for one of them"))
+            fail(Diagnostic(Code.BAD_USAGE, clash, help="ask for one of them"))
         place = output or "build/tests/conformance.json"
         test_against.against(
             against, formalized, assumed, seconds, line_time, form, place, protected
@@ -186,21 +186,21 @@ def test(
     outputs: dict[Path, str] = {} if saved or output == "-" else {Path(output): text}
     if emitted is not None and on_stage is None:
         outputs |= _files(suite, formalized, emitted, emit_to, languages)
-    deliver(outputs, protected)
+    write_outputs(outputs, protected)
     if stopped:
-        raise SystemExit(INTERRUPTED)
+        raise SystemExit(EXIT_INTERRUPTED)
     if on_stage is not None:
         status = test_staging.staged(project, suite, on_stage, emit_to, runs, jobs)
-        if status != SHOWN:
+        if status != EXIT_OK:
             raise SystemExit(status)
-    raise SystemExit(SHOWN if saved or suite.is_complete else NOT_SHOWN)
+    raise SystemExit(EXIT_OK if saved or suite.is_complete else EXIT_INCONCLUSIVE)
 
 
 def _check_shown(id: str, known: Sequence[str]) -> None:
     if id not in known:
         near = suggestion(id, known)
         hint = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
-        stop(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=hint))
+        fail(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=hint))
 
 
 def _of(path: str, requirements: Sequence[FormalizedRequirement]) -> Suite:
@@ -211,18 +211,18 @@ def _of(path: str, requirements: Sequence[FormalizedRequirement]) -> Suite:
 
     suite = read(path)
     if isinstance(suite, Diagnostic):
-        stop(suite)
+        fail(suite)
     again = "make it again: `fretc test`"
     try:
         found = checked(suite, requirements)
     except WrongError as error:
-        stop(Diagnostic(Code.BAD_EVIDENCE, f"`{path}`: {error}", help=again))
+        fail(Diagnostic(Code.BAD_EVIDENCE, f"`{path}`: {error}", help=again))
     if found.others:
         others = ", ".join(found.others)
-        say_line(visible(f"left out, because they are other requirements now: {others}"))
+        print_status(visible(f"left out, because they are other requirements now: {others}"))
     if not found.suite.tests:
         why = f"`{path}` has no test of a requirement as it is"
-        stop(Diagnostic(Code.NOTHING_TO_DO, why, help=again))
+        fail(Diagnostic(Code.NOTHING_TO_DO, why, help=again))
     return found.suite
 
 
@@ -262,7 +262,7 @@ def _files(
     for why in dict.fromkeys(left.values()):
         names = [name for name in left if left[name] == why]
         more = f" and {len(names) - 1} more" if len(names) > 1 else ""
-        say_line(visible(f"not written: {names[0]}{more}: {why}"))
+        print_status(visible(f"not written: {names[0]}{more}: {why}"))
     if output == "-":
         return {Path("-"): "".join(each.text for each in artifacts)}
     return {Path(output) / emitted / each.path: each.text for each in artifacts}

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from fretc.terminal.output import (
-    BAD,
-    INTERRUPTED,
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
+    EXIT_INCONCLUSIVE,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
     coloured,
-    deliver,
-    say,
-    stop,
+    fail,
+    print_diagnostics,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
@@ -65,7 +65,7 @@ def against(
     words = _words(command)
     chosen = roles([*requirements, *assumed])
     if isinstance(chosen, tuple):
-        stop(*chosen)
+        fail(*chosen)
     wrong: Diagnostic | None = None
     stopped = False
     try:
@@ -78,7 +78,7 @@ def against(
         except KeyboardInterrupt:
             stopped = True
     except (UnsupportedError, OutOfTimeError) as error:
-        stop(Diagnostic(Code.BAD_USAGE, f"no program can be tested against these: {error}"))
+        fail(Diagnostic(Code.BAD_USAGE, f"no program can be tested against these: {error}"))
     found = campaign.findings(words)
     evidence = f"{to_json(plain(found))}\n"
     if output == "-" or form == "json":
@@ -86,11 +86,11 @@ def against(
     else:
         click.echo(coloured([*lines(found, chosen)]), nl=False)
     if output != "-":
-        deliver({Path(output): evidence}, protected)
+        write_outputs({Path(output): evidence}, protected)
     if wrong is not None:
-        say([wrong])
+        print_diagnostics([wrong])
     if stopped:
-        raise SystemExit(INTERRUPTED)
+        raise SystemExit(EXIT_INTERRUPTED)
     raise SystemExit(_status(found, wrong))
 
 
@@ -99,9 +99,9 @@ def _words(command: str) -> list[str]:
     try:
         words = shlex.split(command)
     except ValueError as error:
-        stop(_no_command(command, str(error).lower()))
+        fail(_no_command(command, str(error).lower()))
     if not words:
-        stop(_no_command(command, "it is empty"))
+        fail(_no_command(command, "it is empty"))
     return words
 
 
@@ -116,7 +116,7 @@ def _no_command(command: str, why: str) -> Diagnostic:
 
 def _status(found: Conformance, wrong: Diagnostic | None) -> int:
     if found.failures:
-        return VIOLATION
+        return EXIT_VIOLATION
     if wrong is not None:
-        return BAD
-    return SHOWN if found.is_complete else NOT_SHOWN
+        return EXIT_USAGE
+    return EXIT_OK if found.is_complete else EXIT_INCONCLUSIVE

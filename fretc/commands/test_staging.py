@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.terminal.output import BAD, INTERRUPTED, SHOWN, deliver, not_written, stop
+from fretc.terminal.output import (
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
+    fail,
+    not_written,
+    write_outputs,
+)
 from fretc.terminal.progress import progress
 from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -30,7 +37,7 @@ def check(emitted: str, emit_to: str) -> None:
 
     if emit_to == "-":
         message = f"`--emit {emitted}` writes many files, which `-` cannot hold"
-        stop(Diagnostic(Code.BAD_USAGE, message, help="name a folder"))
+        fail(Diagnostic(Code.BAD_USAGE, message, help="name a folder"))
     demand_simulation()
 
 
@@ -43,7 +50,7 @@ def staged(project: Project, suite: Suite, emitted: str, emit_to: str, runs: int
             return _logs(project, suite, folder)
         return _scenarios(project, suite, folder, runs, jobs)
     except OSError as error:
-        stop(not_written(str(folder), error.strerror or str(error)))
+        fail(not_written(str(folder), error.strerror or str(error)))
 
 
 # Logs -------------------------------------------------------------------------------------------
@@ -72,8 +79,8 @@ def _logs(project: Project, suite: Suite, folder: Path) -> int:
         click.echo(f"{signs.BAD.glyph} {one.test.name} is not written: {visible(one.why)}")
     _listed("cannot be staged", ((one.why, one.test.name) for one in refused))
     if interrupted:
-        return INTERRUPTED
-    return BAD if wrong else SHOWN
+        return EXIT_INTERRUPTED
+    return EXIT_USAGE if wrong else EXIT_OK
 
 
 def _listed(what: str, reasons: Iterable[tuple[str, str]]) -> None:
@@ -102,13 +109,13 @@ def _scenarios(project: Project, suite: Suite, folder: Path, runs: int, jobs: in
     except KeyboardInterrupt:
         interrupted = True
     except RuntimeError as error:
-        stop(Diagnostic(Code.PROCESS_KILLED, str(error)))
+        fail(Diagnostic(Code.PROCESS_KILLED, str(error)))
     words = {(one.requirement, one.situation, one.polarity): one.words for one in suite.obligations}
     unlike = _written(project, found, folder, words)
     _say(found, aims, why, words, folder, unlike)
     if interrupted:
-        return INTERRUPTED
-    return BAD if unlike else SHOWN
+        return EXIT_INTERRUPTED
+    return EXIT_USAGE if unlike else EXIT_OK
 
 
 def _written(
@@ -128,7 +135,7 @@ def _written(
                 files[folder / f"{name}.toml"] = written
             else:
                 unlike.append(name)
-    deliver(files)
+    write_outputs(files)
     return unlike
 
 

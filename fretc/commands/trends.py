@@ -8,14 +8,14 @@ import click
 
 from fretc.terminal.options import PATH, format_option, path_option
 from fretc.terminal.output import (
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
-    deliver,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_VIOLATION,
+    fail,
     painted,
+    print_diagnostics,
     protect,
-    say,
-    stop,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
@@ -63,18 +63,18 @@ def trends(
     sources = [required_source(path) for path in dict.fromkeys(evidence)]
     wrong = [each for each in sources if isinstance(each, Diagnostic)]
     if wrong:
-        stop(*wrong)
+        fail(*wrong)
     good = [each for each in sources if not isinstance(each, Diagnostic)]
     try:
         known = trends_of(good, by, level)
     except StoreError as error:
-        stop(error.diagnostic)
+        fail(error.diagnostic)
     if isinstance(known, Diagnostic):
-        stop(known)
+        fail(known)
     if html is not None:
         from fretc.trends.page import html as page
 
-        deliver({Path(html): page(known)}, evidence)
+        write_outputs({Path(html): page(known)}, evidence)
     if form == "json":
         from fretc.trends.json_form import text
 
@@ -85,9 +85,9 @@ def trends(
 
         click.echo(painted(lines(known, screen())), nl=False)
     if not known.has_pairs:
-        say([_nothing_to_compare()])
-    worse = VIOLATION if known.is_worse else None
-    raise SystemExit(worse or (SHOWN if known.is_comparable else NOT_SHOWN))
+        print_diagnostics([_nothing_to_compare()])
+    worse = EXIT_VIOLATION if known.is_worse else None
+    raise SystemExit(worse or (EXIT_OK if known.is_comparable else EXIT_INCONCLUSIVE))
 
 
 def _nothing_to_compare() -> Diagnostic:

@@ -24,15 +24,15 @@ from fretc.terminal.options import (
     requirements_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
     coloured,
-    deliver,
-    fail_at_the_end,
-    say,
-    stop,
+    fail,
+    fail_at_end,
+    print_diagnostics,
+    write_outputs,
 )
 from fretc.verification.layers.languages import language_of
 from fretc.verification.layers.table import OF_MONITOR, in_words
@@ -160,7 +160,7 @@ def verify(
     from fretc.verification.verify import missing_prover, refusals
 
     if (agent is None) != (properties is None):
-        stop(_half_an_agent(agent))
+        fail(_half_an_agent(agent))
     demanded = _demanded(layers, monitor=monitor, monitor_file=monitor_file)
     layer_names = demanded or tuple(Layer)
     if agent is not None:
@@ -183,14 +183,14 @@ def verify(
     )
     absent = missing_prover(request)
     if absent is not None:
-        stop(absent)
+        fail(absent)
     refused = refusals(project, request)
     if refused:
-        say([*refused.values()])
-        fail_at_the_end()
+        print_diagnostics([*refused.values()])
+        fail_at_end()
     proofs = _proofs(project, request)
     if refused and not proofs:
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     list_refused({id: (why,) for id, why in refused.items()}, len(project.formalized))
     own = header.name if header else None
     options = (monitor_file, own, interceptor, agent, properties, bindings, *results)
@@ -223,9 +223,9 @@ def _ajpf_proofs(project: Project, results: Sequence[str]) -> Sequence[Proof]:
     from fretc.verification.ajpf_results import ajpf_proofs
 
     proofs, diagnostics = ajpf_proofs(project.formalized, results)
-    say(diagnostics)
+    print_diagnostics(diagnostics)
     if has_errors(diagnostics):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     return proofs
 
 
@@ -243,7 +243,7 @@ def _project(files: Sequence[str], requirements: str, bindings: str | None) -> P
     """The sound part of the project, which has a requirement at least; else the command stops."""
     project, _ = project_of(files, requirements, bindings, ("interceptor", "assume"))
     if not project.formalized:
-        stop(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to verify"))
+        fail(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to verify"))
     return project
 
 
@@ -255,7 +255,7 @@ def _read(path: str | None) -> Source | None:
         return None
     source = read(path)
     if isinstance(source, Diagnostic):
-        stop(source)
+        fail(source)
     return source
 
 
@@ -266,7 +266,7 @@ def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
         return None
     others = [name for name in layers if name in OF_MONITOR and name != Layer.MONITOR]
     if others:
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
                 f"`--layer {others[0]}` takes a monitor in Python",
@@ -277,7 +277,7 @@ def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
         return None
     included = re.search(r'^#include "(\w+\.h)"$', monitor.text, re.MULTILINE | re.ASCII)
     if included is None:
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_MONITOR,
                 f"`{monitor.name}` is no generated monitor: it includes no header of its own",
@@ -298,7 +298,7 @@ def _proofs(project: Project, request: Request) -> Sequence[Proof]:
     except NotAMonitorError as error:
         assert request.monitor is not None
         language = language_of(request.monitor.name)
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_MONITOR,
                 f"`{request.monitor.name}` is no generated monitor: {error}",
@@ -307,7 +307,7 @@ def _proofs(project: Project, request: Request) -> Sequence[Proof]:
             )
         )
     if isinstance(proofs, Diagnostic):
-        stop(proofs)
+        fail(proofs)
     return proofs
 
 
@@ -344,7 +344,7 @@ def _print_and_write(
         files[Path(output)] = document
     if traces is not None:
         files.update(_trace_files(proofs, Path(traces)))
-    deliver(files, inputs)
+    write_outputs(files, inputs)
 
 
 def _trace_files(proofs: Sequence[Proof], folder: Path) -> dict[Path, str]:
@@ -378,6 +378,6 @@ def _status(proofs: Sequence[Proof]) -> int:
 
     refuted = (proof.claim for proof in proofs if proof.result is Result.COUNTEREXAMPLE)
     if any(claim != RELEASED for claim in refuted):
-        return VIOLATION
+        return EXIT_VIOLATION
     fine = (Result.PROVED, Result.NOT_APPLICABLE)
-    return SHOWN if all(proof.result in fine for proof in proofs) else NOT_SHOWN
+    return EXIT_OK if all(proof.result in fine for proof in proofs) else EXIT_INCONCLUSIVE

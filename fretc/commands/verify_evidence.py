@@ -26,14 +26,14 @@ from fretc.terminal.options import (
     verification_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    INTERRUPTED,
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
+    EXIT_INCONCLUSIVE,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
     coloured,
-    say,
-    stop,
+    fail,
+    print_diagnostics,
 )
 from fretish.diagnostics.diagnostic import (
     Code,
@@ -152,7 +152,7 @@ def verify_evidence(
     file = evidence_place(file)
     evidence = required(file)
     if isinstance(evidence, Diagnostic):
-        stop(evidence)
+        fail(evidence)
     whole = evidence.document
     if signed_by is not None:
         others = {"report": report, "proofs": verification, "analysis": analysis}
@@ -187,8 +187,8 @@ def _status(results: Sequence[Recheck], same: bool | None, scope: Scope) -> int:
 
     kinds = {one.finding for one in results}
     if Finding.DIFFERS in kinds or same is False:
-        return VIOLATION
-    return NOT_SHOWN if Finding.UNKNOWN in kinds or scope.part else SHOWN
+        return EXIT_VIOLATION
+    return EXIT_INCONCLUSIVE if Finding.UNKNOWN in kinds or scope.part else EXIT_OK
 
 
 def _runs(whole: Document) -> list[str]:
@@ -201,10 +201,10 @@ def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tup
 
     given_labels = given(labels)
     if isinstance(given_labels, Diagnostic):
-        stop(given_labels)
+        fail(given_labels)
     project = load_folder(requirements, bindings)
     if isinstance(project, Diagnostic):
-        stop(project)
+        fail(project)
     return project, replace(plan_of(project, requirements), labels=given_labels)
 
 
@@ -218,7 +218,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
     for folder in folders:
         if not Path(folder).is_dir():
             fix = "name the folder that the logs are in"
-            stop(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=fix))
+            fail(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=fix))
     places: dict[str, str] = {}
     for folder in folders:
         places = {**located(runs, folder), **places}
@@ -227,7 +227,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
     policy = Places(named, offline)
     refusals = {run: why for run, place in places.items() if (why := policy.refusal(place))}
     fix = "name its folder, or the beginning of its URL, with `--logs`, if you trust it"
-    say(
+    print_diagnostics(
         [
             Diagnostic(
                 Code.FOREIGN_PLACE,
@@ -255,7 +255,7 @@ def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
         if name not in claims:
             near = suggestion(name, claims)
             fix = f"did you mean `{near}`?" if near else f"there are {', '.join(claims)}"
-            stop(Diagnostic(Code.BAD_USAGE, f"no requirement `{name}` is in force", help=fix))
+            fail(Diagnostic(Code.BAD_USAGE, f"no requirement `{name}` is in force", help=fix))
     return Scope(ids, _lock(requirements), part=True)
 
 
@@ -266,7 +266,7 @@ def _lock(requirements: str) -> Lock | None:
     path = sibling_path(requirements, NAME)
     lock = read(path) if path is not None else None
     if isinstance(lock, Diagnostic):
-        stop(lock)
+        fail(lock)
     return lock
 
 
@@ -277,7 +277,7 @@ def _manifest(path: str | None) -> Manifest | None:
         return None
     manifest = read(path)
     if not isinstance(manifest, Manifest):
-        stop(*manifest)
+        fail(*manifest)
     return manifest
 
 
@@ -286,7 +286,7 @@ def _proofs(path: str | None) -> Proofs | None:
 
     proofs = read(path) if path is not None else None
     if isinstance(proofs, Diagnostic):
-        stop(proofs)
+        fail(proofs)
     return proofs
 
 
@@ -295,7 +295,7 @@ def _analyzed(path: str | None) -> AnalyzedSet | None:
 
     known = read(path) if path is not None else None
     if isinstance(known, Diagnostic):
-        stop(known)
+        fail(known)
     return known
 
 
@@ -340,14 +340,14 @@ def _signatures(files: Sequence[str], signers: str | None) -> SignatureBook:
 
     known = trusted(signers) if signers is not None else None
     if isinstance(known, Diagnostic):
-        stop(known)
+        fail(known)
     signatures = book(files, known)
     if isinstance(signatures, Diagnostic):
-        stop(signatures)
+        fail(signatures)
     broken = list(signatures.diagnostics())
-    say(broken)
+    print_diagnostics(broken)
     if has_errors(broken):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     return signatures
 
 
@@ -367,7 +367,7 @@ def _rechecked(
 
     results = recheck(whole, plan, places, local_executor(jobs), scope, manifest)
     if isinstance(results, Diagnostic):
-        stop(results)
+        fail(results)
     return results
 
 
@@ -386,7 +386,7 @@ def _reproved(
         return (unknown(PROOFS, "", "no proof was made again: `--no-proofs`"), *missing)
     results = prove_again(project, proofs, Limits(seconds=limit), scope.claimed, at_work)
     if isinstance(results, Diagnostic):
-        stop(results)
+        fail(results)
     return (*results, *missing)
 
 
@@ -415,12 +415,12 @@ def _asked_again(
     assumed, remarks = assumptions(in_force, project.declarations)
     chosen = roles([*requirements, *assumed])
     if has_errors(remarks):
-        stop(*remarks)
+        fail(*remarks)
     if isinstance(chosen, tuple):
-        stop(*chosen)
+        fail(*chosen)
     now, stopped = asked(requirements, assumed, chosen, Options(as_fret=document.as_fret))
     if stopped:
-        raise SystemExit(INTERRUPTED)
+        raise SystemExit(EXIT_INTERRUPTED)
     old = [differs(TOGETHER, "", why) for why in changes(document, requirements, assumed)]
     others = (
         requirement.id for requirement in in_force if requirement not in requirements
@@ -445,7 +445,7 @@ def _report(
 
     source = read(path)
     if isinstance(source, Diagnostic):
-        stop(source)
+        fail(source)
     names = [sibling_path(requirements, name) for name in ("fretc.lock", "waivers.toml", SIGNERS)]
     current = make(
         project,

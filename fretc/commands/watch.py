@@ -11,16 +11,16 @@ from fretc.commands.opening import OF_AUDITS, plan_of
 from fretc.terminal.group import Grouped
 from fretc.terminal.options import PATH, bindings_option, extras, path_option, requirements_option
 from fretc.terminal.output import (
-    BAD,
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
-    deliver,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
+    fail,
     not_written,
+    print_diagnostics_below,
+    print_status,
     protect,
-    say_also,
-    say_line,
-    stop,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
@@ -110,32 +110,32 @@ def watch(
     from fretc.watch.watch import Watch
 
     if evidence is not None and record is None:
-        stop(_needs_recording())
+        fail(_needs_recording())
     reaction = None if command is None else Reaction(notify.words(command, "--on-violation"))
     source = chosen(words, follow=follow)
     if isinstance(source, Diagnostic):
-        stop(source)
+        fail(source)
     project, plan, inputs = _planned(requirements, bindings)
     outputs = [Path(name) for name in (record, evidence) if name is not None and name != "-"]
     protect(outputs, [*inputs, *words])
     if record == evidence and record is not None:
-        stop(not_written(record, "two outputs would go there"))
+        fail(not_written(record, "two outputs would go there"))
     if record == "-":
-        stop(not_written(record, "a recording is a file"))
+        fail(not_written(record, "a recording is a file"))
     for path in outputs:
         if path.is_dir():  # not after a night of watching
-            stop(not_written(str(path), "it is a folder"))
+            fail(not_written(str(path), "it is a folder"))
     publishers = _opened(publish, source)
     try:
         followed = source.name if isinstance(source, Log) else None
         run = Watch(plan, Path(record) if record is not None else None, followed)
     except OSError as error:
-        stop(not_written(str(record), error.strerror or str(error)))
+        fail(not_written(str(record), error.strerror or str(error)))
     titles = {requirement.id: requirement.entry.title for requirement in project.formalized}
     shown = outputs_of(form, titles)
     with until_stopped() as stopped:
         watched(run, source, shown, reaction, Publishing(publishers), stopped)
-    status = BAD if run.failed else _status(run.runs)
+    status = EXIT_USAGE if run.failed else _status(run.runs)
     if evidence is not None:
         status = max(status, _audited(plan, run.recordings, evidence, inputs, project))
     raise SystemExit(status)
@@ -149,9 +149,9 @@ def _opened(words: Sequence[str], source: Source) -> Sequence[Publisher]:
 
     publishers = chosen(words, source)
     if isinstance(publishers, Diagnostic):
-        stop(publishers)
+        fail(publishers)
     for address in addresses(publishers):
-        say_line(f"publishes at {address}: open it in Foxglove")
+        print_status(f"publishes at {address}: open it in Foxglove")
     return publishers
 
 
@@ -162,19 +162,19 @@ def _planned(requirements: str, bindings: str | None) -> tuple[Project, Plan, Se
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
-        stop(files)
+        fail(files)
     project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
     plan = plan_of(project, requirements)
     if plan.declarations.clock.patience is None:
-        stop(_needs_lateness(plan))
+        fail(_needs_lateness(plan))
     return project, plan, (*files, *companions(files), *([bindings] if bindings else []))
 
 
 def _status(runs: Sequence[RunEnded]) -> int:
     verdicts = {verdict for run in runs for verdict in run.verdicts.values()}
     if "violated" in verdicts:
-        return VIOLATION
-    return SHOWN if verdicts == {"satisfied"} else NOT_SHOWN
+        return EXIT_VIOLATION
+    return EXIT_OK if verdicts == {"satisfied"} else EXIT_INCONCLUSIVE
 
 
 def _audited(
@@ -185,11 +185,11 @@ def _audited(
     from fretc.commands.audit_progress import audit_in_memory
 
     if not logs:
-        stop(Diagnostic(Code.NOTHING_TO_DO, "nothing was recorded: there is no evidence"))
+        fail(Diagnostic(Code.NOTHING_TO_DO, "nothing was recorded: there is no evidence"))
     result = audit_in_memory(plan, logs, local_executor(1))
-    say_also(project.answered(result.diagnostics), ())
-    deliver({Path(evidence): result.evidence}, [*inputs, *logs])
-    return SHOWN if result.read == len(logs) else BAD
+    print_diagnostics_below(project.answered(result.diagnostics), ())
+    write_outputs({Path(evidence): result.evidence}, [*inputs, *logs])
+    return EXIT_OK if result.read == len(logs) else EXIT_USAGE
 
 
 def _needs_lateness(plan: Plan) -> Diagnostic:

@@ -14,7 +14,7 @@ from typing import Protocol
 
 import click
 
-from fretc.terminal.output import coloured, painted, say
+from fretc.terminal.output import coloured, painted, print_diagnostics
 from fretc.terminal.screen import screen
 from fretc.watch.json_lines import line as json_line
 from fretc.watch.news import Changed, Found, News
@@ -68,7 +68,7 @@ class Lines:
         """What there is to say of it."""
         self._start = self._start if self._start is not None else session.first_tick
         if isinstance(news, Found):
-            say([news.diagnostic])
+            print_diagnostics([news.diagnostic])
             return
         text = line(news, self._start)
         if text is not None:

@@ -12,7 +12,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from fretc.terminal.options import PATH
-from fretc.terminal.output import stop
+from fretc.terminal.output import fail
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 
 _OWN = ("-h", "--help", "--version", "--parents")
@@ -74,7 +74,7 @@ class Commands(click.Group):
         if args and args[0] not in self.commands and args[0].partition("=")[0] not in _OWN:
             named = args[0].startswith("-") or _is_path(args[0])
             if not named and not ctx.resilient_parsing:  # a shell asks what could come next
-                stop(_unknown_command(args[0], [*self.commands]))
+                fail(_unknown_command(args[0], [*self.commands]))
             args = [DEFAULT, *args]
         return super().parse_args(ctx, args)
 

@@ -10,7 +10,7 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
-from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE, stop
+from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE, fail
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 Command = Callable[..., Any]
@@ -69,19 +69,6 @@ class _Seconds(click.FloatRange):
 SECONDS = _Seconds()
 
 
-class Renamed(click.Option):
-    """An option with an earlier spelling, which still works and stands in no help."""
-
-    def __init__(self, *spellings: Any, earlier: str, **attributes: Any) -> None:
-        super().__init__(*spellings, **attributes)
-        self._earlier = earlier
-
-    def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
-        """Take both spellings."""
-        super().add_to_parser(parser, ctx)
-        parser.add_option(obj=self, opts=[self._earlier], dest=self.name, action="store")
-
-
 def path_option(*spellings: str, **attributes: Any) -> Callable[[Command], Command]:
     """An option that names a file or folder."""
     return click.option(*spellings, type=PATH, **attributes)
@@ -123,7 +110,7 @@ def evidence_place(named: str | None) -> str:
     if named is not None:
         return named
     if os.path.lexists(EVIDENCE) and os.path.lexists(STORE):
-        stop(
+        fail(
             Diagnostic(
                 Code.TWO_EVIDENCES,
                 f"evidence is in `{EVIDENCE}` and in `{STORE}`: one of them is of an earlier audit",
@@ -183,7 +170,7 @@ def is_given(name: str) -> bool:
 def places(arguments: Sequence[str], requirements: str) -> list[str]:
     """Where requirements are: what the arguments name, else `--requirements`; never both."""
     if arguments and is_given("requirements"):
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
                 f"requirements are named twice: `{arguments[0]}` and `--requirements`",

@@ -23,58 +23,58 @@ REQUIREMENTS_FOLDER = "requirements"
 """Where the requirements of a project are, if nobody says otherwise."""
 EVIDENCE, STORE = "build/evidence.json", "build/evidence"
 """Where evidence of one log is, and of several, if nobody says otherwise."""
-SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
+EXIT_OK, EXIT_VIOLATION, EXIT_USAGE, EXIT_INCONCLUSIVE, EXIT_INTERRUPTED = 0, 1, 2, 3, 130
 """Exit status: all shown, a violation, bad use or input, something not shown, Ctrl-C."""
 
 
-def stop(*diagnostics: Diagnostic) -> NoReturn:
+def fail(*diagnostics: Diagnostic) -> NoReturn:
     """Say it and exit with 2."""
-    say(diagnostics)
-    raise SystemExit(BAD)
+    print_diagnostics(diagnostics)
+    raise SystemExit(EXIT_USAGE)
 
 
 _FAILED = "fretc.failed"
 
 
-def fail_at_the_end() -> None:
+def fail_at_end() -> None:
     """Let the present command exit with 2 in the end, whatever it says of the rest of its input."""
     click.get_current_context().meta[_FAILED] = True
 
 
 def final_status(context: click.Context, status: int) -> int:
     """The exit status of a command that ends with this one: bad input wins over all but Ctrl-C."""
-    failed = _FAILED in context.meta and status != INTERRUPTED
-    return BAD if failed else status
+    failed = _FAILED in context.meta and status != EXIT_INTERRUPTED
+    return EXIT_USAGE if failed else status
 
 
 _ACCEPTED = "fretc.accepted"
 
 
-def say(diagnostics: Sequence[Diagnostic]) -> None:
+def print_diagnostics(diagnostics: Sequence[Diagnostic]) -> None:
     """Print them on standard error; those that are accepted are counted at the end of the command.
 
     They are ordered by their places, and in colours where it is a terminal.
     """
-    say_all([diagnostic for diagnostic in diagnostics if not diagnostic.accepted])
+    print_diagnostic_groups([diagnostic for diagnostic in diagnostics if not diagnostic.accepted])
     accepted = {diagnostic for diagnostic in diagnostics if diagnostic.accepted}
     if accepted:
         click.get_current_context().meta.setdefault(_ACCEPTED, set()).update(accepted)
 
 
-def say_accepted(context: click.Context) -> None:
+def print_accepted_count(context: click.Context) -> None:
     """Print how many warnings of a command are accepted, if any are."""
     count = len(context.meta.get(_ACCEPTED, ()))
     if count:
         what = "1 warning is" if count == 1 else f"{count} warnings are"
-        say_line(f"{what} accepted: `fretc check` lists the reasons")
+        print_status(f"{what} accepted: `fretc check` lists the reasons")
 
 
-def say_all(*groups: Sequence[Diagnostic]) -> None:
+def print_diagnostic_groups(*groups: Sequence[Diagnostic]) -> None:
     """Print groups of diagnostics on standard error, each ordered by their places."""
     paint = _painted if _has_colours(sys.stderr) else plain
     blocks = [render_all(by_place(group), paint) for group in groups if group]
     if blocks:
-        say_line("\n\n".join(blocks))
+        print_status("\n\n".join(blocks))
 
 
 _STYLES: Mapping[Part, Mapping[str, Any]] = {
@@ -96,7 +96,7 @@ def _has_colours(stream: TextIO) -> bool:
     return stream.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
 
 
-def say_briefly(diagnostics: Sequence[Diagnostic], requirements: str) -> None:
+def print_project_diagnostics(diagnostics: Sequence[Diagnostic], requirements: str) -> None:
     """Print them, with one line for all warnings about sentences: those are `check`'s matter.
 
     Args:
@@ -105,7 +105,7 @@ def say_briefly(diagnostics: Sequence[Diagnostic], requirements: str) -> None:
     """
     warnings = [each for each in diagnostics if _is_about_a_sentence(each)]
     others = [each for each in diagnostics if each not in warnings]
-    say(others)
+    print_diagnostics(others)
     if not warnings:
         return
     counts = Counter(each.code.number for each in warnings)
@@ -113,8 +113,8 @@ def say_briefly(diagnostics: Sequence[Diagnostic], requirements: str) -> None:
     noun = "warning about a sentence" if len(warnings) == 1 else "warnings about sentences"
     place = "" if requirements == REQUIREMENTS_FOLDER else f" --requirements {quote(requirements)}"
     if others:
-        say_line("")
-    say_line(visible(f"{len(warnings)} {noun} ({codes}): see `fretc check{place}`"))
+        print_status("")
+    print_status(visible(f"{len(warnings)} {noun} ({codes}): see `fretc check{place}`"))
 
 
 def _is_about_a_sentence(diagnostic: Diagnostic) -> bool:
@@ -123,20 +123,22 @@ def _is_about_a_sentence(diagnostic: Diagnostic) -> bool:
     return about_meaning and diagnostic.is_open
 
 
-def say_also(diagnostics: Sequence[Diagnostic], earlier: Sequence[Diagnostic]) -> None:
+def print_diagnostics_below(
+    diagnostics: Sequence[Diagnostic], earlier: Sequence[Diagnostic]
+) -> None:
     """Print them below others, if any of both there are."""
     if diagnostics and earlier:
-        say_line("")
-    say(diagnostics)
+        print_status("")
+    print_diagnostics(diagnostics)
 
 
-def say_line(text: str) -> None:
+def print_status(text: str) -> None:
     """Print a line on standard error; where that cannot be, the exit status still tells."""
     with suppress(OSError):
         click.echo(text, err=True)
 
 
-def deliver(
+def write_outputs(
     files: Mapping[Path, str | bytes | Iterable[str]], protected: Iterable[str] = ()
 ) -> None:
     """Write the texts, whole or in pieces, all or none, and name them.
@@ -151,14 +153,14 @@ def deliver(
     targets = [os.path.realpath(path) for path in files]
     for path, target in zip(files, targets, strict=True):
         if targets.count(target) > 1:
-            stop(not_written(str(path), "two outputs would go there"))
+            fail(not_written(str(path), "two outputs would go there"))
     printed = files.get(Path("-"))
     for piece in (printed,) if isinstance(printed, str | bytes) else printed or ():
         click.echo(piece, nl=False)
     written = {path: text for path, text in files.items() if path != Path("-")}
     wrong = write(written)
     if wrong is not None:
-        stop(wrong)
+        fail(wrong)
     _name(written)
 
 
@@ -167,10 +169,10 @@ def _name(written: Collection[Path]) -> None:
     folders = Counter(path.parent for path in written)
     for folder, count in folders.items():
         if count > _MOST_NAMED:
-            say_line(visible(f"wrote {count} files in {folder}"))
+            print_status(visible(f"wrote {count} files in {folder}"))
     for path in written:
         if folders[path.parent] <= _MOST_NAMED:
-            say_line(visible(f"wrote {path}"))
+            print_status(visible(f"wrote {path}"))
 
 
 _MOST_NAMED = 40
@@ -183,7 +185,7 @@ def protect(outputs: Iterable[Path], protected: Iterable[str]) -> None:
     for path in outputs:
         target = os.path.realpath(path)
         if path != Path("-") and target in inputs:
-            stop(not_written(str(path), f"it is `{inputs[target]}`, which is read"))
+            fail(not_written(str(path), f"it is `{inputs[target]}`, which is read"))
 
 
 def coloured(lines: Iterable[Piece]) -> str:

@@ -412,11 +412,11 @@ def test_the_evidence_of_a_log_is_the_same_whatever_is_accepted_of_it(fretc: Fre
     write("requirements/fretc.toml", "")
     log = Path("run.mcap")
     recorded(log, [number(i / 10, 1000 * S + i * 300 * MS) for i in range(12)])
-    run = fretc("audit", str(log), "--evidence", "open.json")
+    run = fretc("audit", str(log), "-o", "open.json")
     assert codes(run, "warning:") == ["F315"]
     status = run.status
     write("requirements/fretc.toml", '[accept]\nF315 = { "/x" = "slow by design" }\n')
-    run = fretc("audit", str(log), "--evidence", "accepted.json")
+    run = fretc("audit", str(log), "-o", "accepted.json")
     assert (run.status, codes(run, "warning:")) == (status, [])
     assert "1 warning is accepted: `fretc check` lists the reasons" in run.err
     assert Path("accepted.json").read_bytes() == Path("open.json").read_bytes()

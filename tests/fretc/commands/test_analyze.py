@@ -298,9 +298,9 @@ def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) ->
 
 @pytest.mark.slow
 def test_check_names_each_conflict(fretc: Fretc, folder: Path) -> None:
-    run = fretc("check", str(folder), "--analyze")
+    run = fretc("check", "--requirements", str(folder), "--analyze")
     assert "F561 warning: R1 and R2 cannot be kept together: at tick 2 R1 demands `run`" in run.err
-    assert "F561" not in fretc("check", str(folder)).err
+    assert "F561" not in fretc("check", "--requirements", str(folder)).err
 
 
 @pytest.mark.slow
@@ -309,17 +309,17 @@ def test_check_takes_an_answer_only_while_it_is_about_these(fretc: Fretc, tmp_pa
     good = (FIGHT[0], "upon stop the line shall within 3 ticks satisfy !run")
     written(tmp_path, good)
     assert fretc("analyze", str(tmp_path)).status == 0
-    assert "F56" not in fretc("check", str(tmp_path), "--analyze").err
+    assert "F56" not in fretc("check", "--requirements", str(tmp_path), "--analyze").err
     text = Path("build/analysis.json").read_text().replace('"realizable"', '"not checked"')
     Path("build/analysis.json").write_text(text)
-    assert "F562 warning" in fretc("check", str(tmp_path), "--analyze").err
+    assert "F562 warning" in fretc("check", "--requirements", str(tmp_path), "--analyze").err
     written(tmp_path, FIGHT)
-    assert "F561 warning" in fretc("check", str(tmp_path), "--analyze").err
+    assert "F561 warning" in fretc("check", "--requirements", str(tmp_path), "--analyze").err
 
 
 def test_check_says_what_has_no_role(fretc: Fretc, folder: Path) -> None:
     written(folder, FIGHT, {"start": "input", "run": "output"})
-    assert "F354" in fretc("check", str(folder), "--analyze").err
+    assert "F354" in fretc("check", "--requirements", str(folder), "--analyze").err
 
 
 @pytest.mark.slow

@@ -128,7 +128,7 @@ def test_a_hash_that_was_put_in_by_hand_does_not_help(audited: Fretc) -> None:
     known = json.loads(Path("build/evidence.json").read_text())
     log("logs/bad.mcap", 0, 1.5, 3, 0, 0, 0)
     shutil.copytree("logs", "others")
-    assert audited("audit", "others", "--evidence", "other.json").status == 0
+    assert audited("audit", "others", "-o", "other.json").status == 0
     other = json.loads(Path("other.json").read_text())
     known["results"][0]["hashes"]["log"] = other["results"][0]["hashes"]["log"]
     write("build/evidence.json", json.dumps(known))
