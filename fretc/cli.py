@@ -221,5 +221,5 @@ def _internal(error: Exception) -> Diagnostic:
     return Diagnostic(
         Code.INTERNAL,
         f"internal error in fretc: {type(error).__name__}{where}: {error}",
-        help="please report it with the input; FRETC_TRACEBACK=1 shows where it comes from",
+        help="please report it together with the input; FRETC_TRACEBACK=1 shows the traceback",
     )

@@ -101,10 +101,10 @@ def analyze(
 
 Question = Callable[[RealizabilityProblem, Budget], Iterator[Finding]]
 _OF_GROUPS: Mapping[str, Question] = {
-    "does each of {} say anything?": of_runs.constants,
+    "is any of {} satisfied by every run?": of_runs.constants,
     "is each of {} ever triggered?": of_runs.vacuities,
     "do some of {} imply others?": of_runs.redundancies,
-    "can a run lead to where {} clash?": of_runs.inconsistencies,
+    "can a run make {} impossible to satisfy together?": of_runs.inconsistencies,
 }
 
 
@@ -139,7 +139,7 @@ def jobs(
 
 def _promises(assumptions: Sequence[FormalizedRequirement], roles: Roles, options: Options) -> Job:
     """Whether the assumptions can be kept at all: from those that cannot, everything follows."""
-    title = f"can any run keep the assumptions {', '.join(each.id for each in assumptions)}?"
+    title = f"can any run satisfy the assumptions {', '.join(each.id for each in assumptions)}?"
 
     def ask(known: Sequence[Finding]) -> Iterator[Finding]:
         for group in by_variables(assumptions, (), roles):
@@ -148,7 +148,9 @@ def _promises(assumptions: Sequence[FormalizedRequirement], roles: Roles, option
             for each in of_runs.consistency(setting, budget):
                 if isinstance(each, Consistency) and each.holds is False:
                     ids = ", ".join(each.requirements)
-                    yield OpenQuestion("what follows from the assumptions", f"no run keeps {ids}")
+                    yield OpenQuestion(
+                        "what follows from the assumptions", f"no run satisfies {ids}"
+                    )
 
     return Job(title, ask, partial(OpenQuestion, title))
 
@@ -209,14 +211,14 @@ class _Setting:
             except (UnsupportedError, OutOfTimeError) as error:
                 yield not_checked(str(error))
 
-        return Job(f"can {self._name} be kept together?", ask, not_checked)
+        return Job(f"can {self._name} be satisfied together?", ask, not_checked)
 
     def consistency(self) -> Job:
         """Whether any run keeps a group; where a system keeps all of it, one does.
 
         Where a system that chooses everything cannot keep a part of it, none does.
         """
-        title = f"can any run keep {self._name}?"
+        title = f"can any run satisfy {self._name}?"
 
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
             kept, lost = (
@@ -242,7 +244,7 @@ class _Setting:
 
     def conflicts(self) -> Job:
         """Which of a component fight, where it cannot be kept, or nobody knows."""
-        title = f"which of {self._name} fight?"
+        title = f"which of {self._name} conflict?"
 
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
             mine = [
@@ -259,7 +261,7 @@ class _Setting:
 
     def repairs(self) -> Job:
         """What would settle the conflicts of a component."""
-        title = f"what would settle the conflicts of {self._name}?"
+        title = f"what would resolve the conflicts of {self._name}?"
 
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
             mine = [
@@ -274,7 +276,7 @@ class _Setting:
 
     def controller(self, number: int, form: Form) -> Job:
         """How a component that can be kept is kept."""
-        title = f"how can {self._name} be kept?"
+        title = f"how can {self._name} be satisfied?"
 
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
             yield from self._answers(title, partial(strategy, number=number, form=form))
@@ -366,9 +368,9 @@ def _verdict(components: Sequence[Component], missing: Sequence[str]) -> tuple[V
     unknown = [each for each in components if each.verdict is Verdict.NOT_CHECKED]
     if bad:
         which = "; ".join(", ".join(each.requirements) for each in bad)
-        return Verdict.UNREALIZABLE, f"cannot be kept together: {which}"
+        return Verdict.UNREALIZABLE, f"cannot be satisfied together: {which}"
     if missing:
-        return Verdict.NOT_CHECKED, f"not looked at: {', '.join(missing)}"
+        return Verdict.NOT_CHECKED, f"not examined: {', '.join(missing)}"
     if unknown:
         return Verdict.NOT_CHECKED, "; ".join(each.why for each in unknown)
     return Verdict.REALIZABLE, "for each component the system has a strategy"
@@ -379,7 +381,7 @@ def _fought(component: Component, conflicts: Sequence[frozenset[str]]) -> Compon
     if component.verdict is Verdict.NOT_CHECKED and any(
         each.issubset(component.requirements) for each in conflicts
     ):
-        return replace(component, verdict=Verdict.UNREALIZABLE, why="some of them fight")
+        return replace(component, verdict=Verdict.UNREALIZABLE, why="some of them conflict")
     return component
 
 
@@ -412,13 +414,16 @@ def _terms(
             "means at once"
         )
     else:
-        yield "`eventually` may take as long as it likes, but not for ever"
+        yield "an `eventually` may take any number of ticks, but not for ever"
     if assumes:
-        yield "what is said of runs is said of those that keep all assumptions"
+        yield "results about runs hold for the runs that satisfy all assumptions"
     if any(_looks_back(requirement) for requirement in requirements):
         yield (
-            "before the first tick nothing was true; `preBool`, `preInt` and `preReal` state their "
+            "before the first tick every proposition is false; `preBool`, `preInt` and `preReal` "
+            "state their "
             "own first value"
         )
     if any(comparisons(requirement) for requirement in requirements):
-        yield "numbers are exact: whole or real, without bounds; rounding of floats is not modelled"
+        yield (
+            "numbers are exact integers or reals without bounds; rounding of floats is not modelled"
+        )

@@ -37,8 +37,8 @@ class Member(Record, frozen=True):
     sha256: Annotated[
         Sha256,
         about(
-            "SHA-256 of all that the analysis reads of it: formulas, ticks, what its names are "
-            "bound to, their types and roles"
+            "SHA-256 of everything that the analysis reads: formulas, ticks, the bindings of its "
+            "names, their types and roles"
         ),
     ]
 
@@ -49,10 +49,12 @@ class Document(Record, frozen=True):
     schema: Literal["fretc-analyzed-set-1"]
     fretc: Annotated[str, about("version of the tool")]
     as_fret: Annotated[
-        bool, about("whether it answers FRET's question: `eventually` means at once")
+        bool, about("whether FRET's question was answered: `eventually` means at once")
     ]
-    requirements: Annotated[dict[Name, Member], about("all that were asked about, by their ids")]
-    assumptions: Annotated[dict[Name, Member], about("what the environment was taken to keep")]
+    requirements: Annotated[
+        dict[Name, Member], about("the requirements that were analyzed, by their ids")
+    ]
+    assumptions: Annotated[dict[Name, Member], about("what the environment was assumed to satisfy")]
     analysis: Analysis
 
 
@@ -139,9 +141,9 @@ def changes(
 def _changes(then: Mapping[str, Member], now: Mapping[str, Member], what: str) -> Iterator[str]:
     for id in (*then, *(each for each in now if each not in then)):
         if id not in now:
-            yield f"{what}{id} was part of the set, and is not any more"
+            yield f"{what}{id} is no longer part of the set"
         elif id not in then:
-            yield f"{what}{id} was no part of the set"
+            yield f"{what}{id} was not part of the set"
         elif then[id] != now[id]:
             yield f"{what}{id} has changed since"
 
@@ -153,26 +155,28 @@ def remarks(
     places = {requirement.id: requirement.entry.wording for requirement in requirements}
     for each in analysis.conflicts:
         ids = each.requirements
-        what = "can be kept by no system" if len(ids) == 1 else "cannot be kept together"
+        what = (
+            "cannot be satisfied by any system" if len(ids) == 1 else "cannot be satisfied together"
+        )
         yield Diagnostic(
             Code.UNREALIZABLE,
             f"{listed(ids)} {what}: {each.because}",
             places.get(ids[0]),
-            help="look at the run: `fretc analyze`",
+            help="`fretc analyze` shows the run",
             severity=Severity.WARNING,
         )
     if analysis.verdict is Verdict.UNREALIZABLE and not analysis.conflicts:
         yield Diagnostic(
             Code.UNREALIZABLE,
             f"requirements {analysis.why}",
-            help="look at them: `fretc analyze`",
+            help="`fretc analyze` shows them",
             severity=Severity.WARNING,
         )
     if analysis.verdict is Verdict.NOT_CHECKED:
         yield Diagnostic(
             Code.NOT_ANALYZED,
-            f"it is not known whether all requirements can be kept together: {analysis.why}",
-            help="see what is open: `fretc analyze`",
+            f"it is unknown whether all requirements can be satisfied together: {analysis.why}",
+            help="`fretc analyze` shows the open questions",
             severity=Severity.WARNING,
         )
 
@@ -243,7 +247,7 @@ def _contradiction(found: Document) -> str:
         follows = Verdict.REALIZABLE if ids <= shown else Verdict.NOT_CHECKED
     if analysis.verdict is follows:
         return ""
-    return f"the verdict is `{analysis.verdict}`, and `{follows}` is what its parts say"
+    return f"the verdict is `{analysis.verdict}`, but its parts imply `{follows}`"
 
 
 def _wrong(source: Source, what: str) -> Diagnostic:

@@ -51,7 +51,7 @@ def consistency(
 ) -> Iterator[Consistency | OpenQuestion]:
     """Whether any run keeps all requirements."""
     ids = tuple(requirement.id for requirement in setting.requirements)
-    question = f"whether any run keeps {listed(ids)}"
+    question = f"whether any run satisfies {listed(ids)}"
     doubt = setting.left_out or setting.of_inputs or setting.of_outputs
     try:
         there = setting.close(ids, budget)
@@ -80,7 +80,7 @@ def constants(setting: RealizabilityProblem, budget: Budget) -> Iterator[Constan
             elif _is_implied(setting, counter, (), budget.again()):
                 yield Constant(counter.id, always=True)
         except OutOfTimeError as error:
-            yield OpenQuestion(f"whether {counter.id} says anything", str(error))
+            yield OpenQuestion(f"whether every run satisfies {counter.id}", str(error))
 
 
 def redundancies(
@@ -102,7 +102,7 @@ def redundancies(
     try:
         yield Removable(_removable(setting, found, budget.again()))
     except OutOfTimeError as error:
-        yield OpenQuestion(f"which of {listed(found)} may go together", str(error))
+        yield OpenQuestion(f"which of {listed(found)} can be removed together", str(error))
 
 
 def _removable(
@@ -200,7 +200,7 @@ def inconsistencies(
     doubt = setting.of_inputs or setting.of_outputs
     counters = setting.arena.counters
     names = listed([requirement.id for requirement in setting.requirements])
-    question = f"whether a run can lead to where {names} clash"
+    question = f"whether a run can make {names} impossible to satisfy together"
     if doubt is not None:
         yield OpenQuestion(question, doubt)
         return

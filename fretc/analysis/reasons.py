@@ -48,7 +48,10 @@ def because(
     now = _asked_last(counters, game, play)
     if not now or len(requirements) == 1:
         id = requirements[0].id
-        return f"at tick {last} no output keeps {id}{details[id]}, whatever was done before"
+        return (
+            f"at tick {last} no output satisfies {id}{details[id]}, whatever the earlier "
+            "outputs were"
+        )
     parts: list[str] = []
     wanted = ""
     for id, words in now.items():
@@ -191,7 +194,7 @@ def _for_ever(
         why = f", because {listed([f'{id} {words.pop()}' for id, words in always.items()])}"
     else:
         verb = "is" if len(others) == 1 else "are"
-        why = f", as long as {listed(others)} {verb} kept" if others else ""
+        why = f", as long as {listed(others)} {verb} satisfied" if others else ""
     verb = "is" if len(lost) == 1 else "are"
     return f"{open_} {verb} never met{why}: the environment repeats {again} for ever"
 
@@ -201,7 +204,7 @@ def _words(asked: Function, game: Game) -> str:
     if asked == bdd.true():
         return ""
     if asked & game.reachable == bdd.false():
-        return "can be kept by no output"
+        return "cannot be satisfied by any output"
     terms: list[str] = []
     rest = asked
     while rest != bdd.false() and len(terms) < _MOST_TERMS:

@@ -108,7 +108,7 @@ def repairs(
                 )
             except (OutOfTimeError, UnsupportedError) as error:
                 ids = ", ".join(conflict.requirements)
-                yield OpenQuestion(f"what else would settle {ids}", str(error))
+                yield OpenQuestion(f"what else would resolve {ids}", str(error))
 
 
 def _changes(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:

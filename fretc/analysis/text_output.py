@@ -38,7 +38,7 @@ def lines(
     sign = SIGNS[analysis.verdict]
     yield f"{sign.glyph} {_headline(analysis, 'other ' if left_out else '')}", sign.colour
     if left_out:
-        yield f"{signs.UNKNOWN.glyph} without {listed(left_out)}: see the mistakes", _UNKNOWN
+        yield f"{signs.UNKNOWN.glyph} without {listed(left_out)}: see the errors", _UNKNOWN
     for component in analysis.components:
         yield from _component(component)
     for number, conflict in enumerate(analysis.conflicts, 1):
@@ -66,11 +66,11 @@ def _headline(analysis: Analysis, which: str) -> str:
             how = (
                 "while the assumptions hold" if analysis.assumptions else "whatever the inputs are"
             )
-            return f"realizable: a system can keep all {which}requirements, {how}"
+            return f"realizable: a system can satisfy all {which}requirements, {how}"
         case Verdict.UNREALIZABLE if count == 1:
-            return f"unrealizable: no system can keep all {which}requirements"
+            return f"unrealizable: no system can satisfy all {which}requirements"
         case Verdict.UNREALIZABLE:
-            return f"unrealizable: {bad} of {count} components cannot be kept"
+            return f"unrealizable: {bad} of {count} components cannot be satisfied"
         case Verdict.NOT_CHECKED:
             return f"not checked: {analysis.why}"
 
@@ -85,7 +85,7 @@ def _conflict(
     number: int, conflict: Conflict, analysis: Analysis, sentences: Mapping[str, str]
 ) -> Iterator[Line]:
     ids = conflict.requirements
-    what = "can be kept by no system" if len(ids) == 1 else "cannot be kept together"
+    what = "cannot be satisfied by any system" if len(ids) == 1 else "cannot be satisfied together"
     yield f"{signs.BAD.glyph} conflict {number}: {listed(ids)} {what}", signs.BAD.colour
     yield f"  {conflict.because}", None
     width = max(map(len, ids))
@@ -94,7 +94,7 @@ def _conflict(
     for row in drawn(conflict.play, analysis.roles):
         yield f"    {row}", None
     if conflict.loop is not None:
-        yield f"    and from tick {conflict.loop} on the same again, for ever", None
+        yield f"    the ticks from {conflict.loop} on repeat for ever", None
     fixing = [each for each in analysis.repairs if each.conflict == ids]
     if fixing:
         yield "  each of these changes resolves the conflict (proved):", None
@@ -112,9 +112,9 @@ def _repair(repair: Repair) -> Iterator[Line]:
 
 def _inconsistency(clash: Inconsistency, analysis: Analysis) -> Iterator[Line]:
     sign = signs.OPEN
-    where = "from the start" if not clash.play else "after this run, which breaks none of them"
+    where = "from the start" if not clash.play else "after this run, which violates none of them"
     ids = listed(clash.requirements)
-    yield f"{sign.glyph} {ids} can no longer be kept together {where}", sign.colour
+    yield f"{sign.glyph} {ids} can no longer be satisfied together {where}", sign.colour
     for row in drawn(clash.play, analysis.roles):
         yield f"    {row}", None
 
@@ -184,15 +184,17 @@ def remarks(analysis: Analysis) -> Iterator[Line]:
     """What single requirements say, or do not."""
     empty = signs.EMPTY
     if analysis.consistent is False:
-        yield f"{signs.BAD.glyph} no run at all keeps all requirements", signs.BAD.colour
+        yield f"{signs.BAD.glyph} no run satisfies all requirements", signs.BAD.colour
     for id in analysis.never:
-        yield f"{signs.BAD.glyph} no run keeps {id}", signs.BAD.colour
+        yield f"{signs.BAD.glyph} no run satisfies {id}", signs.BAD.colour
     for id in analysis.always:
-        yield f"{empty.glyph} every run keeps {id}: it says nothing", empty.colour
+        yield f"{empty.glyph} every run satisfies {id}: it has no effect", empty.colour
     for vacuity in analysis.vacuous:
-        never = "is never triggered" if vacuity.what == "trigger" else "has a scope that never is"
-        by = f" as long as {listed(vacuity.by)} is kept" if len(vacuity.by) == 1 else ""
-        by = f" as long as {listed(vacuity.by)} are kept" if len(vacuity.by) > 1 else by
+        never = (
+            "is never triggered" if vacuity.what == "trigger" else "has a scope that never begins"
+        )
+        by = f" as long as {listed(vacuity.by)} is satisfied" if len(vacuity.by) == 1 else ""
+        by = f" as long as {listed(vacuity.by)} are satisfied" if len(vacuity.by) > 1 else by
         yield f"{empty.glyph} {vacuity.requirement} {never}{by}", empty.colour
     for each in analysis.redundant:
         if each.by:
@@ -201,7 +203,7 @@ def remarks(analysis: Analysis) -> Iterator[Line]:
             yield f"{empty.glyph} {text}", empty.colour
     gone = [id for id in analysis.removable if id not in analysis.always]
     if len([each for each in analysis.redundant if each.by]) > 1 and gone:
-        yield f"  {listed(gone)} can go together: the others say the same", None
+        yield f"  {listed(gone)} can be removed together: the others imply them", None
 
 
 def _rest(analysis: Analysis) -> Iterator[Line]:

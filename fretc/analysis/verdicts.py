@@ -127,9 +127,9 @@ def _unrolled(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, s
     if found is None:
         return None
     if isinstance(found, Impossible):
-        return Verdict.UNREALIZABLE, f"no run of {found.ticks} ticks keeps all of them"
+        return Verdict.UNREALIZABLE, f"no run of {found.ticks} ticks satisfies all of them"
     run = f"a run of {len(found.numbers)} ticks that repeats itself from tick {found.loop} on"
-    return Verdict.REALIZABLE, f"there are no inputs, and {run} keeps all of them"
+    return Verdict.REALIZABLE, f"there are no inputs, and {run} satisfies all of them"
 
 
 def _is_lost(setting: RealizabilityProblem, ids: Sequence[str], budget: Budget) -> bool:
@@ -158,7 +158,7 @@ def strategy(
         else:
             yield mealy(found, ids, budget)
     except (UnsupportedError, NoMachineError, OutOfTimeError) as error:
-        yield OpenQuestion(f"how can {', '.join(ids)} be kept?", str(error))
+        yield OpenQuestion(f"how can {', '.join(ids)} be satisfied?", str(error))
 
 
 def _check_assumptions(setting: RealizabilityProblem, budget: Budget) -> None:
@@ -168,7 +168,7 @@ def _check_assumptions(setting: RealizabilityProblem, budget: Budget) -> None:
     runs = setting.runs((), budget)
     if not runs.is_possible():
         ids = ", ".join(each.id for each in setting.assumptions)
-        raise UnsupportedError(f"no run keeps the assumptions {ids}")
+        raise UnsupportedError(f"no run satisfies the assumptions {ids}")
 
 
 def conflicts(
@@ -181,7 +181,8 @@ def conflicts(
     Where neither is certain, more of numbers is remembered.
     """
     question = (
-        f"which others of {', '.join(requirement.id for requirement in setting.requirements)} fight"
+        "which others of "
+        f"{', '.join(requirement.id for requirement in setting.requirements)} conflict"
     )
     shown: set[tuple[str, ...]] = set()
     found = _Fights(setting, setting)
@@ -260,7 +261,7 @@ class _Fights:
         doubt = self.strict.left_out or self.generous.of_inputs or self.strict.of_outputs
         if doubt is None and self.smaller:
             which = "; ".join(map(listed, self.smaller))
-            return f"{self.strict.of_inputs}; that decides whether these can be kept: {which}"
+            return f"{self.strict.of_inputs}; that decides whether these can be satisfied: {which}"
         return doubt
 
 
@@ -313,7 +314,9 @@ def _hint(setting: RealizabilityProblem, budget: Budget) -> str:
     try:
         if not fights(every):
             return ""
-        return f"; with all durations divided by {factor}, {listed(minimal(every, fights))} fight"
+        return (
+            f"; with all durations divided by {factor}, {listed(minimal(every, fights))} conflict"
+        )
     except OutOfTimeError:
         return ""
 
@@ -330,7 +333,7 @@ def _conflict(whole: RealizabilityProblem, members: Sequence[str], budget: Budge
     try:
         play = Counterstrategy(game, game.solution(traps=True), budget).play()
     except (NoPlayError, OutOfTimeError) as error:
-        return Conflict(tuple(ids), (), f"the environment wins by a play that is {error}")
+        return Conflict(tuple(ids), (), f"the environment wins, by a run that is {error}")
     requirements = [requirement for requirement in setting.requirements if requirement.id in ids]
     alphabet = setting.arena.alphabet
     lost = broken(requirements, alphabet, play, as_fret=setting.as_fret)

@@ -141,5 +141,5 @@ def _answer_all(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[
 def _ending(status: int) -> str:
     """Why the process ended before its answer."""
     if status in (-signal.SIGPROF, -signal.SIGKILL):
-        return "it took longer than it may"
+        return "it exceeded its time limit"
     return f"it took more than {MEMORY // 2**30} GiB of memory, or failed (exit status {status})"

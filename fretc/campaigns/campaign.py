@@ -243,4 +243,4 @@ def _violations(groups: Mapping[str, Sequence[Run]]) -> Iterator[str]:
         differences = ", ".join(
             f"{i} is {run.verdicts.get(i)}, not {v}" for i, v in run.wrong.items()
         )
-        yield f"not as stated: {run.scenario}, seed {run.seed}: {differences}"
+        yield f"not as expected: {run.scenario}, seed {run.seed}: {differences}"

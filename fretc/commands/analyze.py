@@ -183,7 +183,7 @@ def _emit(
     from fretish.printer import sentence as printed
 
     if analysis.verdict is not Verdict.REALIZABLE:
-        print_status(f"no strategy is written: {analysis.why}")
+        print_status(f"no controller is written: {analysis.why}")
         return
     form = Form(emitted)
     try:
@@ -194,7 +194,7 @@ def _emit(
     machines = [each for each in found if isinstance(each, Mealy)]
     for each in found:
         if isinstance(each, OpenQuestion):
-            message = f"no strategy can be written: {each.why}"
+            message = f"no controller can be written: {each.why}"
             fail(Diagnostic(Code.TOO_LARGE, message, help=_smaller(form)))
     if form is Form.PYTHON:
         sentences = {requirement.id: printed(requirement.written) for requirement in requirements}
@@ -210,8 +210,8 @@ def _emit(
 
 def _smaller(form: str) -> str:
     if form == "python":
-        return "ask for one component with `--component`, or for more time with `--time`"
-    return "`--emit python` has no states, and writes far larger strategies"
+        return "select one component with `--component`, or allow more time with `--time`"
+    return "try `--emit python`: it lists no states and can write much larger controllers"
 
 
 def active_requirements(

@@ -298,7 +298,7 @@ def audit(
                 made[Path(parquet)] = outputs.table(result)
             _deliver(result, target, made, inputs)
         elif os.path.lexists(target.path):
-            print_status(visible(f"no log could be read: `{target.path}` stays as it was"))
+            print_status(visible(f"no log could be read: `{target.path}` is unchanged"))
         source, not_judged = result.source, {one.id for one in plan.refused}
         marks = Marks.of((each for _, each in source.briefs()), result.estimates, not_judged)
         is_bad = plan.refused or has_errors((*project.diagnostics, *diagnostics))
@@ -381,7 +381,7 @@ def _samples(target: Target, *, rehash: bool) -> SampleCache | None:
 
 
 def _no_place_for_columns(why: str, fix: str) -> Diagnostic:
-    message = f"`--keep-columns` keeps samples beside the evidence of this machine, and {why}"
+    message = f"`--keep-columns` stores samples beside the evidence on this machine, but {why}"
     return Diagnostic(Code.BAD_USAGE, message, help=fix)
 
 
@@ -400,7 +400,7 @@ def _engine(
         return local_executor(jobs, kept, earlier.results, limits)
     if kept is not None:
         why = f"`--engine {name}` reads the logs elsewhere"
-        fail(_no_place_for_columns(why, "leave out one of the two"))
+        fail(_no_place_for_columns(why, "remove one of the two options"))
     from fretc.audit import dask_executor
 
     engine = dask_executor.engine(name, jobs)

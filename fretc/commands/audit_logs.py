@@ -62,8 +62,8 @@ def time_limits(log: str | None, whole: str | None, logs: Sequence[str], engine:
         fail(
             Diagnostic(
                 Code.BAD_USAGE,
-                f"{what} has no limits of time",
-                help="leave out `--time` and `--log-time`, or audit files on this machine",
+                f"{what} does not support time limits",
+                help="remove `--time` and `--log-time`, or audit files on this machine",
             )
         )
     return limits
@@ -77,7 +77,7 @@ def _seconds(option: str, text: str | None) -> float | None:
         fail(
             Diagnostic(
                 Code.BAD_USAGE,
-                f"`{option} {text}` is no time",
+                f"`{option} {text}` is not a duration",
                 help=f"write `{option} 90s`, `{option} 30min` or `{option} 6h`",
             )
         )

@@ -86,7 +86,7 @@ def check(target: Target, parquet: str | None) -> None:
 
 def _check_table(parquet: str, evidence: Path) -> None:
     if parquet == "-":
-        fail(not_written(parquet, "a table is a file"))
+        fail(not_written(parquet, "a Parquet table cannot be printed"))
     if os.path.exists(parquet) and not os.path.isfile(parquet):
         fail(not_written(parquet, "it is no regular file"))
     if os.path.realpath(parquet) == os.path.realpath(evidence):
@@ -186,14 +186,14 @@ def _json(outcome: Outcome) -> str:
 def _no_folder(path: Path) -> Diagnostic:
     return Diagnostic(
         Code.NOT_WRITTEN,
-        f"`{path}` cannot be written: a store of evidence is a folder",
-        help=f"evidence in one file ends with `.json`: `-o {path}.json`",
+        f"`{path}` cannot be written: an evidence store is a folder, and this is a file",
+        help=f"for evidence in one file, use a name that ends with `.json`: `-o {path}.json`",
     )
 
 
 def _no_store(path: Path) -> Diagnostic:
     return Diagnostic(
         Code.NOT_WRITTEN,
-        f"`{path}` cannot be written: it is a folder with something else in it",
+        f"`{path}` cannot be written: the folder contains other files",
         help="name a new folder, an empty one, or a store that `fretc audit` has written",
     )

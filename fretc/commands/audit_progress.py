@@ -43,24 +43,23 @@ def audit_into(session: StoreWriter, engine: Engine) -> StoredAudit:
     if session.known:
         count = len(session.known) + len(session.new)
         print_status(
-            f"{len(session.known)} of {count} logs are unchanged: their earlier results are used "
-            "again"
+            f"{len(session.known)} of {count} logs are unchanged: their earlier results are reused"
         )
     elif session.earlier.claims:
         print_status(
-            "requirements or bindings have changed: results of unchanged logs by "
-            f"{len(session.earlier.claims)} unchanged requirements are taken over"
+            "requirements or bindings have changed: the results of "
+            f"{len(session.earlier.claims)} unchanged requirements on unchanged logs are reused"
         )
     elif session.earlier.stale:
         print_status("requirements, bindings or fretc have changed: all logs are audited again")
     if session.missing:
         what = "log of the store is" if session.missing == 1 else "logs of the store are"
         whose = "its" if session.missing == 1 else "their"
-        print_status(f"{session.missing} {what} not named this time: {whose} results leave it")
+        print_status(f"{session.missing} {what} not among the inputs: {whose} results are removed")
     if session.earlier.foreign:
         print_status(
             f"`{session.folder}` was written by another user or in another folder: its results "
-            "are not used again"
+            "are not reused"
         )
     try:
         with shown(session.new) as show:
@@ -81,7 +80,7 @@ def _kept(session: StoreWriter) -> str:
     if not session.kept:
         return ""
     kept, count = session.kept + len(session.known), len(session.known) + len(session.new)
-    return f": {kept} of {count} logs are kept, the same command goes on from there"
+    return f": {kept} of {count} logs are saved; run the same command again to continue"
 
 
 @contextmanager

@@ -155,7 +155,7 @@ def _exists(path: str) -> Diagnostic:
     return Diagnostic(
         Code.NOT_WRITTEN,
         f"`{path}` already exists",
-        help="name another file with `-o`, or write over it with `--force`",
+        help="name another file with `-o`, or overwrite it with `--force`",
     )
 
 
@@ -172,7 +172,7 @@ def _second_log(path: str) -> Diagnostic:
     """F907: a LOG beside the one of `--from`."""
     return Diagnostic(
         Code.BAD_USAGE,
-        f"a draft is made from one log, and `{path}` is one more",
+        f"bindings are drafted from one log, but a second one is given: `{path}` is one more",
         help="name one log after `--from`",
     )
 

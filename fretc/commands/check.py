@@ -200,7 +200,7 @@ def _finish(diagnostics: tuple[Diagnostic, ...], count: int, form: str) -> None:
         print_diagnostic_groups([d for d in diagnostics if not d.accepted], accepted)
         if diagnostics:
             print_status("")
-        counts_in_words = f"{_many(errors, 'mistake')}, {_many(warnings, 'warning')}"
+        counts_in_words = f"{_many(errors, 'error')}, {_many(warnings, 'warning')}"
         also = f", {len(accepted)} accepted" if accepted else ""
         print_status(f"{_many(count, 'requirement')}: {counts_in_words}{also}")
     raise SystemExit(EXIT_USAGE if errors else EXIT_INCONCLUSIVE if warnings else EXIT_OK)

@@ -89,8 +89,8 @@ def coverage(
         fail(
             Diagnostic(
                 Code.BAD_USAGE,
-                "logs and `--evidence` are both named: runs are in one of them",
-                help="leave out one of the two",
+                "logs and `--evidence` are both given, but the runs come from only one of them",
+                help="remove one of the two options",
             )
         )
     if paths:
@@ -137,7 +137,9 @@ def suite_of(named: str | None, fingerprints: Mapping[str, str]) -> Suite | None
     if other:
         which = ", ".join(other)
         print_status(
-            visible(f"the tests are of other sentences of {which}: `fretc test` makes them")
+            visible(
+                f"the tests were generated for earlier sentences of {which}: run `fretc test` again"
+            )
         )
     return suite
 

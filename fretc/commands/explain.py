@@ -59,7 +59,13 @@ def explain(
     code = None if is_file else _code(what)
     if code is not None:
         if picture is not None:
-            fail(Diagnostic(Code.BAD_USAGE, "a code has no picture", help="leave `--svg` out"))
+            fail(
+                Diagnostic(
+                    Code.BAD_USAGE,
+                    "`--svg` draws a requirement, not a diagnostic code",
+                    help="remove `--svg`",
+                )
+            )
         _explain_code(code, form)
         return
     if is_sentence(what):
@@ -68,7 +74,7 @@ def explain(
         formalized = _rules(what, requirements, bindings, is_file=is_file)
     if picture is not None and len(formalized) > 1:
         fix = f"name one of them: `fretc explain {quote(formalized[0].id)}`"
-        fail(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=fix))
+        fail(Diagnostic(Code.BAD_USAGE, f"`{what}` contains several requirements", help=fix))
     _explain_rules(formalized, form, picture)
 
 
@@ -211,7 +217,7 @@ def _unknown_code(what: str) -> Diagnostic | None:
     area = [code.number for code in Code if code.number[1] == what[1]]
     return Diagnostic(
         Code.NO_SUCH_REQUIREMENT,
-        f"no diagnostic has the code `{what.upper()}`, and no requirement that id",
+        f"`{what.upper()}` is neither a diagnostic code nor the id of a requirement",
         help=f"there are {', '.join(sorted(area))}" if area else "codes begin with F1 to F9",
     )
 
@@ -221,7 +227,7 @@ def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Di
     if is_file:
         return Diagnostic(
             Code.NO_SUCH_REQUIREMENT,
-            f"`{what}` holds no requirement",
+            f"`{what}` contains no requirement",
             help="write one: `whenever p the robot shall within 3 ticks satisfy q`",
         )
     if (unknown_code := _unknown_code(what)) is not None:
@@ -229,7 +235,7 @@ def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Di
     if any(character.isspace() for character in what):
         return Diagnostic(
             Code.NO_SUCH_REQUIREMENT,
-            f"`{what}` is no id",
+            f"`{what}` is not the id of a requirement",
             help='pipe a sentence in: `echo "the robot shall ..." | fretc explain -`',
         )
     near = suggestion(what, ids)

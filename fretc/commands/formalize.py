@@ -90,7 +90,11 @@ def compile_(
     if one_file and not any(TARGETS[kind].joins for kind in kinds):
         *most, last = (f"`--emit {name}`" for name, each in TARGETS.items() if each.joins)
         joining = f"{', '.join(most)} and {last}"
-        fail(Diagnostic(Code.BAD_USAGE, f"`--one-file` is for {joining}", help="add one of them"))
+        fail(
+            Diagnostic(
+                Code.BAD_USAGE, f"`--one-file` applies only to {joining}", help="add one of them"
+            )
+        )
     if weaken:
         _check_weaken(kinds)
     paths = listed(files)
@@ -139,8 +143,14 @@ def _check_weaken(kinds: Sequence[str]) -> None:
     """F907 where no kind of file that is asked for has a weaker form."""
     weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
     if not any(TARGETS[kind].weak for kind in kinds):
-        message = f"`--weaken` is for {' and '.join(weak)}"
-        fail(Diagnostic(Code.BAD_USAGE, message, help="other files never weaken a requirement"))
+        message = f"`--weaken` applies only to {' and '.join(weak)}"
+        fail(
+            Diagnostic(
+                Code.BAD_USAGE,
+                message,
+                help="remove `--weaken`: other kinds of files never weaken a requirement",
+            )
+        )
 
 
 def _deliver_formulas(project: Project, output: str) -> None:
@@ -221,7 +231,9 @@ def _next_steps(project: Project, firsts: Mapping[str, str], output: str) -> str
     ]
     source = project.requirements[0].wording.source.name
     if source != "<stdin>":
-        steps.append(f"`fretc explain {quote(source)}` shows what is meant, with a picture")
+        steps.append(
+            f"`fretc explain {quote(source)}` explains the requirement with a timing diagram"
+        )
     return "\n".join(visible(f"next: {step}") for step in steps)
 
 
@@ -258,8 +270,8 @@ def _not_of_all(target: Target, refused: Sequence[Refused]) -> Diagnostic:
     ids = ", ".join(each.requirement.id for each in refused)
     return Diagnostic(
         Code.NOT_OF_ALL,
-        f"`--emit {target.name}` puts all requirements together, and some have mistakes: {ids}",
-        help="correct them, or name the files of the others",
+        f"`--emit {target.name}` combines all requirements, but some have errors: {ids}",
+        help="fix them, or name only the files of the other requirements",
     )
 
 
@@ -356,5 +368,5 @@ def _exists(path: str) -> Diagnostic:
     return Diagnostic(
         Code.NOT_WRITTEN,
         f"`{path}` already exists",
-        help="name another folder with `-o`, or write over it with `--force`",
+        help="name another folder with `-o`, or overwrite it with `--force`",
     )

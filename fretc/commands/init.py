@@ -62,8 +62,10 @@ def _say_next_commands(folder: str, requirements: Path, log: str | None) -> None
 
     option = "" if folder == "." else f" --requirements {quote(str(requirements))}"
     log_argument = "LOG" if log is None else shell_word(log)
-    print_status(visible(f"next: `fretc check{option}` says what is wrong or missing"))
-    print_status(visible(f"next: `fretc audit {log_argument}{option}` judges a log"))
+    print_status(visible(f"next: `fretc check{option}` reports what is wrong or missing"))
+    print_status(
+        visible(f"next: `fretc audit {log_argument}{option}` checks a log against the requirements")
+    )
 
 
 def _has_settings(folder: Path) -> bool:
@@ -99,6 +101,6 @@ def _standard_input() -> Diagnostic:
     """F907: `--from -`."""
     return Diagnostic(
         Code.BAD_USAGE,
-        "standard input can be read once, and a project is drafted from a log in two readings",
-        help="save the log as a file, and name that",
+        "standard input can be read only once, but drafting a project reads the log twice",
+        help="save the log to a file, and name that file",
     )

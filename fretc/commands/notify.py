@@ -30,7 +30,7 @@ def words(command: str, option: str = "--notify") -> list[str]:
             Diagnostic(
                 Code.BAD_USAGE,
                 f"`{option}` names no command: {why}",
-                help="write the command with its options in one pair of quotes",
+                help="put the command and its options into one pair of quotes",
             )
         )
     return found
@@ -60,13 +60,13 @@ def notify(command: Sequence[str], summary: Mapping[str, Any]) -> None:
         if done.returncode:
             print_diagnostics([_failed(command, f"ended with exit status {done.returncode}")])
         else:
-            print_status(visible(f"notified by `{command[0]}`"))
+            print_status(visible(f"sent the summary to `{command[0]}`"))
 
 
 def _failed(command: Sequence[str], how: str) -> Diagnostic:
     return Diagnostic(
         Code.NOTICE_FAILED,
-        f"`{command[0]}` {how}: the summary did not arrive",
-        help="try it by hand; verdicts and exit status are as without it",
+        f"`{command[0]}` {how}: the summary was not delivered",
+        help="run it by hand to see why; verdicts and exit status are not affected",
         severity=Severity.WARNING,
     )

@@ -117,10 +117,10 @@ def list_refused(refused: Mapping[str, Sequence[Diagnostic]], count: int) -> Non
     worst = sorted(ids, key=lambda where: -len(ids[where]))[:_MOST_LINES]
     width = max(map(len, worst))
     noun = "requirement" if count == 1 else "requirements"
-    lines = [f"left out because of mistakes: {len(refused)} of {count} {noun}"]
+    lines = [f"left out because of errors: {len(refused)} of {count} {noun}"]
     lines += [f"  {where:<{width}}  {_some(ids[where])}" for where in worst]
     if len(ids) > _MOST_LINES:
-        lines.append(f"  and those of {len(ids) - _MOST_LINES} more mistakes")
+        lines.append(f"  and the requirements of {len(ids) - _MOST_LINES} more errors")
     print_status("\n" + "\n".join(map(visible, lines)))
 
 

@@ -117,8 +117,8 @@ def lock(
     if not is_date(day):
         fail(Diagnostic(Code.BAD_USAGE, f"`{day}` is no date", help="write it as `2026-11-22`"))
     if is_to_come(day):
-        message = f"`{day}` is still to come, and nobody can have reviewed then"
-        fail(Diagnostic(Code.BAD_USAGE, message, help="leave `--date` out: then it is today"))
+        message = f"`{day}` is in the future: a review cannot have happened yet"
+        fail(Diagnostic(Code.BAD_USAGE, message, help="leave out `--date` to use today"))
     project, chains, refuted = _chains(requirements, evidence, verification, analysis, accept=True)
     refused = _refused(project)
     where = path or _beside(requirements)
@@ -147,7 +147,7 @@ def lock(
             visible(f"accepted {chain.requirement}: {verdicts_of(chain)}{warnings_of(chain)}")
         )
     for id in sorted(removals, key=natural):
-        print_status(f"left out {id}: it is not among the requirements")
+        print_status(f"left out {id}: there is no such requirement")
     print_status(counts.text)
 
 

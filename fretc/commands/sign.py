@@ -122,9 +122,9 @@ def _passphrase(path: str) -> str:
         fail(
             Diagnostic(
                 Code.BAD_KEY,
-                f"the key in `{path}` has a passphrase, and nobody can be asked for it here",
+                f"the key in `{path}` has a passphrase, but there is no terminal to ask for it",
                 Source(path, "").span(),
-                help=f"put it into the environment variable {PASSPHRASE}",
+                help=f"set the environment variable {PASSPHRASE} to the passphrase",
             )
         )
     asked: str = click.prompt(f"passphrase of {visible(path)}", hide_input=True, err=True)
@@ -145,7 +145,8 @@ def signed(what: Signable, key: PrivateKey) -> dict[Path, str]:
     if omissions:
         noun = "earlier signature is" if omissions == 1 else "earlier signatures are"
         print_status(
-            f"{omissions} {noun} left out: yours of the same, or of what is not there any more"
+            f"{omissions} {noun} removed: they are replaced by this signature, or sign content "
+            "that is gone"
         )
     return {Path(beside(what.path)): appended(envelopes, new, what.current)}
 
@@ -158,7 +159,7 @@ def _signable(path: str, key: str, reviewer: str | None, verification: str | Non
     if os.path.isdir(path):
         return _json(path, verification)
     if reviewer is not None and suffix not in (".lock", ".toml"):
-        fail(_usage(f"`{path}` is by no reviewer", "leave `--reviewer` out"))
+        fail(_usage(f"`{path}` is by no reviewer", "remove `--reviewer`"))
     if suffix not in (".lock", ".toml", ".json", *_REPORTS):
         fix = "name evidence (`.json`, or a store), a lock (`.lock`), waivers (`.toml`) or a report"
         fail(_usage(f"`{path}` is nothing that fretc signs", fix))
@@ -220,7 +221,7 @@ def _schema(source: Source) -> object:
                 Code.BAD_EVIDENCE,
                 f"`{source.name}` is nothing that fretc signs: {error}",
                 Source(source.name, "").span(),
-                help="name what `fretc audit`, `verify`, `analyze` or `report` has written",
+                help="name a file that `fretc audit`, `verify`, `analyze` or `report` has written",
             )
         )
 
@@ -238,7 +239,7 @@ def _evidence(audited: EvidenceSource, proofs: Proofs | None) -> Signable:
     place = Path(audited.file)
     _same_bytes(str(place / MANIFEST if place.is_dir() else place), audited.sha256)
     if next(audited.briefs(), None) is None:
-        fail(_usage(f"`{audited.file}` tells of no run", "audit one: `fretc audit LOG...`"))
+        fail(_usage(f"`{audited.file}` contains no run", "audit a log: `fretc audit LOG...`"))
     statement = attestation.evidence(audited, proofs)
     lines = (*_summary_of_evidence(audited), *(_summary_of_proofs(proofs) if proofs else ()))
     return Signable(audited.file, statement, statement.main, lines)
@@ -258,10 +259,10 @@ def _summary_of_evidence(audited: EvidenceSource) -> Iterator[str]:
         if audit.verdict == kernel.VIOLATED:
             yield f"  {result.requirement} is violated in {result.run}"
         if not result.log:
-            yield f"  no SHA-256 is known of {result.run}: the log itself is not signed"
+            yield f"  the SHA-256 of {result.run} is unknown: the log itself is not signed"
     for one in audited.probabilities:
         if one.answer == REFUTED:
-            yield f"  {one.requirement} is refuted by all runs"
+            yield f"  {one.requirement} is refuted over all runs"
 
 
 def _proofs(path: str) -> Proofs:
@@ -319,10 +320,9 @@ def _same_bytes(path: str, sha256: str) -> None:
         fail(
             Diagnostic(
                 Code.UNREADABLE,
-                f"`{path}` is no plain file of UTF-8 without a mark at its start, or is being "
-                "written to",
+                f"`{path}` is not UTF-8 text without a byte order mark, or it is being written",
                 Source(path, "").span(),
-                help="wait until it is complete, or make it again",
+                help="wait until it is complete, or create it again",
             )
         )
 
@@ -394,11 +394,13 @@ def _names(path: str, written: Sequence[str], key: str, reviewer: str | None) ->
     authors = ", ".join(f"`{name}`" for name in names) or "nobody"
     if reviewer is not None:
         if reviewer not in names:
-            fail(_usage(f"nothing in `{path}` is by `{reviewer}`", f"it is by {authors}"))
+            fail(
+                _usage(f"no review or waiver in `{path}` is by `{reviewer}`", f"it is by {authors}")
+            )
         return [reviewer]
     mine = _by_key(path, names, key) if len(names) > 1 else names
     if not mine:
-        what = f"`{path}` does not say what is yours: it is by {authors}"
+        what = f"`{path}` names several people, and it is not clear who signs: {authors}"
         fail(_usage(what, "add `--reviewer NAME`"))
     return mine
 
@@ -474,5 +476,5 @@ def _unsigned(path: str, by: str, why: str) -> Diagnostic:
         Code.NOT_SIGNED,
         f"`{path}` is not signed as `{by}` asks for: {why}",
         Source(path, "").span(),
-        help=f"have it signed as it is now: `fretc sign {path} --key KEY`",
+        help=f"sign its present content: `fretc sign {path} --key KEY`",
     )

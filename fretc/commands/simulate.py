@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    epilog=extras({"sim": "all but --list"}),
+    epilog=extras({"sim": "everything except --list"}),
 )
 @click.argument("scenarios", nargs=-1, type=PATH, metavar="[SCENARIO]...")
 @output_option(
@@ -103,7 +103,9 @@ def simulate(
     demand_simulation()
     if campaign is not None:
         if png or gif or duration is not None or encoding != "ros2":
-            raise click.UsageError("a campaign takes no --png, --gif, --duration or --encoding")
+            raise click.UsageError(
+                "--campaign cannot be combined with --png, --gif, --duration or --encoding"
+            )
         _count([_scenario(n) for n in scenarios or names()], seed, campaign, jobs, output, form)
     if len(scenarios) > 1:
         raise click.UsageError("several scenarios need --campaign")
@@ -175,7 +177,7 @@ def _bad_scenario(name: str, why: str) -> Diagnostic:
         Code.BAD_SCENARIO,
         f"the scenario `{name}` cannot be run: {why}",
         _place(name, why),
-        help="`fretc simulate --list` names those that come with fretc",
+        help="`fretc simulate --list` lists the scenarios that come with fretc",
     )
 
 
@@ -188,7 +190,7 @@ def _file(out: str) -> Path:
     except OSError as error:
         fail(not_written(out, error.strerror or str(error)))
     if out == "-":
-        fail(not_written(out, "it is a file of its own"))
+        fail(not_written(out, "a recording cannot be printed"))
     if path.exists() and not path.is_file():
         fail(not_written(out, "it is no regular file"))
     _folder(path.parent, out)
@@ -223,7 +225,7 @@ def _record(
         fail(not_written(out, "two outputs would go there"))
     limit = scenario.duration if duration is None else duration
     if not math.isfinite(limit):
-        fail(not_written(out, "a mission ends"))
+        fail(not_written(out, "the duration of a mission must be finite"))
     decision = safety_function(scenario.safety.threshold)
     with progress(int(limit), "simulating") as show:
         try:
@@ -262,7 +264,7 @@ def _count(
 
     called = [scenario.name for scenario in scenarios]
     if len(set(called)) < len(called):
-        raise click.UsageError("two of the scenarios have the same name")
+        raise click.UsageError("two scenarios have the same name")
     folder = Path(out) if out is not None else None
     if folder is not None:
         _folder(folder, str(out))

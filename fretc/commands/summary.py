@@ -50,8 +50,8 @@ def summarize(paths: Sequence[str], query: str | None, form: str) -> NoReturn:
 def _no_form(form: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
-        f"a summary cannot be printed as `{form}`",
-        help="it can as `text` or `json`",
+        f"a summary has no output format `{form}`",
+        help="use `text` or `json`",
     )
 
 

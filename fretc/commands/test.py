@@ -155,12 +155,12 @@ def test(
     sources = [entry.wording.source.name for entry in project.requirements]
     protected = [*sources, *companions(sources), *filter(None, [bindings])]
     if languages and emitted != "pytest":
-        why = "`--language` is about the tests of `--emit pytest`"
-        fail(Diagnostic(Code.BAD_USAGE, why, help="ask for these, or leave it out"))
+        why = "`--language` needs `--emit pytest`"
+        fail(Diagnostic(Code.BAD_USAGE, why, help="add `--emit pytest`, or remove `--language`"))
     if against is not None:
         if emitted is not None or show is not None:
-            clash = "`--against` tests a program, and makes no tests to emit or show"
-            fail(Diagnostic(Code.BAD_USAGE, clash, help="ask for one of them"))
+            clash = "`--against` tests a program; it cannot be combined with `--emit` or `--show`"
+            fail(Diagnostic(Code.BAD_USAGE, clash, help="remove one of them"))
         place = output or "build/tests/conformance.json"
         test_against.against(
             against, formalized, assumed, seconds, line_time, form, place, protected
@@ -212,16 +212,16 @@ def _of(path: str, requirements: Sequence[FormalizedRequirement]) -> Suite:
     suite = read(path)
     if isinstance(suite, Diagnostic):
         fail(suite)
-    again = "make it again: `fretc test`"
+    again = "generate it again: `fretc test`"
     try:
         found = checked(suite, requirements)
     except WrongError as error:
         fail(Diagnostic(Code.BAD_EVIDENCE, f"`{path}`: {error}", help=again))
     if found.others:
         others = ", ".join(found.others)
-        print_status(visible(f"left out, because they are other requirements now: {others}"))
+        print_status(visible(f"left out, because the requirements have changed: {others}"))
     if not found.suite.tests:
-        why = f"`{path}` has no test of a requirement as it is"
+        why = f"`{path}` has no test of a current requirement"
         fail(Diagnostic(Code.NOTHING_TO_DO, why, help=again))
     return found.suite
 

@@ -78,7 +78,11 @@ def against(
         except KeyboardInterrupt:
             stopped = True
     except (UnsupportedError, OutOfTimeError) as error:
-        fail(Diagnostic(Code.BAD_USAGE, f"no program can be tested against these: {error}"))
+        fail(
+            Diagnostic(
+                Code.BAD_USAGE, f"no program can be tested against these requirements: {error}"
+            )
+        )
     found = campaign.findings(words)
     evidence = f"{to_json(plain(found))}\n"
     if output == "-" or form == "json":
@@ -110,7 +114,8 @@ def _no_command(command: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
         f"`--against {shlex.quote(command)}` names no program: {why}",
-        help='write the program and its arguments in one word: `--against "python3 program.py"`',
+        help='put the program and its arguments into one pair of quotes: `--against "python3 '
+        'program.py"`',
     )
 
 

@@ -36,7 +36,7 @@ def check(emitted: str, emit_to: str) -> None:
     from fretc.commands.simulate import demand_simulation
 
     if emit_to == "-":
-        message = f"`--emit {emitted}` writes many files, which `-` cannot hold"
+        message = f"`--emit {emitted}` writes several files, which cannot be printed with `-`"
         fail(Diagnostic(Code.BAD_USAGE, message, help="name a folder"))
     demand_simulation()
 
@@ -69,15 +69,16 @@ def _logs(project: Project, suite: Suite, folder: Path) -> int:
         interrupted = True
     confirmed = [one for one in done if one.outcome == "confirmed"]
     wrong = [one for one in done if one.outcome == "not confirmed"]
-    refused = [one for one in done if one.outcome == "cannot be staged"]
+    refused = [one for one in done if one.outcome == "cannot be recorded"]
     sign = signs.BAD if wrong else signs.GOOD
     click.echo(
-        f"{sign.glyph} {len(confirmed)} of {len(suite.tests)} tests are logs in {folder}: the "
+        f"{sign.glyph} {len(confirmed)} of {len(suite.tests)} tests are written as logs in "
+        f"{folder}: the "
         "audit of each gives the verdict that the test expects"
     )
     for one in wrong:
         click.echo(f"{signs.BAD.glyph} {one.test.name} is not written: {visible(one.why)}")
-    _listed("cannot be staged", ((one.why, one.test.name) for one in refused))
+    _listed("cannot be recorded", ((one.why, one.test.name) for one in refused))
     if interrupted:
         return EXIT_INTERRUPTED
     return EXIT_USAGE if wrong else EXIT_OK
@@ -161,9 +162,11 @@ def _say(
     for name in found.scenarios:
         click.echo(f"  {name:<16} {len(found.new(name))} not shown before")
     for name in unlike:
-        click.echo(f"{signs.BAD.glyph} {name} is not written: its file does not show the same")
+        click.echo(
+            f"{signs.BAD.glyph} {name} is not written: its file does not reproduce the result"
+        )
     for id, reason in why.items():
-        click.echo(f"{signs.OPEN.glyph} {id} cannot be staged: {visible(reason)}")
+        click.echo(f"{signs.OPEN.glyph} {id} cannot be recorded: {visible(reason)}")
     missing = [aim for aim in aims if aim not in good]
     _listed(
         f"not shown in {found.runs} missions",

@@ -93,8 +93,8 @@ def trends(
 def _nothing_to_compare() -> Diagnostic:
     return Diagnostic(
         Code.NOT_COMPARABLE,
-        "nothing can be compared: no requirement was judged in one scenario in two rounds",
-        help="name an earlier evidence, too; label runs with `scenario`, or give logs of one "
-        "scenario one name",
+        "nothing can be compared: no requirement was evaluated in the same scenario in two rounds",
+        help="also name earlier evidence; label runs with `scenario`, or name all logs of a "
+        "scenario alike",
         severity=Severity.WARNING,
     )

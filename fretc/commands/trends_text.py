@@ -171,7 +171,9 @@ def _flaky(trends: Trends, screen: Screen) -> Iterator[Line]:
     if not items:
         return
     yield _BLANK
-    yield _title(signs.OPEN, len(items), "flaky: violated now and then, and not now")
+    yield _title(
+        signs.OPEN, len(items), "flaky: violated in some earlier rounds, not in the newest"
+    )
     for item in items[:4]:
         yield _line(item, screen)
     yield from _more(items[4:])

@@ -234,7 +234,7 @@ def _half_an_agent(agent: str | None) -> Diagnostic:
     present, missing = ("properties", "agent") if agent is None else ("agent", "properties")
     return Diagnostic(
         Code.BAD_USAGE,
-        f"`--{present}` is of no use without `--{missing}`",
+        f"`--{present}` needs `--{missing}`",
         help="name both: `--agent FILE.gwen --properties FILE.psl`",
     )
 
@@ -269,8 +269,8 @@ def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
         fail(
             Diagnostic(
                 Code.BAD_USAGE,
-                f"`--layer {others[0]}` takes a monitor in Python",
-                help=f"ask about `{monitor.name}` with `--layer monitor`",
+                f"`--layer {others[0]}` needs a monitor in Python",
+                help=f"verify `{monitor.name}` with `--layer monitor`",
             )
         )
     if language.name != "C":
@@ -280,7 +280,7 @@ def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
         fail(
             Diagnostic(
                 Code.BAD_MONITOR,
-                f"`{monitor.name}` is no generated monitor: it includes no header of its own",
+                f"`{monitor.name}` is not a generated monitor: it does not include its header",
                 monitor.span(0, 0),
                 help="name a file that `--emit c` wrote",
             )
@@ -301,7 +301,7 @@ def _proofs(project: Project, request: Request) -> Sequence[Proof]:
         fail(
             Diagnostic(
                 Code.BAD_MONITOR,
-                f"`{request.monitor.name}` is no generated monitor: {error}",
+                f"`{request.monitor.name}` is not a generated monitor: {error}",
                 request.monitor.span(0, 0),
                 help=f"name a file that `--emit {language.emit if language else 'monitor'}` wrote",
             )

@@ -98,7 +98,7 @@ if TYPE_CHECKING:
 @click.option(
     "--strict",
     is_flag=True,
-    help="Demand a manifest, and signatures of FILE, of each review, and of the report, proofs "
+    help="Require a manifest, and signatures of FILE, of each review, and of the report, proofs "
     "and analysis if they exist. Signers are those of --signed-by, else those of "
     "allowed_signers beside the requirements, which also says which key belongs to which "
     "reviewer.",
@@ -217,7 +217,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
     folders = [name for name in named if not is_url(name)]
     for folder in folders:
         if not Path(folder).is_dir():
-            fix = "name the folder that the logs are in"
+            fix = "name the folder of the logs"
             fail(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=fix))
     places: dict[str, str] = {}
     for folder in folders:
@@ -226,7 +226,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
         places = {**located(runs, None), **places}
     policy = Places(named, offline)
     refusals = {run: why for run, place in places.items() if (why := policy.refusal(place))}
-    fix = "name its folder, or the beginning of its URL, with `--logs`, if you trust it"
+    fix = "if you trust it, name its folder or URL prefix with `--logs`"
     print_diagnostics(
         [
             Diagnostic(
@@ -306,7 +306,7 @@ def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
     extent = f"only {', '.join(scope.claimed)}, a part" if scope.part else whole
     lock = "`fretc.lock`" if scope.lock is not None else ""
     naming = " and ".join(filter(None, (lock, f"`{manifest}`" if manifest else "")))
-    runs = f"runs by {naming}" if naming else "no lock and no manifest says which runs there are"
+    runs = f"runs by {naming}" if naming else "neither a lock nor a manifest lists the runs"
     return f"{extent}; {runs}"
 
 
@@ -383,7 +383,7 @@ def _reproved(
     if proofs is None:
         return missing
     if skip:
-        return (unknown(PROOFS, "", "no proof was made again: `--no-proofs`"), *missing)
+        return (unknown(PROOFS, "", "the proofs were not repeated: `--no-proofs`"), *missing)
     results = prove_again(project, proofs, Limits(seconds=limit), scope.claimed, at_work)
     if isinstance(results, Diagnostic):
         fail(results)
@@ -403,7 +403,7 @@ def _asked_again(
     from fretc.reproduction.sets import compared
 
     if skip or scope.part:
-        why = f"nothing was analyzed again: `{'--no-analysis' if skip else '--only'}`"
+        why = f"the analysis was not repeated: `{'--no-analysis' if skip else '--only'}`"
         return (unknown(TOGETHER, "", why),)
     document = known.document
     in_force = [
@@ -425,7 +425,7 @@ def _asked_again(
     others = (
         requirement.id for requirement in in_force if requirement not in requirements
     )  # of another `--component`, or new
-    new = [unknown(TOGETHER, id, "it was no part of the set") for id in others]
+    new = [unknown(TOGETHER, id, "it was not part of the set") for id in others]
     return (*old, *new, *compared(document, now))
 
 
@@ -474,7 +474,7 @@ def _print(results: Sequence[Recheck], same: bool | None, against: str) -> None:
         lines.append((f"  {sign.glyph} {one.requirement:<{width}}  {text}", sign.colour))
     if same is not None:
         sign = SIGNS[Finding.STANDS if same else Finding.DIFFERS]
-        text = "the same, byte for byte" if same else "another one is made now"
+        text = "the same, byte for byte" if same else "the report made now is different"
         lines.append((f"{sign.glyph} report  {text}", sign.colour))
     totals = ", ".join(f"{finding} {count}" for finding, count in _counts(results, same).items())
     lines.append((f"{totals} ({against})", None))

@@ -121,7 +121,7 @@ def watch(
     if record == evidence and record is not None:
         fail(not_written(record, "two outputs would go there"))
     if record == "-":
-        fail(not_written(record, "a recording is a file"))
+        fail(not_written(record, "a recording cannot be printed"))
     for path in outputs:
         if path.is_dir():  # not after a night of watching
             fail(not_written(str(path), "it is a folder"))
@@ -197,16 +197,16 @@ def _needs_lateness(plan: Plan) -> Diagnostic:
     start = source.text.find("[clock]")
     return Diagnostic(
         Code.NO_LATENESS,
-        f"the clock goes by `{plan.declarations.clock.time}`, and nothing says how late messages "
-        "may arrive",
+        f"the clock uses `{plan.declarations.clock.time}`, but the bindings do not say how late "
+        "messages may arrive",
         source.span(start, start + len("[clock]")) if start >= 0 else None,
-        'add `lateness = "50 ms"` under `[clock]`: what messages of the robot take at most',
+        'add `lateness = "50 ms"` under `[clock]`: the longest delay of a message',
     )
 
 
 def _needs_recording() -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
-        "`--evidence` is what an audit says of the recording, and nothing is recorded",
+        "`--evidence` needs a recording, and nothing is recorded",
         help="add `--record run.mcap`",
     )

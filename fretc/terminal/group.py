@@ -131,13 +131,13 @@ def _unknown_command(word: str, commands: Sequence[str]) -> Diagnostic:
     if is_sentence(word):
         return Diagnostic(
             Code.UNKNOWN_COMMAND,
-            "a sentence is neither a command of fretc nor a file",
-            help=f"type `fretc explain {quote(word)}`, or `fretc -` and then the sentence",
+            "the argument is a sentence, not a command or a file",
+            help=f"use `fretc explain {quote(word)}`, or pipe the sentence into `fretc -`",
         )
     near = suggestion(word, [c for c in commands if c != DEFAULT])
     names = ", ".join(c for c in commands if c != DEFAULT)
     return Diagnostic(
         Code.UNKNOWN_COMMAND,
-        f"`{word}` is no command of fretc, and no file",
-        help=f"did you mean `fretc {near}`?" if near else f"there are {names}; or name a file",
+        f"`{word}` is neither a command of fretc nor a file",
+        help=f"did you mean `fretc {near}`?" if near else f"commands: {names}; or name a file",
     )

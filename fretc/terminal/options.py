@@ -113,8 +113,9 @@ def evidence_place(named: str | None) -> str:
         fail(
             Diagnostic(
                 Code.TWO_EVIDENCES,
-                f"evidence is in `{EVIDENCE}` and in `{STORE}`: one of them is of an earlier audit",
-                help="remove the one that you do not mean, or name the other",
+                f"evidence is in `{EVIDENCE}` and in `{STORE}`: one of them is from an earlier "
+                "audit",
+                help="remove the old one, or name the one to use",
             )
         )
     return STORE if os.path.lexists(STORE) else EVIDENCE

@@ -185,7 +185,7 @@ def protect(outputs: Iterable[Path], protected: Iterable[str]) -> None:
     for path in outputs:
         target = os.path.realpath(path)
         if path != Path("-") and target in inputs:
-            fail(not_written(str(path), f"it is `{inputs[target]}`, which is read"))
+            fail(not_written(str(path), f"it is `{inputs[target]}`, which is an input"))
 
 
 def coloured(lines: Iterable[Piece]) -> str:

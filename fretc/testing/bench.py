@@ -93,9 +93,7 @@ class Bench:
             except UnsupportedError as error:
                 if each not in others:
                     raise
-                raise UnsupportedError(
-                    f"its tests have to keep {each.id}, and there {error}"
-                ) from None
+                raise UnsupportedError(f"its tests must satisfy {each.id}, but {error}") from None
         numbers_before = alphabet.memory()
         self._always = () if numbers_before is None else (numbers_before,)
         self.alphabet = Fixed(alphabet)

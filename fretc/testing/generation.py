@@ -185,7 +185,9 @@ class _Generation:
         chosen = cover(shown, {run: run.rank for run in shown})
         words = {each.key: each.words for each in self._wrong}
         return {
-            run: _Purpose(f"unlike-{key}", f"tells {self._rule.id} from the same with {words[key]}")
+            run: _Purpose(
+                f"unlike-{key}", f"distinguishes {self._rule.id} from its mutant with {words[key]}"
+            )
             for run, (key, *_) in chosen.items()
         }
 

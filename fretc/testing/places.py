@@ -73,7 +73,7 @@ class Places:
             self._found[expression] = self._carrier(expression)
         carrier = self._found[expression]
         if carrier is None or ticks_back(expression):
-            raise UnsupportedError("its number can be said in no sentence")
+            raise UnsupportedError("its number cannot be written in a sentence")
         return boolean(carrier.sentence.response, Uninterpreted().alone())
 
     def _carrier(self, expression: e.Expression) -> FormalizedRequirement | None:

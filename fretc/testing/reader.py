@@ -38,5 +38,5 @@ def _wrong(source: Source, what: str) -> Diagnostic:
         Code.BAD_EVIDENCE,
         f"`{source.name}` {what}",
         Source(source.name, "").span(),
-        help=f"make it again: `fretc test -o {source.name}`",
+        help=f"generate it again: `fretc test -o {source.name}`",
     )

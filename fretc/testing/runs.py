@@ -175,7 +175,7 @@ class Runs:
         for each in self.others:
             if judged(each, made).breach:
                 why = self.bench.beyond[each.id]  # all others are kept
-                raise UnsupportedError(f"the shortest run breaks {each.id}, and of that {why}")
+                raise UnsupportedError(f"the shortest run violates {each.id}, and {why}")
 
     def _judged(self, made: Word) -> Run:
         own = judged(self.requirement, made)

@@ -23,7 +23,7 @@ class Repeat(Record, frozen=True):
     values: Annotated[
         dict[str, Value | None],
         about(
-            "of each atom its truth, of each variable that is compared its number; null: unknown"
+            "the truth value of each atom and the number of each compared variable; null: unknown"
         ),
     ]
 
@@ -44,10 +44,10 @@ class Test(Record, frozen=True):
 
     name: Annotated[Name, about("unique in the suite")]
     requirement: Name
-    words: Annotated[str, about("what the run shows, as one sentence")]
+    words: Annotated[str, about("the purpose of the test, as one sentence")]
     rows: Annotated[tuple[Repeat, ...], about("the ticks, from tick 0 on")]
-    polarity: Annotated[Polarity, about("whether the run keeps the requirement")]
-    verdict: Annotated[Verdict, about("of the monitor, where the run ends")]
+    polarity: Annotated[Polarity, about("whether the run satisfies the requirement")]
+    verdict: Annotated[Verdict, about("verdict of the monitor at the end of the run")]
     finite: Annotated[bool | None, about("FRET's verdict on the finite run")]
     decided: Annotated[
         Count | None,
@@ -55,10 +55,12 @@ class Test(Record, frozen=True):
             "the first tick after which no continuation changes the verdict; null: there is none"
         ),
     ]
-    first_violation: Annotated[Count | None, about("the tick at which a demand is broken first")]
+    first_violation: Annotated[
+        Count | None, about("the first tick at which the requirement is violated")
+    ]
     because: Annotated[str, about("the reason of the verdict, in words")]
-    situations: Annotated[tuple[Name, ...], about("the situations that the run comes by")]
-    kills: Annotated[tuple[Name, ...], about("the mutants that judge the run differently")]
+    situations: Annotated[tuple[Name, ...], about("the situations that the run covers")]
+    kills: Annotated[tuple[Name, ...], about("the mutants that give the run another verdict")]
 
     @property
     def ticks(self) -> int:
@@ -88,9 +90,11 @@ class Obligation(Record, frozen=True):
     words: str
     polarity: Polarity
     outcome: Met
-    tests: Annotated[tuple[Name, ...], about("the tests that meet it, the shortest first")] = ()
-    by: Annotated[Ids, about("a minimal set of requirements that exclude it")] = ()
-    why: Annotated[str, about("why it was not searched; empty: it was")] = ""
+    tests: Annotated[
+        tuple[Name, ...], about("the tests that cover the situation, shortest first")
+    ] = ()
+    by: Annotated[Ids, about("a minimal set of requirements that exclude the situation")] = ()
+    why: Annotated[str, about("why no test was searched; empty: it was searched")] = ""
 
 
 class Fate(StrEnum):
@@ -112,9 +116,9 @@ class Mutated(Record, frozen=True):
     words: str
     sentence: str
     outcome: Fate
-    tests: Annotated[tuple[Name, ...], about("the tests that tell it from the requirement")] = ()
+    tests: Annotated[tuple[Name, ...], about("the tests that kill the mutant")] = ()
     by: Annotated[Ids, about("a minimal set of requirements that hide the difference")] = ()
-    why: Annotated[str, about("why it was not searched; empty: it was")] = ""
+    why: Annotated[str, about("why no test was searched; empty: it was searched")] = ""
 
 
 class Tested(Record, frozen=True):
@@ -123,12 +127,10 @@ class Tested(Record, frozen=True):
     id: Name
     sentence: Name
     fingerprint: Sha256
-    kept: Annotated[Ids, about("requirements and assumptions that its tests keep, too")]
+    kept: Annotated[Ids, about("requirements and assumptions that its tests also satisfy")]
     doubt: Annotated[
         str,
-        about(
-            "why nobody may be able to bring the values of its tests about; empty: they are real"
-        ),
+        about("why the values of its tests may be impossible; empty: they are possible"),
     ] = ""
 
 
@@ -137,9 +139,11 @@ class Suite(Record, frozen=True):
 
     schema: Literal["fretc-tests-1"]
     fretc: Annotated[str, about("the version of fretc")]
-    clock: Annotated[str, about("what a tick is; empty: nothing says so")]
+    clock: Annotated[str, about("the length of a tick; empty: not declared")]
     requirements: tuple[Tested, ...]
-    roles: Annotated[dict[str, str], about("input or output, of each variable that declares it")]
+    roles: Annotated[
+        dict[str, str], about("the role of each variable with a declared role: input or output")
+    ]
     tests: tuple[Test, ...]
     obligations: tuple[Obligation, ...]
     mutants: tuple[Mutated, ...]

@@ -35,15 +35,18 @@ def lines(suite: Suite) -> Iterator[Line]:
 
 def lines_of_file(suite: Suite) -> Iterator[Line]:
     """The summary of tests that somebody else has made: what they show was not looked into."""
-    yield f"{signs.GOOD.glyph} {_size(suite)}; the monitors say what they expect", signs.GOOD.colour
+    yield (
+        f"{signs.GOOD.glyph} {_size(suite)}; the monitors give the expected results",
+        signs.GOOD.colour,
+    )
     yield "", None
     yield from ((row, None) for row in _table(suite, columns=3))
 
 
 def _headline(suite: Suite) -> str:
     if not suite.is_complete:
-        return f"{_size(suite)}; not all was searched"
-    return f"{_size(suite)}; each situation is met or cannot be, no mutant survives"
+        return f"{_size(suite)}; the search is not complete"
+    return f"{_size(suite)}; each situation is covered or impossible, and no mutant survives"
 
 
 def _size(suite: Suite) -> str:
@@ -98,7 +101,7 @@ def _counts(outcomes: Sequence[str], kinds: type[Met] | type[Fate]) -> str:
 def _remarks(suite: Suite) -> Iterator[Line]:
     lost = dict(_lost(suite))
     for id, why in lost.items():
-        yield f"{signs.UNKNOWN.glyph} {id}: nothing was searched: {why}", signs.UNKNOWN.colour
+        yield f"{signs.UNKNOWN.glyph} {id}: not searched: {why}", signs.UNKNOWN.colour
     for situation in _by_situation(suite):
         if situation[0].requirement not in lost:
             yield from _unmet(situation)
@@ -122,7 +125,7 @@ def _doubts(suite: Suite) -> Iterator[Line]:
     doubted = [each for each in suite.requirements if each.doubt]
     if doubted:
         ids = listed([each.id for each in doubted])
-        text = f"some tests of {ids} may have values that cannot be: {doubted[0].doubt}"
+        text = f"some tests of {ids} may have impossible values: {doubted[0].doubt}"
         yield f"{signs.SUSPECT.glyph} {text}", signs.SUSPECT.colour
 
 
@@ -163,11 +166,11 @@ def _surviving(mutant: Mutated) -> Iterator[Line]:
         case Fate.KILLED:
             return
         case Fate.EQUIVALENT:
-            yield f"{signs.EMPTY.glyph} {head} says the same", signs.EMPTY.colour
+            yield f"{signs.EMPTY.glyph} {head} is equivalent", signs.EMPTY.colour
         case Fate.EXCLUDED:
-            text = f"{head} says the same as long as {listed(mutant.by)}"
+            text = f"{head} is equivalent as long as {listed(mutant.by)}"
             verb = "is" if len(mutant.by) == 1 else "are"
-            yield f"{signs.EMPTY.glyph} {text} {verb} kept", signs.EMPTY.colour
+            yield f"{signs.EMPTY.glyph} {text} {verb} satisfied", signs.EMPTY.colour
         case Fate.NOT_SEARCHED:
             yield f"{signs.UNKNOWN.glyph} {head}: not searched: {mutant.why}", signs.UNKNOWN.colour
 
@@ -194,7 +197,7 @@ def shown(
     tested = next(each for each in suite.requirements if each.id == id)
     yield f"{id}  {tested.sentence}", None
     if tested.kept:
-        yield f"  its tests keep {listed(tested.kept)}, too", None
+        yield f"  its tests also satisfy {listed(tested.kept)}", None
     for test in suite.tests:
         if test.requirement == id:
             yield "", None

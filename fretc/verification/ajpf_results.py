@@ -42,10 +42,10 @@ PLACES = "build/*_ajpf/result.json"
 _UNHASHED = ("README.md",)
 """The files of a bundle that no verdict depends on."""
 _ASSUMED = (
-    "the environment shows the triggers freely, anew at the start, at every action and whenever "
-    "the agent is idle, for ever (Env.java)",
-    "AJPF is right where it says that an agent which loops keeps a property: that is its own "
-    "word, and the layer agent looks at the same texts",
+    "the environment can show or hide every trigger at the start, at every action and whenever "
+    "the agent is idle (Env.java)",
+    "AJPF's answer is right for an agent that loops: fretc does not check it, and the layer "
+    "agent examines the same files",
 )
 
 
@@ -137,7 +137,9 @@ def merged(proofs: Sequence[Proof], present: Sequence[Proof]) -> tuple[Proof, ..
 def _unheld(one: Proof) -> Proof:
     if one.result is Result.COUNTEREXAMPLE:
         return one
-    reason = "the file of AJPF's result is not there, to be compared with what is made now"
+    reason = (
+        "the file of AJPF's result is missing, so it cannot be compared with the present bundle"
+    )
     outcome = not_checked(f"it was {one.result}; {reason}")
     return proof(
         one.requirement, Layer.AJPF, one.claim, outcome, one.engine, one.assumptions, one.artefacts
@@ -174,7 +176,7 @@ def _foreign(result: AjpfResult) -> Diagnostic:
         Code.FOREIGN_AJPF_RESULT,
         f"`{result.file}` is about {result.requirement}, and there is no such requirement",
         Source(result.file, "").span(),
-        "it counts for nothing: name the requirement's file, or remove the result",
+        "the result is ignored: name the file of the requirement, or remove the result",
         Severity.WARNING,
     )
 
@@ -265,17 +267,17 @@ def _reason(requirement: FormalizedRequirement, result: AjpfResult, options: Opt
     refused = bundle.refusal(requirement, options)
     if refused is not None:
         why = f"{refused.code.number} {refused.message}"
-        return f"no bundle is made of {requirement.id} any more: {why}"
+        return f"{requirement.id} can no longer be exported as a bundle: {why}"
     artifacts = bundle.emit([requirement], options)
     texts = {artifact.path.name: artifact.text for artifact in artifacts}
     manifest = json.loads(texts.pop("manifest.json"))
     stale = sorted(_stale(result, {name: sha256(text) for name, text in texts.items()}))
     if stale:
         verb = "is" if len(stale) == 1 else "are"
-        return f"{', '.join(stale)} {verb} not made like that any more: run AJPF again"
+        return f"{', '.join(stale)} {verb} out of date: run AJPF again"
     asked = {tuple(map(check.get, _QUESTION)) for check in manifest["checks"]}
     if asked != {check.question for check in result.checks} or len(asked) != len(result.checks):
-        return "it does not tell of what a bundle asks: run AJPF again"
+        return "its checks are not those of the present bundle: run AJPF again"
     other = next(filter(None, (_otherwise(result.file, check) for check in result.checks)), None)
     if other is not None or result.own is None:
         return other
@@ -294,10 +296,10 @@ def _otherwise(file: str, check: Check) -> str | None:
     except (OSError, ValueError):
         return None
     if hashlib.sha256(log).hexdigest() != check.log_sha256:
-        return f"logs/{check.log} is not what AJPF printed then: run AJPF again"
+        return f"logs/{check.log} was changed since AJPF printed it: run AJPF again"
     of_log, _ = verdict(log.decode(errors="replace"), 0)
     if check.verdict not in (of_log, ERROR):
-        return f"it tells {check.verdict} of {check.jpf}, and logs/{check.log} does not"
+        return f"it states {check.verdict} for {check.jpf}, but logs/{check.log} does not"
     return None
 
 
@@ -316,7 +318,10 @@ def _changed(file: str, hashed: str) -> str | None:
     try:
         own = content(file)
     except (OSError, ValueError):
-        return f"the agent {file} cannot be read, to be compared with the one that was checked"
+        return (
+            f"the agent {file} cannot be read, so it cannot be compared with the one that was "
+            "checked"
+        )
     if hashlib.sha256(own).hexdigest() != hashed:
         return f"the agent {file} was changed since: run AJPF again"
     return None
@@ -328,17 +333,17 @@ def _conclusion(result: AjpfResult) -> Outcome:
     for check in checks:
         if check.role == "requirement" and check.verdict == VIOLATED:
             length = f" of {len(check.trace.rows)} states" if check.trace else ""
-            return refuted(f"AJPF found a run{length} that breaks it", check.trace)
+            return refuted(f"AJPF found a run{length} that violates it", check.trace)
     for check in checks:
         if check.verdict == ERROR:
             return not_checked(f"{check.jpf}: {check.why}")
     for check in checks:
         if check.verdict != check.expected:
-            what = "the agent without the response keeps it too" * (check.role == "mutant")
+            what = "the agent without the response satisfies it too" * (check.role == "mutant")
             return vacuous(what or f"its control {check.key} holds")
     sizes = ", ".join("?" if c.states is None else f"{c.states:,}" for c in checks)
     seconds = sum(check.seconds for check in checks)
     return proved(
-        f"AJPF says all that is expected of the property, its controls and the mutant ({sizes} "
+        f"AJPF gives the expected verdicts for the property, its controls and the mutant ({sizes} "
         f"states, {seconds:.1f} s)"
     )

@@ -184,7 +184,7 @@ def table(trace: Trace) -> Iterator[str]:
         cells = (cell.rjust(width) for cell, width in zip(row[:-1], widths, strict=True))
         yield f"{'  '.join(cells)}  {row[-1]}".rstrip()
     if trace.cycle is not None:
-        yield f"and from tick {trace.cycle} on the same again, for ever"
+        yield f"the ticks from {trace.cycle} on repeat for ever"
 
 
 def _stretches(trace: Trace) -> Iterator[tuple[str, int, str]]:

@@ -46,7 +46,7 @@ class Budget:
     @property
     def over(self) -> OutOfTimeError:
         """What is raised then."""
-        return OutOfTimeError(f"not answered within {self.seconds:g} s of a processor")
+        return OutOfTimeError(f"not answered within {self.seconds:g} CPU seconds")
 
 
 _is_guarded = False

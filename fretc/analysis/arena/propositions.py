@@ -98,7 +98,7 @@ class Propositions:
         """
         part = self._parts.get(name)
         if part is None:
-            raise UnsupportedError(f"`{name}` is more than a value at one tick")
+            raise UnsupportedError(f"`{name}` is not a value at a single tick")
         called = next((each for each in e.parts(part) if isinstance(each, e.Call)), None)
         if called is not None and called.name.lower() not in _ABSOLUTE:
             raise UnsupportedError(f"it calls `{called.name}`")
@@ -181,10 +181,10 @@ class Propositions:
 
     def _doubt(self, atoms: Sequence[str]) -> Iterator[tuple[Role, str]]:
         """Why letters of these atoms are not certain to be possible, for each role among them."""
-        shown = f"`{atoms[0]}` compares numbers, and is taken as true or false at will"
+        shown = f"`{atoms[0]}` compares numbers, and is treated as true or false at any tick"
         if len(atoms) > 1:
             both = " and ".join(f"`{each}`" for each in atoms[:2])
-            shown = f"{both} read the same numbers, and are taken as independent"
+            shown = f"{both} read the same numbers, and are treated as independent"
         refused = next((self._refused[atom] for atom in atoms if atom in self._refused), None)
         shown = shown if refused is None else f"{refused}: {shown}"
         for atom in atoms:

@@ -47,9 +47,10 @@ def _two_roles(
     component = requirement.sentence.component
     return Diagnostic(
         Code.BAD_USAGE,
-        f"`{name}` is an {first}, and an {second} of `{component}`: these are two systems",
+        f"`{name}` is an {first}, and an {second} of `{component}`: these are two different "
+        "systems",
         place(requirement, name),
-        help=f"ask about one of them: `--component {component}`",
+        help=f"analyze one of them: `--component {component}`",
     )
 
 
@@ -81,22 +82,25 @@ def _no_role(
         table = "signal" if name in declared.signals else table
     answered = any(name in _answers(each) for each in requirements)
     likely = Role.OUTPUT if answered else Role.INPUT
-    why = "stands in a response" if answered else "stands in no response"
+    why = "occurs in a response" if answered else "occurs in no response"
     variable = requirement.glossary.get(name)
     unread = str(variable.fret.get("assignment", "")) if variable is not None else ""
     if unread:
         shown = " ".join(unread.split())[:_SHOWN]
-        message = f"`{name}` stands for `{shown}`, which is not read, and has no role"
+        message = f"`{name}` has no role, and its assignment `{shown}` is not read"
     elif variable is not None and variable.role == Role.MODE:
-        message = f"`{name}` is a mode, and nothing says whether the system chooses it"
+        message = (
+            f"`{name}` is a mode without a role: it may be chosen by the system or by the "
+            "environment"
+        )
     else:
-        message = f"nothing says who chooses `{name}`: the environment or the system"
+        message = f"`{name}` has no role: it may be chosen by the environment or by the system"
     line = f'role = "{likely}"'
     return Diagnostic(
         Code.NO_ROLE,
         message,
         place(requirement, name),
-        help=f'say `role = "input"` (the environment) or `role = "output"` (the system) in '
+        help=f'write `role = "input"` (the environment) or `role = "output"` (the system) in '
         f"`[{table}.{as_key(name)}]` of bindings.toml; `{name}` {why}",
         paste=f"[{table}.{as_key(name)}]\n{line}",
     )

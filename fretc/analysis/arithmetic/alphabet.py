@@ -194,13 +194,13 @@ class Cells:
         """What the favoured player chooses though nobody does; None: nothing."""
         before = next(iter(self._atoms.before), None)
         if before is not None:
-            return f"of `{before}` no more is remembered than which comparisons it makes true"
+            return f"of the previous value `{before}` only the truth of its comparisons is kept"
         unknown = next((why for each in self._used if (why := each.open) is not None), None)
         if unknown is not None:
             return unknown
         first = next(iter(self._lasting), None)
         if first is not None:
-            return f"nothing is known of `{first}` before the first tick"
+            return f"the value of `{first}` before the first tick is unknown"
         return None
 
     @property

@@ -152,7 +152,7 @@ class Atoms:
         for group in linked(kept):
             steps = Steps(group, self.variables, open_)
             if steps.is_crossed and steps.has_flags:
-                why = "read the same samples in part, and what may be unknown"
+                why = "share only some samples, and read values that may be unknown"
                 self.refused |= dict.fromkeys(
                     group, f"{' and '.join(f'`{n}`' for n in group)} {why}"
                 )

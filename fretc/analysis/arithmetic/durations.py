@@ -70,14 +70,16 @@ def parted(name: str, reading: Reading) -> tuple[Mapping[str, Reading], Lasting 
     if not spans:
         return {name: reading}, None
     if reading.aggregate is not Aggregate.LAST or reading.on_unknown is not None:
-        raise UnsupportedError("looks for a duration between ticks, or where it is unknown")
+        raise UnsupportedError(
+            "has a duration that is measured between ticks or over unknown values"
+        )
     if len(spans) > _MOST:
         raise UnsupportedError("has too many durations")
     found: dict[str, Reading] = {}
     durations = []
     for span in spans:
         if reading.period is None or span.duration % reading.period or span.duration == 0:
-            raise UnsupportedError("has a duration that is no number of ticks")
+            raise UnsupportedError("has a duration that is not a whole number of ticks")
         if any(_durations(span.arg)):
             raise UnsupportedError("has a duration within another one")
         text = printed(span.arg)

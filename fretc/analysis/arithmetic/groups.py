@@ -93,7 +93,7 @@ class Group:
             return None
         signals = dict.fromkeys(self._atoms.of(str(flag)) for flag in self._choice.flags)
         shown = " and ".join(f"`{each}`" for each in signals)
-        return f"nothing says when {shown} may be unknown"
+        return f"it is not declared when {shown} may be unknown"
 
     @property
     def is_used(self) -> bool:
@@ -289,7 +289,7 @@ def owners(names: Sequence[str], atoms: Atoms, roles: Roles, past: Role) -> Mapp
             of = atoms.of(read)
             role = past if of in atoms.before else roles.get(of) or own
             if role is None or found.setdefault(read, role) is not role:
-                raise UnsupportedError(f"read `{of}`, which is not of one role")
+                raise UnsupportedError(f"read `{of}`, which has no single role")
     return found
 
 
@@ -317,7 +317,7 @@ def choice(names: Sequence[str], atoms: Atoms, owners: Mapping[str, Role]) -> Ch
     domains = {r: z3.And([atoms.domain(name) for name in theirs[r]]) for r in players}
     carried = _carried(names, of, atoms)
     if all(variables.values()) and (flags or carried):
-        raise UnsupportedError("compare numbers of both players, sample by sample")
+        raise UnsupportedError("compare numbers of the environment and the system sample by sample")
     only = Role.OUTPUT if variables[Role.OUTPUT] else Role.INPUT
     domains[only] = z3.simplify(z3.And(domains[only], *given))
     terms = [*formulas, *domains.values(), *flags, *carried]
@@ -391,7 +391,7 @@ def _found(choice: Choice, limit: Limit) -> _Sorted:
     if choice.carried:
         *formulas, links = choice.carried
         if another(formulas, known, z3.And(domain, links), limit):
-            raise UnsupportedError("read the same samples in part")
+            raise UnsupportedError("share only some samples")
     if not choice.flags:
         return _Sorted(known)
     every = patterns(choice.formulas, domain, limit)

@@ -44,7 +44,7 @@ class Limit:
         self.budget.check()
         left = SECONDS - (time.process_time() - self.start)
         if left <= 0:
-            raise UnsupportedError(f"are not sorted out within {SECONDS:g} s of a processor")
+            raise UnsupportedError(f"were not solved within {SECONDS:g} CPU seconds")
         return max(1, int(1000 * min(left, self.budget.left)))
 
 
@@ -61,7 +61,7 @@ def model(solver: z3.Solver, limit: Limit) -> z3.ModelRef | None:
     if answer == z3.unknown:
         if patience < 1000 * SECONDS / 2:
             raise limit.budget.over
-        raise UnsupportedError("are more than z3 can sort out")
+        raise UnsupportedError("are too complex for z3")
     return solver.model() if answer == z3.sat else None
 
 
@@ -80,7 +80,7 @@ def projected(formula: Term, variables: Sequence[Term], limit: Limit) -> Term:
             part = z3.substitute(part, (variable, _between(variable, part, found)))
         part = z3.simplify(part)
         if not z3.is_true(found.eval(part, model_completion=True)):
-            raise UnsupportedError("have regions of inputs that are not found")
+            raise UnsupportedError("have regions of inputs that z3 does not find")
         parts.append(part)
         solver.add(z3.Not(part))
     return z3.simplify(z3.Or(parts))

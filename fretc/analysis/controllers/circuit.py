@@ -79,9 +79,7 @@ def circuit(machine: Machine, requirements: Sequence[str], number: int) -> Circu
     roots = [*machine.replies.values(), *machine.steps.values()]
     size = sum(bdd.size(root) for root in roots)
     if size > MOST_NODES:
-        raise NoMachineError(
-            f"its controller has {size} choices; no more than {MOST_NODES} are written"
-        )
+        raise NoMachineError(f"its controller has {size} choices; at most {MOST_NODES} are written")
     known: dict[bdd.Function, str] = {bdd.true(): "True", bdd.false(): "False"}
     replies = tuple(_choices(machine.replies.values(), names, known, number))
     steps = tuple(_choices(machine.steps.values(), names, known, number))

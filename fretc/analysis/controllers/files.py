@@ -57,7 +57,7 @@ def automata(machines: Sequence[Mealy], form: Form) -> tuple[Artifact, ...]:
 
 
 def _automaton(machine: Mealy, form: Form) -> str:
-    title = f"a controller that keeps {', '.join(machine.requirements)}"
+    title = f"a controller that satisfies {', '.join(machine.requirements)}"
     match form:
         case Form.HOA:
             return _hoa(machine, title)

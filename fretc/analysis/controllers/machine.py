@@ -51,7 +51,7 @@ def machine(game: Game, solution: Solution, budget: Budget) -> Machine:
     alphabet = game.alphabet
     named = alphabet.labels
     if any(number not in named for number in (*alphabet.inputs, *alphabet.outputs)):
-        raise NoMachineError("it compares numbers, and a controller of numbers is not made yet")
+        raise NoMachineError("it compares numbers, and controllers cannot compare numbers yet")
     goals = solution.goals
     turns = _Turns(game, len(goals))
     moves = [_Moves(game, budget).of(solution.winning, goal) for goal in goals or (None,)]

@@ -123,7 +123,7 @@ class ConformanceRun:
         """As long as there is a requirement of which no violation is known."""
         for number in range(_ROAMING):
             if len(self._failures) < len(self._rules):
-                progress(f"any inputs: run {number + 1} of {_ROAMING}")
+                progress(f"random inputs: run {number + 1} of {_ROAMING}")
                 change = _CHANGES[number % len(_CHANGES)]
                 ticks = _PATIENCE * self._longest + _EXTRA
                 run = driver.anywhere(Random(number), change, ticks)

@@ -38,10 +38,12 @@ class Failure(Record, frozen=True):
     requirement: Name
     sentence: Name
     because: Annotated[str, about("the reason, in words")]
-    rows: Annotated[tuple[Repeat, ...], about("inputs and outputs; the last tick violates it")]
-    situation: Annotated[str, about("what the run was to show; empty: its inputs had no aim")]
-    ticks: Annotated[Ordinal, about("of the run on which it was found")]
-    tries: Annotated[Count, about("runs by which that one was made shorter")]
+    rows: Annotated[
+        tuple[Repeat, ...], about("inputs and outputs; the last tick violates the requirement")
+    ]
+    situation: Annotated[str, about("the goal of the run; empty: its inputs were random")]
+    ticks: Annotated[Ordinal, about("length of the run in which the failure was found, in ticks")]
+    tries: Annotated[Count, about("number of runs that were used to shorten it")]
     again: Annotated[bool, about("whether the program did the same with the same inputs")]
 
 
@@ -52,12 +54,14 @@ class Conformance(Record, frozen=True):
     fretc: Annotated[str, about("the version of fretc")]
     command: tuple[str, ...]
     requirements: tuple[Name, ...]
-    runs: Annotated[Count, about("of the program, those that made a failure shorter among them")]
-    ticks: Annotated[Count, about("of all runs together")]
+    runs: Annotated[
+        Count, about("number of runs of the program, including those that shortened a failure")
+    ]
+    ticks: Annotated[Count, about("ticks of all runs together")]
     situations: tuple[Situated, ...]
     failures: tuple[Failure, ...]
-    untried: Annotated[tuple[Name, ...], about("requirements of which no run began a demand")]
-    whole: Annotated[bool, about("whether all runs were made; a mistake or Ctrl-C ends them")]
+    untried: Annotated[tuple[Name, ...], about("requirements that no run triggered")]
+    whole: Annotated[bool, about("whether all runs were made; an error or Ctrl-C ends the test")]
     not_judged: Annotated[dict[str, str], about("why a requirement has no monitor, by its id")]
 
     @property
@@ -73,6 +77,6 @@ def schema() -> dict[str, Any]:
     return json_schema(
         Conformance,
         SCHEMA,
-        "A program under test, as `fretc test --against` saw it",
+        "Result of testing a program, as `fretc test --against` writes it",
         "Nothing depends on when it was made.",
     )

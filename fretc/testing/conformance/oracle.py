@@ -51,7 +51,7 @@ class Oracle:
         )
         for name in columns:
             if name not in roles:
-                raise UnsupportedError(f"`{name}` is no value that a program is given, or gives")
+                raise UnsupportedError(f"`{name}` is neither an input nor an output of a program")
         self._names = tuple(columns)
         self.inputs = tuple(name for name in columns if roles[name] is Role.INPUT)
         self.outputs = {name: own for name, own in columns.items() if roles[name] is Role.OUTPUT}

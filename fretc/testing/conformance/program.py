@@ -174,8 +174,8 @@ class Program:
         return Diagnostic(
             Code.PROGRAM_LINE,
             visible(f"at tick {self._tick} the program under test printed a wrong line: {why}"),
-            help="it prints one line with the names of its outputs, and then for each line of "
-            "inputs one line of outputs; `docs/test.md` has an example",
+            help="it must print one line with the names of its outputs, and then one line of "
+            "outputs for each line of inputs; `docs/test.md` has an example",
         )
 
     def _late(self) -> Diagnostic:
@@ -184,7 +184,7 @@ class Program:
             Code.PROGRAM_SILENT,
             f"at tick {max(self._tick, 0)} the program under test printed no line within "
             f"{self._seconds:g} s",
-            help="it has to flush each line as it is printed; `--line-time` gives it more time",
+            help="it must flush each line; `--line-time` gives it more time",
         )
 
     def _ended(self) -> Diagnostic:
@@ -200,11 +200,11 @@ class Program:
         status = self._process.returncode
         how = "closed its output" if status is None else _ending(status)
         said = self._errors.decode(errors="backslashreplace").strip().splitlines()
-        last = f"; its last words: {said[-1]}" if said else ""
+        last = f"; its last output: {said[-1]}" if said else ""
         return Diagnostic(
             Code.PROGRAM_ENDED,
             visible(f"at tick {max(self._tick, 0)} the program under test {how}{last}"),
-            help="it has to go on until its standard input ends",
+            help="it must run until its standard input ends",
         )
 
 

@@ -39,7 +39,7 @@ def _headline(found: Conformance) -> str:
         broken = listed([each.requirement for each in found.failures])
         return f"{name} violates {broken}: {size}"
     if not found.is_complete:
-        return f"{name} violates nothing in {size}; not all was tested"
+        return f"{name} violates nothing in {size}, but the test is not complete"
     return f"{name} conforms in {size}"
 
 
@@ -74,7 +74,7 @@ def _failure(failure: Failure, roles: Mapping[str, Role]) -> Iterator[Line]:
     for row in drawn(shown, roles):
         yield f"    {row}", None
     if not failure.again:
-        yield "  once more with the same inputs, the program did something else", None
+        yield "  repeated with the same inputs, the program gave other outputs", None
     elif ticks < failure.ticks:
         yield (
             f"  found on {_some(failure.ticks, 'tick')}, shortened by {failure.tries} runs",
@@ -88,7 +88,7 @@ def _rest(found: Conformance) -> Iterator[Line]:
         own = [each for each in found.situations if each.requirement == id]
         free = [each.situation for each in own if each.outcome is Outcome.UP_TO_PROGRAM]
         if free:
-            text = f"{id}: up to the program, and not seen: {', '.join(free)}"
+            text = f"{id}: depends on the program, and did not occur: {', '.join(free)}"
             yield f"{signs.UNUSED.glyph} {text}", signs.UNUSED.colour
         yield from _missing(own)
 

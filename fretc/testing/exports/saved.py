@@ -59,8 +59,8 @@ def saved(suite: Suite, formalized: Sequence[FormalizedRequirement]) -> Saved:
     for test in tests:
         if not _NAME.fullmatch(test.name) or len(test.name) > LONGEST_NAME:
             raise WrongError(
-                f"`{test.name}` cannot name a test: at most {LONGEST_NAME} small letters, digits "
-                "and `-` can"
+                f"`{test.name}` is not a valid name for a test: use at most {LONGEST_NAME} "
+                "lower-case letters, digits and `-`"
             )
         if names[test.name] > 1:
             raise WrongError(f"the name `{test.name}` comes twice")
@@ -105,7 +105,7 @@ def _check_table(
     expected = (test.verdict, test.finite, test.decided, test.first_violation)
     if (found := _outcome(monitor, read)) != expected:
         shown = ", ".join(f"{each}" for each in found)
-        raise WrongError(f"`{test.name}` expects what the monitor does not say: {shown}")
+        raise WrongError(f"`{test.name}` expects another result than the monitor gives: {shown}")
 
 
 def _is_value(value: object, kind: Input) -> bool:

@@ -23,7 +23,7 @@ from monitors.kernel.verdicts import INCONCLUSIVE, Verdict
 from monitors.loading import load
 from simulation.recording import Topic, recording
 
-Outcome = Literal["confirmed", "cannot be staged", "not confirmed"]
+Outcome = Literal["confirmed", "cannot be recorded", "not confirmed"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ def logs(
                     raise NoStageError(_first(plan))
                 yield _log(plan, test, monitor(test.requirement), Path(temporary), folder)
             except NoStageError as error:
-                yield StagedTest(test, "cannot be staged", str(error))
+                yield StagedTest(test, "cannot be recorded", str(error))
             tell(done)
 
 

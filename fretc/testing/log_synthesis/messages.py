@@ -27,7 +27,7 @@ All others hold nothing."""
 
 
 class NoStageError(ValueError):
-    """It cannot be staged; the text says why, in lower case and without a full stop."""
+    """It cannot be recorded; the text says why, in lower case and without a full stop."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ def field(signal: Signal) -> Field:
         NoStageError: its bindings do not say so, or nothing is known of that type.
     """
     if signal.type is None:
-        raise NoStageError(f"the binding of `{signal.name}` names no type of message")
+        raise NoStageError(f"the binding of `{signal.name}` names no message type")
     package, _, own = short_type(signal.type).partition("/")
     name = f"{package}/msg/{own}"
     if name not in TYPES.fielddefs:

@@ -76,7 +76,7 @@ def stageable(suite: Suite, project: Project) -> tuple[tuple[Aim, ...], Mapping[
         read = declarations.reading(requirement.watched).signals.values() if declarations else ()
         absent = sorted({signal.path.topic for signal in read} - there)
         if free:
-            why[requirement.id] = f"nothing binds `{free[0]}`"
+            why[requirement.id] = f"`{free[0]}` has no binding"
         elif absent:
             why[requirement.id] = f"the simulated robot has no topic `{absent[0]}`"
     aims = tuple(_aim(one) for one in suite.obligations if one.outcome is Met.MET)

@@ -58,12 +58,12 @@ def staged(test: Test, declarations: Declarations, monitor: Monitor) -> Syntheti
     """
     clock = declarations.clock
     if clock.period is None:
-        raise NoStageError("its clock ticks by message")
+        raise NoStageError("its clock ticks with messages")
     if clock.phase:
         raise NoStageError("its clock has a phase")
     absent = next((n for n in monitor.PROPOSITIONS if n not in declarations.propositions), None)
     if absent is not None:
-        raise NoStageError(f"nothing binds `{absent}`")
+        raise NoStageError(f"`{absent}` has no binding")
     parts = [part(declarations.propositions[n], clock.period) for n in monitor.PROPOSITIONS]
     names = dict.fromkeys(name for one in parts for name in one.proposition.signals)
     signals = [declarations.signals[name] for name in names]
@@ -247,4 +247,6 @@ def _pulse(declarations: Declarations, topics: Mapping[str, None], time: int) ->
         if signal.path.topic not in topics and signal.type is not None:
             name = field(signal).message
             return SyntheticMessage(signal.path.topic, name, time, message(name, time, {}))
-    raise NoStageError("nothing is said at its first or last tick, so no log would have that tick")
+    raise NoStageError(
+        "it has no message at its first or last tick, so a log would not contain that tick"
+    )

@@ -94,7 +94,7 @@ def course(test: Test, parts: Sequence[Part], monitor: Monitor) -> Course:
 def _impossible(parts: Sequence[Part]) -> str:
     names = ", ".join(f"`{one.proposition.name}`" for one in parts if one.back)
     if not names:
-        return "what is unknown in it counts as known"
+        return "it turns unknown values into known ones"
     return f"{names} cannot become true and false so soon: it looks back in time"
 
 
@@ -102,7 +102,7 @@ def _column(test: Test, name: str) -> list[Truth]:
     column: list[Truth] = []
     for row in test.rows:
         if name not in row.values:
-            raise NoStageError(f"the test does not say what `{name}` is")
+            raise NoStageError(f"the test has no value for `{name}`")
         value = row.values[name]
         assert value is None or isinstance(value, bool), (test.name, name)
         column += [value] * row.count

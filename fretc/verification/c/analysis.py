@@ -48,7 +48,7 @@ def analysed(
     outcome, engine = frama_c.answer(program, run, limits)
     artefacts[f"{PurePath(given.name).stem}_driver.c"] = sha256(run.driver)
     own = {requirement.id for requirement in found.requirements}
-    absent = not_checked("the monitor is of other requirements")
+    absent = not_checked("the monitor is for other requirements")
     for requirement in requirements:
         yield RequirementOutcome(
             requirement, outcome if requirement.id in own else absent, engine, artefacts

@@ -75,13 +75,13 @@ class ParsedSource:
         """
         ids = [each.id for each in self.requirements]
         if requirement.id not in ids:
-            raise UnexpectedLayoutError("the monitor is of other requirements")
+            raise UnexpectedLayoutError("the monitor is for other requirements")
         place, own = ids.index(requirement.id), atoms(requirement)
         part = self.form.part(self.outcomes[place])
         names = tuple(dict.fromkeys(name for each in self.requirements for name in each.watched))
         if not {names[i] for i in part.inputs} <= {*own}:
             raise UnexpectedLayoutError(
-                f"{requirement.id} depends on what its sentence does not speak of"
+                f"{requirement.id} depends on names that its sentence does not mention"
             )
         places = tuple(names.index(name) if name in names else -1 for name in own)
         return Plan(part.cells, place, places, len(names), self.is_original)
@@ -182,10 +182,8 @@ def implemented(
     """
     by_id = {each.id: each for each in requirements}
     if not ids:
-        raise NotAMonitorError("it names no requirement")
+        raise NotAMonitorError("it contains no requirement")
     for id in ids:
         if id not in by_id:
-            raise UnexpectedLayoutError(
-                f"it has {id}, which is not among the requirements that are read"
-            )
+            raise UnexpectedLayoutError(f"it has {id}, which is not one of the given requirements")
     return tuple(by_id[id] for id in dict.fromkeys(ids))

@@ -55,7 +55,7 @@ class Lexis:
         moving = self.moving.search(text)
         if moving:
             raise UnexpectedLayoutError(
-                f"line {_line(text, moving.start())} ends elsewhere than it seems"
+                f"line {_line(text, moving.start())} contains a hidden line break"
             )
         found, place, line = list[str](), 0, 1
         while place < len(text):

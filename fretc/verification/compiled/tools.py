@@ -60,7 +60,7 @@ def compiled(
         try:
             data = (folder / result).read_bytes()
         except OSError:
-            raise ToolError(f"{known} compiles it, and writes no `{result}`") from None
+            raise ToolError(f"{known} compiles it, but writes no `{result}`") from None
         return Binary(data, f"{known} {' '.join(flags)}")
 
 
@@ -76,4 +76,4 @@ def version(program: str) -> str:
         except OSError as error:
             raise ToolError(f"`{program}` cannot be run: {error}") from None
     first, *_ = end.text.splitlines() or [""]
-    return first or "a program that tells no version"
+    return first or "a program that prints no version"

@@ -99,7 +99,7 @@ def _confined(
         return not_checked(str(error))
     outcome = session.call(explored, requirement, executable, plan, MOST_STATES)
     if isinstance(outcome, Stopped):
-        return not_checked(f"{outcome.reason}; so may end what the text must not do")
+        return not_checked(f"{outcome.reason}; the text may contain code that does not terminate")
     return outcome
 
 
@@ -138,8 +138,8 @@ def _explored(requirement: FormalizedRequirement, machines: Machines, limit: int
         return states
     return proved(
         f"the same at every tick of every trace ({judged.states} states, {judged.steps} steps); "
-        "with unknown values too, triggers, answers, open demands, deadlines and what is settled "
-        f"are those of the monitor in Python ({states} states)"
+        "also with unknown values, its triggers, responses, open obligations, deadlines and "
+        f"final verdicts are those of the monitor in Python ({states} states)"
     )
 
 
@@ -183,9 +183,9 @@ def _without_delays(
     if isinstance(judged, Difference):
         return None
     return proved(
-        f"at every tick of every trace, with unknown values too, it gives what the monitor in "
-        f"Python gives ({states} states, whatever its delay lines hold), and that one is the same "
-        f"as the sentence ({judged.states} states, {judged.steps} steps)"
+        "at every tick of every trace, also with unknown values, its results are those of the "
+        f"monitor in Python ({states} states, for all contents of its delay lines), whose "
+        f"verdicts are those of the sentence ({judged.states} states, {judged.steps} steps)"
     )
 
 
@@ -226,7 +226,7 @@ def _read(requirement: FormalizedRequirement, machines: Machines, limit: int) ->
     if len(names) > rails.MOST_PROPOSITIONS:
         most = rails.MOST_PROPOSITIONS
         return not_checked(
-            f"{len(names)} propositions, more than {most}, are too many for unknown values"
+            f"{len(names)} propositions, more than {most}, are too many to check unknown values"
         )
     every = _letters(requirement, names)
     monitor, states = load("reference", python.text(requirement)), 0
@@ -249,7 +249,7 @@ def _read(requirement: FormalizedRequirement, machines: Machines, limit: int) ->
                 return not_checked(f"with unknown values there are more than {limit} states")
             case rails.Distinguished(word, signal):
                 which = "possible" if doubt else "certain"
-                fault = f"the monitor in Python tells another {signal} in `{which}` on a trace"
+                fault = f"the monitor in Python has another {signal} in `{which}` on a trace"
                 return refuted(f"{fault}{noted(note)}", Trace(names, word))
             case rails.Equivalent(count):
                 states += count

@@ -24,7 +24,7 @@ from fretish.diagnostics.extras import install
 CROSSHAIR_SECONDS = 60.0
 _ABSENT = f"CrossHair is not installed: {install('crosshair')}"
 _MODULE = "interceptor_core"
-_WHOLE = "the numbers of a velocity are whole; no function names one of them"
+_WHOLE = "the fields of a velocity are integers; no function reads one of them"
 _APART = (ast.Subscript, ast.For, ast.Starred, ast.comprehension, ast.MatchSequence)
 _MESSAGE = re.compile(rf"^.*{_MODULE}\.py:(\d+): (info|error|warning): (.*)$")
 _POST = re.compile(r"^\s*post\s*(?:\[[^\]]*\])?\s*:\s*(.*?)\s*$")
@@ -192,7 +192,7 @@ def _outcome(message: tuple[str, str] | None, end: Completion) -> Outcome:
     if end.status is None:
         return not_checked("CrossHair did not finish in time")
     if end.status not in (0, 1) or message is None:
-        return not_checked(f"CrossHair says nothing of it (exit status {end.status})")
+        return not_checked(f"CrossHair gives no result for it (exit status {end.status})")
     if message == ("info", "Confirmed over all paths."):
         return proved("confirmed over all paths")
     return not_checked(f"CrossHair: {message[1].rstrip('.').lower()}")

@@ -26,7 +26,10 @@ _ABSENT = (
     "Dafny is not installed: put `dafny` on the PATH (Debian and Ubuntu: `apt-get install dafny`; "
     "elsewhere: github.com/dafny-lang/dafny)"
 )
-_OTHER = "the text is not what fretc makes of this requirement: make it anew with `--emit dafny`"
+_OTHER = (
+    "the file is not what fretc generates for this requirement: generate it again with "
+    "`--emit dafny`"
+)
 _FINISHED = re.compile(r"^Dafny program verifier finished with (\d+) verified, (\d+) errors?$")
 _ERROR = re.compile(r"^\S+?\.dfy\((\d+),\d+\): Error\b:?\s*(?:BP\d+: )?(.*)$")
 _MEMBER = re.compile(
@@ -86,7 +89,7 @@ def answer(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Outcome, str]:
         try:
             known = _version(program, folder)
             if known is None:
-                return not_checked("`dafny` tells no version: it is not Dafny"), "Dafny"
+                return not_checked("`dafny` prints no version: it is not Dafny"), "Dafny"
             (folder / "text.dfy").write_text(text, encoding="utf-8")
             command = [program, *_options(program, known, folder, seconds), "text.dfy"]
             end = run(command, folder, seconds=seconds, memory=MEMORY)
@@ -132,10 +135,10 @@ def _outcome(text: str, end: Completion, seconds: float) -> Outcome:
         return not_checked(f"Dafny ended with exit status {end.status} and no verdict")
     count, errors = map(int, finished[0].groups())
     if end.status != 0 or errors:
-        return not_checked(f"Dafny tells of {errors} errors, and its exit status is {end.status}")
+        return not_checked(f"Dafny reports {errors} errors, and its exit status is {end.status}")
     least = len(_OBLIGATION.findall(text))
     if count < least:
-        return not_checked(f"Dafny verified {count} parts, and the file has at least {least}")
+        return not_checked(f"Dafny verified {count} parts, but the file has at least {least}")
     return proved(f"{count} parts verified, among them all {least} lemmas and methods")
 
 

@@ -73,7 +73,7 @@ def answer(path: str, asked: Run, limits: Limits) -> tuple[Outcome, str]:
         try:
             version = _version(path, Path(folder))
             if version is None:
-                return not_checked("`frama-c` tells no version: it is not Frama-C"), name
+                return not_checked("`frama-c` prints no version: it is not Frama-C"), name
             options = [*_OPTIONS, f"-eva-auto-loop-unroll={asked.loops}", f"-main={asked.entry}"]
             name = f"{NAME} {version}, {' '.join(options)}"
             _write(asked, Path(folder))
@@ -121,7 +121,7 @@ def _unproved(report: str, asked: Run) -> Iterator[str]:
     lines = csv.reader(report.splitlines(), delimiter="\t", quoting=csv.QUOTE_NONE)
     head, *rows = [*lines] or [[]]
     if head != _COLUMNS or not all(len(row) == len(head) and row[2].isdecimal() for row in rows):
-        yield "the table of Frama-C is not laid out as we read it"
+        yield "the table of Frama-C has an unknown layout"
         return
     missing = {*asked.assertions}
     for _, file, line, function, kind, status, words in rows:
@@ -132,7 +132,7 @@ def _unproved(report: str, asked: Run) -> Iterator[str]:
             yield f"Eva finds no proof of `{words}` {place} ({kind}: {status.lower()})"
         missing.discard(number)
     if missing:
-        yield f"Eva says nothing of {len(missing)} assertions"
+        yield f"Eva gives no result for {len(missing)} assertions"
 
 
 def _left_open(end: Completion) -> str | None:

@@ -167,7 +167,7 @@ def _ended(status: int, limits: Limits) -> str:
     """Why a process ended without a word."""
     if status in (-signal.SIGXCPU, -signal.SIGKILL):
         more = "" if status == -signal.SIGXCPU else ", or it was killed"
-        return f"out of time: more than {limits.seconds} s of a processor{more}"
+        return f"out of time: more than {limits.seconds} CPU seconds{more}"
     how = f"signal {-status}" if status < 0 else f"exit status {status}"
     return f"the process crashed ({how}); it may have had too little memory"
 

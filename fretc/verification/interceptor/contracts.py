@@ -66,11 +66,14 @@ def contracts(
 
 
 def _assumptions(options: Options) -> Iterator[str]:
-    yield "the ROS node hands every message to the core, one at a time, and publishes what it says"
+    yield (
+        "the ROS node passes every message to the core, one at a time, and publishes the "
+        "core's output"
+    )
     if options.event_driven:
-        yield "no silence is noticed: form = event in [interceptor]"
+        yield "silence is not detected: form = event in [interceptor]"
         return
-    yield "the timer rings at every period in [interceptor]"
+    yield "the timer expires at every period in [interceptor]"
     for name, channel in (("stop", "the safety function"), ("scan", "the sensor")):
         if not getattr(options, f"{name}_timeout"):
             yield f"{channel} is never silent for long: no {name}_timeout in [interceptor]"
@@ -97,7 +100,7 @@ def _contracts(options: Options) -> Iterator[Contract]:
 def _of_the_paper(options: Options) -> Iterator[Contract]:
     """The three proof obligations of the paper."""
     yield Contract(
-        "at first no stop is in force",
+        "initially no stop is in force",
         lambda m: m.event == "" and bool(m.state.stop),
     )
     latch = ", and no message clears it" if options.latching else " or clears it"

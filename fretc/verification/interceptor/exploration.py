@@ -99,7 +99,7 @@ class _Walk:
         self.declared, self.broken, self.most = options, broken, most
         own = getattr(self.core.module, "OPTIONS", self.core.options)
         if own != self.core.options:
-            raise NotAnInterceptorError("its options are not those that are declared")
+            raise NotAnInterceptorError("its options differ from the declared options")
         self.tokens = tuple(Opaque() for _ in range(2 * len(self.core.state_fields) + 4))
 
     def search(self) -> Search:
@@ -156,7 +156,7 @@ class _Walk:
                     "its state has a command in the place of a number"
                 ) from None
             except (AttributeError, TypeError) as error:
-                raise NotAnInterceptorError(f"its state is another one: {error}") from None
+                raise NotAnInterceptorError(f"its state is not the declared one: {error}") from None
 
     def _output(self, velocity: Any, now: History) -> str:
         """`Moment.output`, of a velocity that the core publishes."""

@@ -78,13 +78,13 @@ def head(text: str) -> Head | str:
             return "its core has no `OPTIONS`"
         if marked:
             if not is_guarded(tree):
-                return "it may import what stands beside it: emit it again"
+                return "it may import modules from its own folder: emit it again"
             _check_node(node)
             _check_whole(text, tree, node)
     except (SyntaxError, ValueError, RecursionError) as error:
-        return f"it is no Python: {error}"
+        return f"it is not valid Python: {error}"
     except UnexpectedCodeError as error:
-        return f"its core is not as fretc can read it: {error}"
+        return f"fretc cannot read its core: {error}"
     return Head(above)
 
 
@@ -97,15 +97,15 @@ def otherwise(text: str, interception: Interception) -> str | None:
     try:
         options, node = _around(text)
     except (SyntaxError, ValueError, RecursionError) as error:
-        return f"it is no Python: {error}"
+        return f"it is not valid Python: {error}"
     of_both = (replace(interception, ros=ros) for ros in (1, 2))
     written = [_around(interceptor.text(each, "bindings.toml")) for each in of_both]
     if (options, node) == ([], None):
         return None
     if options != written[0][0]:
-        return "its options are not those that the bindings declare: emit it again"
+        return "its options differ from those that the bindings declare: emit it again"
     if node not in [each for _, each in written]:
-        return "its node is not one that fretc writes for these bindings: emit it again"
+        return "its node is not the one that fretc generates for these bindings: emit it again"
     return None
 
 
@@ -142,14 +142,14 @@ def _check_node(node: str) -> None:
     Python has no end of ways to change a module from below, so that nothing else is looked into.
     """
     if _shape(node) not in _shapes():
-        raise UnexpectedCodeError("the node below it is not one that fretc writes")
+        raise UnexpectedCodeError("the node below it is not one that fretc generates")
 
 
 def _check_whole(text: str, core: ast.Module, node: str) -> None:
     """Core and node are the module, one below the other."""
     parts = [*core.body, *ast.parse(node).body]
     if [ast.dump(part) for part in ast.parse(text).body] != [ast.dump(part) for part in parts]:
-        raise UnexpectedCodeError("core and node are not one below the other")
+        raise UnexpectedCodeError("the node does not directly follow the core")
 
 
 @cache

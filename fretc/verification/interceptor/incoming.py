@@ -14,7 +14,7 @@ STOP, RELEASE, COMMAND, SCAN, RING = (
     "no stop is requested",
     "a command comes",
     "a scan comes",
-    "the timer rings",
+    "the timer expires",
 )
 """The events, as the actions of a trace begin."""
 

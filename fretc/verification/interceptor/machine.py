@@ -28,12 +28,12 @@ class NotAnInterceptorError(Exception):
 class Event(Enum):
     """The messages to an interceptor, and its timer, as far as a model distinguishes them."""
 
-    STOP = "`true` is heard"
-    RELEASE = "`false` is heard"
-    MOVE = "a command to move is heard"
-    STAND = "a command to stand is heard"
-    SCAN = "a scan is heard"
-    RING = "the timer rings"
+    STOP = "`true` is received"
+    RELEASE = "`false` is received"
+    MOVE = "a command to move is received"
+    STAND = "a command to stand is received"
+    SCAN = "a scan is received"
+    RING = "the timer expires"
 
 
 State = tuple[int | bool, ...]
@@ -70,7 +70,7 @@ class CheckedCore:
         try:
             self.options = module.Options(**named)
         except TypeError as error:
-            raise NotAnInterceptorError(f"its options are others: {error}") from None
+            raise NotAnInterceptorError(f"its options differ: {error}") from None
 
     def initial(self) -> Any:
         """The raw state before the first message."""
@@ -80,7 +80,7 @@ class CheckedCore:
         """The raw state after a message, and the velocity that is published; None: nothing is."""
         pair = self.call(self.module.step, state, message, self.options)
         if type(pair) is not tuple or len(pair) != 2:
-            raise NotAnInterceptorError("a step gives no state and command")
+            raise NotAnInterceptorError("a step returns no state and command")
         return self._checked_state(pair[0]), pair[1]
 
     def is_zero(self, velocity: Any) -> bool:
@@ -93,7 +93,7 @@ class CheckedCore:
             return function(*arguments)
         except InspectedError:
             raise NotAnInterceptorError(
-                "it looks into a command: what is shown with one would not hold for all"
+                "it reads the content of a command: a proof with one command would not hold for all"
             ) from None
         except Exception as error:
             why = f"a step fails: {type(error).__name__}: {error}"
@@ -102,7 +102,7 @@ class CheckedCore:
     def _checked_state(self, state: Any) -> Any:
         """The state itself, which is a `State` of the text."""
         if type(state) is not self.module.State:
-            raise NotAnInterceptorError("a step gives no `State`")
+            raise NotAnInterceptorError("a step returns no `State`")
         return state
 
 
@@ -181,7 +181,7 @@ class InterceptorMachine:
         if moves is None or not all(
             type(value) in (bool, int) for name, value in values.items() if name != "command"
         ):
-            raise NotAnInterceptorError("its State holds something else than it declares")
+            raise NotAnInterceptorError("its State holds values that it does not declare")
         encoded = tuple({**values, "command": moves}.values())
         if encoded not in self._raw:
             # The velocities of all states that move are one, so that one raw state stands for all.
@@ -199,4 +199,4 @@ class InterceptorMachine:
             return True
         if self._core.is_zero(velocity):
             return False
-        raise NotAnInterceptorError("it makes a velocity that it has not heard")
+        raise NotAnInterceptorError("it publishes a velocity that it has not received")

@@ -62,9 +62,8 @@ def _bundle(requirement: FormalizedRequirement, limits: Limits) -> tuple[Proof, 
         return (
             _without_agent(
                 requirement,
-                f"an agent cannot keep the timing `{timing}` of {requirement.id}: it needs some "
-                "nine "
-                "states from a percept to its response",
+                f"an agent cannot keep the timing `{timing}` of {requirement.id}: it needs about "
+                "nine states from a percept to its response",
             ),
         )
     return agent.evidence

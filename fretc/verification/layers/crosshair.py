@@ -46,4 +46,6 @@ def _core(text: str) -> Head | str:
     core = head(text)
     if isinstance(core, str) or contract_texts(core.text) == contract_texts(original().text):
         return core
-    return "its `pre:` and `post:` lines are not those of fretc, and CrossHair executes them"
+    return (
+        "its `pre:` and `post:` lines differ from those of fretc, and CrossHair would execute them"
+    )

@@ -15,7 +15,7 @@ from fretc.verification.engines import frama_c
 from fretc.verification.layers.request import Request
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
-CLAIM = "the text in C does nothing that C leaves undefined, and each counter keeps its range"
+CLAIM = "the C code has no undefined behaviour, and each counter stays in its range"
 
 
 def refusal(request: Request) -> Diagnostic | None:
@@ -23,13 +23,13 @@ def refusal(request: Request) -> Diagnostic | None:
     if frama_c.program() is None:
         return Diagnostic(
             Code.MISSING_EXTRA,
-            "`--with frama-c` needs Frama-C, and there is no `frama-c` on the PATH",
+            "`--with frama-c` needs Frama-C, but there is no `frama-c` on the PATH",
             help="Debian and Ubuntu: `apt install frama-c-base`; elsewhere: frama-c.com",
         )
     if request.monitor is not None and request.header is None:
         return Diagnostic(
             Code.BAD_USAGE,
-            f"`--with frama-c` takes a monitor in C, and `{request.monitor.name}` is none",
+            f"`--with frama-c` needs a monitor in C, and `{request.monitor.name}` is not in C",
             help="name a file that `--emit c` wrote",
         )
     return None

@@ -56,7 +56,7 @@ from fretish.documents import RequirementEntry
 from fretish.printer import canonical
 from monitors.interceptor import Options
 
-_MORE = "as many more, at least one, as `latency` and `braking` fill together"
+_MORE = "the ticks of `latency` and `braking` together, at least one"
 ANSWERED = f"every demand is answered within `lost` ticks and {_MORE}"
 _SMALL = ((1, 0, 0, 0), (1, 1, 1, 1), (2, 1, 1, 2), (1, 2, 2, 0), (3, 4, 1, 2))
 """Cells to a tick, latency, losses in a row, braking: for comparing the twin with the texts."""
@@ -81,8 +81,8 @@ class Question:
         if is_original(self.case.interceptor):
             return None
         return (
-            "the interceptor's core is not the one that fretc writes: what it does at the times "
-            "that are looked at says nothing of longer ones"
+            "the interceptor's core is not the one that fretc generates: a check of some "
+            "times proves nothing about longer times"
         )
 
 
@@ -181,7 +181,10 @@ def question(requirement: FormalizedRequirement, setup: Setup) -> Question | str
     assert requirement.clock is not None
     bound = requirement.ticks if s.deadline(sentence.timing) else None
     if not is_same(problem.safety, problem.observer):
-        return "the monitor is not the one that fretc writes for it, and only that is looked at"
+        return (
+            "the monitor is not the one that fretc generates for it, and only generated "
+            "monitors are examined"
+        )
     return Question(problem, sentence, bound, requirement.clock.period or 0)
 
 
@@ -244,7 +247,7 @@ def _covered(query: Question, endless: Case, parts: Parts) -> tuple[int, int, in
     for loop in loops:
         coverage = covered(loop, endless.limit, longest=_formula(loop.channel) + 1)
         if coverage.uncovered is not None:
-            raise NotALoopError("the loop does what its model in whole numbers does not")
+            raise NotALoopError("the loop has a step that its integer model does not have")
         longest.append(coverage.longest)
         steps += coverage.steps
     return longest[0], steps, len(loops)
@@ -303,7 +306,7 @@ def _least(query: Question, least: int, drive: ActuationModel) -> Outcome:
     """
     if least == 0:
         return not_checked("no demand is ever open")
-    detail = f"the least that is kept is {_ticks(least)} ({in_words(least * query.tick)})"
+    detail = f"the smallest satisfied bound is {_ticks(least)} ({in_words(least * query.tick)})"
     before = _with(query, _bound(least - 1))
     violation = reach(Parts.of(before, drive).loop, before.limit).violation
     assert violation is not None, "a demand is open for longer than it can be"
@@ -366,11 +369,11 @@ def _proved(declared: Times) -> tuple[str | None, str]:
     )
     here, there = (_invariant(numbers, times, bound, logic) for numbers in (now, then))
     queries = {
-        "it does not hold at first": z3.And(begins(now, times, logic), z3.Not(here)),
-        "a step does not keep it": z3.And(
+        "it does not hold initially": z3.And(begins(now, times, logic), z3.Not(here)),
+        "a step does not preserve it": z3.And(
             here, relation(now, then, choice, times, logic), z3.Not(there)
         ),
-        "it does not keep the bound": z3.And(here, some >= bound, now.open >= some),
+        "it does not imply the bound": z3.And(here, some >= bound, now.open >= some),
     }
     for failure, query in queries.items():
         solver = z3.Solver()

@@ -29,7 +29,7 @@ from fretish.bindings.declarations import Assumed, Form, Interception, Planner, 
 from fretish.clock import in_words
 from fretish.expressions import names
 
-KEPT = "monitor, interceptor and any environment together keep the requirement"
+KEPT = "monitor, interceptor and any environment together satisfy the requirement"
 RELEASED = "the stop is released once no demand begins any more"
 _FINEST = 20
 """Cells to a tick, where the interceptor has no timer to define a cell."""
@@ -109,10 +109,10 @@ def inapplicable(requirement: FormalizedRequirement, setup: Setup) -> str | None
     if setup.interception is None or setup.interceptor is None:
         return "the bindings declare no interceptor (`[interceptor]`)"
     if setup.assumed is None:
-        return "the bindings assume nothing of the loop (`[assume]`)"
+        return "the bindings state no assumptions about the loop (`[assume]`)"
     stands = setup.assumed.stands
     if stands not in {name.id for name in names(requirement.sentence.response)}:
-        return f"its response does not speak of `{stands}`, which is what the loop decides"
+        return f"its response does not mention `{stands}`, which the loop controls"
     return None
 
 
@@ -151,7 +151,7 @@ def channel(
     cell = cell_of(tick, interception, assumed)
     if tick % cell:
         return (
-            f"a tick of the clock, {in_words(tick)}, is no whole number of periods of the "
+            f"a tick of the clock, {in_words(tick)}, is not a whole number of periods of the "
             f"interceptor's timer, {in_words(cell)}"
         )
     return Channel(
@@ -202,18 +202,21 @@ def assumptions(
         f"have had zero for {braking}, or earlier"
     )
     for exclusion in problem.excluded:
-        yield f"never at one tick: {exclusion_in_words(exclusion)}, for no numbers compare so"
-    yield "the wheels have at once what was published last, and keep it while nothing is published"
-    yield "at the first tick the robot stands, and nothing has been heard yet"
+        yield (
+            f"never at one tick: {exclusion_in_words(exclusion)}, because no numbers satisfy "
+            "both comparisons"
+        )
+    yield "the wheels follow a published command at once, and keep it until the next one"
+    yield "at the first tick the robot stands, and nothing has been received yet"
     yield (
-        "the node around the interceptor's step hands on every message, and publishes what it gives"
+        "the node around the interceptor's step passes on every message, and publishes the result"
     )
     if interception.form is Form.TIMER:
         period = in_words(interception.period)
-        yield f"the interceptor's timer rings once in each {period} (`period`, [interceptor])"
+        yield f"the interceptor's timer expires once in each {period} (`period`, [interceptor])"
     yield from _rounded(interception, assumed, tick, any_time=any_time)
     if not problem.settings.stop_timeout:
-        yield "the safety function never falls silent: there is no `stop_timeout` ([interceptor])"
+        yield "the safety function never stops sending: there is no `stop_timeout` ([interceptor])"
 
 
 def _messages(assumed: Assumed, tick: int, *, any_time: bool) -> Iterator[str]:
@@ -223,11 +226,11 @@ def _messages(assumed: Assumed, tick: int, *, any_time: bool) -> Iterator[str]:
         f"{_when(assumed)}"
     )
     latency = "`latency`" if any_time else f"{in_words(assumed.latency)} (`latency`, [assume])"
-    yield f"stop messages are heard in the order of sending, each within {latency}"
+    yield f"stop messages arrive in the order of sending, each within {latency}"
     if any_time:
-        yield "never are more than `lost` stop messages lost in a row"
+        yield "at most `lost` stop messages in a row are lost"
     elif assumed.lost:
-        yield f"never are more than {assumed.lost} stop messages lost in a row (`lost`, [assume])"
+        yield f"at most {assumed.lost} stop messages in a row are lost (`lost`, [assume])"
     else:
         yield "no stop message is lost (`lost`, [assume])"
 
@@ -235,10 +238,10 @@ def _messages(assumed: Assumed, tick: int, *, any_time: bool) -> Iterator[str]:
 def _when(assumed: Assumed) -> str:
     if assumed.heartbeat:
         return (
-            f"where it changes, and again once it has been silent for "
+            f"when it changes, and again when it has been silent for "
             f"{in_words(assumed.heartbeat)}, or earlier (`requests` and `heartbeat`, [assume])"
         )
-    when = "only where it changes" if assumed.requests is Requests.EDGE else "every time"
+    when = "only when it changes" if assumed.requests is Requests.EDGE else "every time"
     return f"{when} (`requests`, [assume])"
 
 

@@ -140,7 +140,7 @@ class _Again:
 
 
 def _in_words(moment: Moment) -> str:
-    """`a stop is requested, and the message is lost; a command to move is heard`."""
+    """`a stop is requested, and the message is lost; a command to move is received`."""
     return "; ".join((*_message(moment.tick), *_deliveries(moment.events)))
 
 

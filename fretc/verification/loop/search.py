@@ -113,7 +113,7 @@ class Parts:
         names = (*f.atoms(case.formula), *watching.PROPOSITIONS, *requesting.PROPOSITIONS)
         atoms = tuple(dict.fromkeys(names))
         if case.stands not in atoms:
-            raise NotALoopError(f"the monitor does not look at `{case.stands}`")
+            raise NotALoopError(f"the monitor does not read `{case.stands}`")
         if len(atoms) > MOST_ATOMS:
             raise NotALoopError(f"{len(atoms)} propositions, more than {MOST_ATOMS}")
         loop = Loop(
@@ -147,7 +147,7 @@ def watched(text: str, requirement: str) -> Watched:
     monitor = load("monitor", text)
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == requirement]
     if not places:
-        raise NotALoopError("the monitor is of other requirements")
+        raise NotALoopError("the monitor is for other requirements")
     return Watched(text, places[0])
 
 
@@ -208,7 +208,7 @@ def _way(came: dict[Node, tuple[Node, Tick] | None], node: Node) -> tuple[tuple[
 def _requirement_result(case: Case, parts: Parts, reached: Reached, runs: Runs) -> Outcome:
     if reached.violation is not None:
         trace, violated = as_table(parts, reached.violation)
-        assert violated, "the texts do not violate what the model violates"
+        assert violated, "the code does not violate what the model violates"
         ticks = len(trace.rows)
         return refuted(f"violated at tick {ticks - 1}; no shorter run shows it", trace)
     looked = f"{reached.states:,} states, {reached.steps:,} steps"
@@ -223,7 +223,7 @@ def _requirement_result(case: Case, parts: Parts, reached: Reached, runs: Runs) 
     lasso = _lasso(parts, runs, case.formula)
     if lasso is None:
         return proved(f"{looked}; Spot finds no endless run that violates it")
-    return refuted("what is owed never comes: the last ticks are repeated for ever", lasso)
+    return refuted("the demanded response never comes: the last ticks repeat for ever", lasso)
 
 
 def _release_result(parts: Parts, runs: Runs) -> Outcome:
@@ -232,7 +232,7 @@ def _release_result(parts: Parts, runs: Runs) -> Outcome:
         if not any(_HALT.name in label for label in runs.explored.kripke.labels):
             return vacuous("no stop is ever in force")
         return proved("Spot finds no endless run that violates it")
-    return refuted("the stop stays: the last ticks are repeated for ever", lasso)
+    return refuted("the stop is never released: the last ticks repeat for ever", lasso)
 
 
 def as_table(

@@ -97,7 +97,7 @@ def compare(
     """
     predicate = temporal_predicate(sentence)
     if predicate is not None:
-        return f"`{predicate}` speaks of other ticks, and the automaton knows one"
+        return f"`{predicate}` refers to other ticks, and the automaton reads one tick at a time"
     if len(atoms) > MOST_ATOMS:
         return f"{len(atoms)} propositions, more than {MOST_ATOMS}"
     letters = meanings(sentence, atoms)

@@ -112,14 +112,14 @@ class _Parts:
                 return (function, *(self.term(arg) for arg in args))
             case ast.IfExp(_, before, ast.Subscript(_, ast.Constant(int(place)))):
                 if place >= len(self.kept):
-                    raise UnexpectedCodeError("it looks back at what it does not keep")
+                    raise UnexpectedCodeError("it reads an earlier value that it does not store")
                 return ("earlier", self.term(before), self.term(self.kept[place]))
             case _:
                 raise AssertionError(f"not laid out as fretc writes it: {ast.unparse(node)}")
 
     def _assigned(self, name: str) -> Term:
         if name in self.waiting:
-            raise UnexpectedCodeError("what it keeps depends on what it kept of all ticks before")
+            raise UnexpectedCodeError("a stored value depends on all earlier ticks")
         if name not in self.known:
             self.waiting.append(name)
             self.known[name] = self.term(self.assigned[name])
@@ -159,7 +159,7 @@ def differing(
             try:
                 actual = left(row)
             except Exception as error:
-                return Differing(tuple(truths), f"it stops: {type(error).__name__}", _given(row))
+                return Differing(tuple(truths), f"it raises {type(error).__name__}", _given(row))
             for name in propositions:
                 if actual[name] is not expected[name]:
                     right_one = _in_words(expected[name])

@@ -51,10 +51,10 @@ def strange(text: str) -> str | None:
     try:
         is_alone = head.endswith("\n") and own.startswith("\n")
         if not found or not is_alone or not reads(ast.parse(head).body, runtime.imports):
-            return "the run time in it is not the one of this version of fretc"
+            return "its runtime part is not the one of this version of fretc"
         _check_module(_parsed(own), by_variables=runtime is kernel_of_variables())
     except SyntaxError as error:
-        return f"it is no Python: {error}"
+        return f"it is not valid Python: {error}"
     except UnexpectedCodeError as error:
         return str(error)
     return None

@@ -127,7 +127,7 @@ def _compared(
     """The outcome for a text that is safe to execute."""
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == requirement.id]
     if not places:
-        return not_checked("the monitor is of other requirements")
+        return not_checked("the monitor is for other requirements")
     place = places[0]
     atoms = tuple(dict.fromkeys((*atoms_of(requirement.sentence), *monitor.PROPOSITIONS)))
     needed, cells = _needed(requirement, text, monitor, atoms)
@@ -141,7 +141,9 @@ def _compared(
     if text != generated:
         (expected,) = load("generated", generated).REQUIREMENTS
         if tuple(monitor.REQUIREMENTS[place]) != tuple(expected):
-            return not_checked("it decides the same, but states another sentence or deadline")
+            return not_checked(
+                "its verdicts are the same, but it states another sentence or deadline"
+            )
         fault = _front_compared(requirement, (generated, whole), text, monitor, atoms)
         if fault is not None:
             return fault
@@ -208,12 +210,13 @@ def _proved(same: Equivalence, ticks: int, states: int = 0) -> Outcome:
     further = ""
     if states:
         further = (
-            "; triggers, answers, open demands and unknown values as in the text that fretc writes "
+            "; triggers, responses, open obligations and unknown values as in the generated "
+            "monitor "
             f"({states} states)"
         )
     return proved(
-        f"the same at every tick of every trace ({same.states} states, {same.steps} steps); "
-        f"columns agree on {ticks} drawn ticks{further}"
+        f"the same at every tick of every trace ({same.states} states, {same.steps} steps); its "
+        f"column program agrees on {ticks} random ticks{further}"
     )
 
 
@@ -310,7 +313,7 @@ def _differing(
             word = tuple(tuple(row.get(name) for name in atoms) for row in found.truths)
             return _disagreement(atoms, word, found.fault, found.values)
     wrong = next(name for name in names if actual.get(name) != expected[name])
-    return not_checked(f"`{wrong}` is not computed of variables as fretc computes it")
+    return not_checked(f"`{wrong}` is not computed from the variables as in generated code")
 
 
 def _kinds(variables: Mapping[str, Variable]) -> Mapping[str, object]:
@@ -341,7 +344,7 @@ def _compared_with_generated(
     if count > rails.MOST_PROPOSITIONS:
         most = rails.MOST_PROPOSITIONS
         return not_checked(
-            f"it is not the text that fretc writes, and {count} propositions, more than "
+            f"it is not the generated monitor, and {count} propositions, more than "
             f"{most}, are too many to compare both with unknown values"
         )
     reference = load("generated", generated)
@@ -357,15 +360,15 @@ def _compared_with_generated(
         case None:
             return not_checked(f"with unknown values there are more than {limit} states")
         case rails.Distinguished(word, signal):
-            fault = f"the text that fretc writes tells another {signal}{noted(note)}"
+            fault = f"the generated monitor has another {signal}{noted(note)}"
             return _disagreement(names, word, fault)
         case rails.Equivalent(states):
             terms = Terms()
             if terms.of(text, place) == terms.of(generated, 0):
                 return states
             return not_checked(
-                "its column program is not the one that fretc writes: it agrees with the steps on "
-                "drawn traces, and nothing is known of others"
+                "its column program is not the generated one: it agrees with the steps on random "
+                "traces, and is not proved for others"
             )
 
 
@@ -375,7 +378,7 @@ def _demand_monitor(text: str) -> None:
     try:  # the run time is Python, and long: lines keep their numbers without it
         tree = ast.parse(text.replace(runtime, "\n" * runtime.count("\n"), 1))
     except (SyntaxError, ValueError, RecursionError) as error:
-        raise NotAMonitorError(f"it is no Python: {error}") from None
+        raise NotAMonitorError(f"it is not valid Python: {error}") from None
     targets = (node.target for node in tree.body if isinstance(node, ast.AnnAssign))
     if not any(isinstance(target, ast.Name) and target.id == "MONITOR" for target in targets):
-        raise NotAMonitorError("it names no `MONITOR`")
+        raise NotAMonitorError("it defines no `MONITOR`")

@@ -54,7 +54,7 @@ def test_a_question_that_hangs_is_ended(monkeypatch: pytest.MonkeyPatch) -> None
         monkeypatch.setattr(signal, "setitimer", lambda which, after: timer(which, after / 5))
     jobs = [job("a", hang), job("b")]
     assert told(jobs) == [
-        ("a", "0 before"), ("a", "lost: it took longer than it may"),
+        ("a", "0 before"), ("a", "lost: it exceeded its time limit"),
         ("b", "2 before"), ("b", "end"),
     ]  # fmt: skip
 

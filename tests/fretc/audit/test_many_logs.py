@@ -309,7 +309,7 @@ def test_evidence_that_cannot_be_written_is_told_before_the_audit(fretc: Fretc) 
     assert run == Run(
         2,
         "",
-        "F905 `requirements` cannot be written: it is a folder with something else in it\n"
+        "F905 `requirements` cannot be written: the folder contains other files\n"
         "help: name a new folder, an empty one, or a store that `fretc audit` has written\n",
     )
     Path("x.json").mkdir()

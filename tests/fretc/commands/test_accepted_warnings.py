@@ -137,7 +137,7 @@ def test_an_accepted_warning_is_counted_and_an_idle_acceptance_told(
     assert (run.status, codes(run, "warning:")) == (0, [])
     assert sorted(codes(run, "accepted:")) == sorted(warnings)
     assert run.err.count(f"reason: reason of {code}\n") == warnings.count(code)
-    assert run.err.endswith(f"0 mistakes, 0 warnings, {len(warnings)} accepted\n")
+    assert run.err.endswith(f"0 errors, 0 warnings, {len(warnings)} accepted\n")
     project({}, accepted)
     run = fretc("check")
     assert run.status == 3

@@ -33,7 +33,7 @@ def edited(name: str, old: str, new: str) -> None:
 
 def test_a_sound_project_is_said_to_be_sound(good: Fretc) -> None:
     run = good("check")
-    assert (run.status, run.out, run.err) == (0, "", "1 requirement: 0 mistakes, 0 warnings\n")
+    assert (run.status, run.out, run.err) == (0, "", "1 requirement: 0 errors, 0 warnings\n")
 
 
 SHIPPED = sorted(
@@ -49,7 +49,7 @@ def test_every_shipped_project_is_free_of_findings(
     monkeypatch.chdir(ROOT)
     run = fretc("check", "--requirements", folder)
     assert run.status == 0, run.err
-    assert "0 mistakes, 0 warnings" in run.err
+    assert "0 errors, 0 warnings" in run.err
 
 
 def test_the_same_is_said_as_json(good: Fretc) -> None:
@@ -58,7 +58,7 @@ def test_the_same_is_said_as_json(good: Fretc) -> None:
     text, record = good("check"), json.loads(good("check", "--format", "json").out)
     assert record["mistakes"] == 1
     assert text.err.endswith(
-        f"{record['requirements']} requirement: {record['mistakes']} mistake, "
+        f"{record['requirements']} requirement: {record['mistakes']} error, "
         f"{record['warnings']} warnings\n"
     )
     for diagnostic in record["diagnostics"]:
@@ -79,7 +79,7 @@ def test_a_trigger_that_the_component_itself_commands_is_told(good: Fretc) -> No
         "   |          ^^^^\n"
         "help: trigger it by what the sensors see, or say `role` and `kind` of the proposition\n"
         "\n"
-        "1 requirement: 0 mistakes, 1 warning\n"
+        "1 requirement: 0 errors, 1 warning\n"
     )
 
 
@@ -261,7 +261,7 @@ def test_fix_writes_what_is_sure_says_so_and_checks_again(good: Fretc) -> None:
         "fixed requirements/r1.fret:10:25: wrote `shall` for `should`\n"
         "fixed requirements/r1.fret:10:39: wrote `300 milliseconds` for `0.3 seconds`\n"
         "\n"
-        "1 requirement: 0 mistakes, 0 warnings\n",
+        "1 requirement: 0 errors, 0 warnings\n",
     )
 
 

@@ -353,7 +353,7 @@ def test_whoever_signs_signs_only_what_is_theirs(project: Fretc) -> None:
     path = "requirements/waivers.toml"
     unknown = project("sign", path, "--key", "ada")
     assert unknown.status == 2
-    assert "does not say what is yours: it is by `Ada`, `Bob`" in unknown.err
+    assert "names several people, and it is not clear who signs: `Ada`, `Bob`" in unknown.err
     assert project("sign", path, "--key", "ada", "--reviewer", "Eve").status == 2
     assert project("sign", path, "--key", "ada", "--reviewer", "Bob").status == 0
     assert [one["name"] for one in payload(envelopes(path)[0])["subject"]] == ["waiver:r2"]

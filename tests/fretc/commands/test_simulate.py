@@ -77,9 +77,9 @@ def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(fretc: Fretc
         (("-o", "."), "F905 `.` cannot be written: it is no regular file"),
         (("-o", "a.x", "--png", "a.x"), "F905 `a.x` cannot be written: two outputs"),
         (("-o", "a.mcap", "--png", "bad.toml/a.png"), "F905 `bad.toml/a.png` cannot be written"),
-        (("-o", "a.mcap", "--duration", "inf"), "F905 `a.mcap` cannot be written: a mission"),
-        (("--campaign", "1", "--png", "a.png"), "F907 a campaign takes no --png"),
-        (("walker", "walker", "--campaign", "1"), "F907 two of the scenarios have the same name"),
+        (("-o", "a.mcap", "--duration", "inf"), "F905 `a.mcap` cannot be written: the duration"),
+        (("--campaign", "1", "--png", "a.png"), "F907 --campaign cannot be combined with --png"),
+        (("walker", "walker", "--campaign", "1"), "F907 two scenarios have the same name"),
         (
             ("--campaign", "1", "-o", "bad.toml"),
             "F905 `bad.toml` cannot be written: File exists",

@@ -51,7 +51,7 @@ def test_evidence_that_nobody_touched_stands(audited: Fretc) -> None:
     assert run.out == (
         "logs/bad.mcap\n  ✔ r1  stands\nlogs/good.mcap\n  ✔ r1  stands\n"
         "stands 2, differs 0, not checked 0 (1 requirement of `requirements`; "
-        "no lock and no manifest says which runs there are)\n"
+        "neither a lock nor a manifest lists the runs)\n"
     )
 
 
@@ -88,7 +88,7 @@ def test_a_verdict_that_was_changed_by_hand_is_found(audited: Fretc) -> None:
         "logs/good.mcap\n"
         "  ✔ r1  stands\n"
         "stands 1, differs 1, not checked 0 (1 requirement of `requirements`; "
-        "no lock and no manifest says which runs there are)\n"
+        "neither a lock nor a manifest lists the runs)\n"
     )
 
 
@@ -460,7 +460,7 @@ def test_proofs_are_made_again(audited: Fretc) -> None:
     assert "it is proved, and was counterexample\n" in run.out
     run = audited("verify-evidence", "--no-proofs")
     assert run.status == 3
-    assert "not checked: no proof was made again: `--no-proofs`\n" in run.out
+    assert "not checked: the proofs were not repeated: `--no-proofs`\n" in run.out
 
 
 @pytest.mark.slow

@@ -85,8 +85,11 @@ def test_an_encoding_that_has_no_tick_mark_still_shows_the_verdict(folder: Path)
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("./run.mcap", "`run.mcap` cannot be written: a store of evidence is a folder"),
-        ("run.json", "`run.json` cannot be written: it is `run.mcap`, which is read"),
+        (
+            "./run.mcap",
+            "`run.mcap` cannot be written: an evidence store is a folder, and this is a file",
+        ),
+        ("run.json", "`run.json` cannot be written: it is `run.mcap`, which is an input"),
     ],
 )
 def test_evidence_never_replaces_what_is_read(

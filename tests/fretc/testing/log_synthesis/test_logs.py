@@ -119,9 +119,9 @@ def test_what_looks_back_has_ticks_before_the_test(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("torn", "what is unknown in it counts as known"),
+        ("torn", "it turns unknown values into known ones"),
         ("faster", "reads numbers of the tick before"),
-        ("unnamed", "the binding of `nameless` names no type of message"),
+        ("unnamed", "the binding of `nameless` names no message type"),
     ],
 )
 def test_what_messages_cannot_bring_about_is_refused_in_words(

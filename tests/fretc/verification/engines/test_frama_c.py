@@ -271,7 +271,7 @@ def test_a_monitor_in_python_is_none_in_c(
     result = fretc("verify", "r1.fret", "--file", "build/r1_monitor.py", "--with", "frama-c")
     assert result.status == 2
     assert "F907" in result.err
-    assert "takes a monitor in C" in result.err
+    assert "needs a monitor in C" in result.err
 
 
 @needs_frama_c
