@@ -1,7 +1,7 @@
-"""The command: read, call, print, exit. Nothing heavy is imported before a command needs it.
+"""Entry point of the command line: parse, run a command, print, exit.
 
-Exit status: 0 all shown, 1 a violation, 2 bad use or bad input, 3 nothing violated but something
-not shown; 130 stopped by Ctrl-C.
+A command imports its libraries when it runs. Exit status: 0 all satisfied or proved, 1 a violation,
+2 bad usage or bad input, 3 no violation but something inconclusive; 130 stopped by Ctrl-C.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ _GROUPS = {
         "sbom": ("sbom:sbom", "List the installed components as CycloneDX."),
     },
 }
-"""By the work of the user, the most used first: module and attribute, and the line in the help."""
+"""Commands by task, the most used first: module and attribute, and the line in the help."""
 _COMMANDS = Registry(
     {
         DEFAULT: "fretc.commands.formalize:compile_",
@@ -111,7 +111,7 @@ _SUMMARIES = {
     help="Folder outside the project in which parents of requirements may also be. Repeatable.",
 )
 def cli(folders: tuple[str, ...]) -> None:
-    """The command itself; its help is `_HELP`."""
+    """The command line; its help is `_HELP`."""
     if folders:
         from compiler.files.settings import OUTSIDE
 
@@ -120,7 +120,7 @@ def cli(folders: tuple[str, ...]) -> None:
 
 
 def main() -> None:
-    """Run a command: no traceback ever reaches a user."""
+    """Run the command line; no exception reaches the user as a traceback."""
     _prepare()
     try:
         _run()
@@ -147,7 +147,7 @@ def main() -> None:
         _no_output(error)
         raise SystemExit(EXIT_USAGE) from None
     except Exception as error:
-        said = getattr(error, "diagnostic", None)  # as of a store that is damaged in the middle
+        said = getattr(error, "diagnostic", None)  # For example a store with a damaged table.
         if isinstance(said, Diagnostic):
             print_diagnostics([said])
             raise SystemExit(EXIT_USAGE) from None
@@ -158,12 +158,14 @@ def main() -> None:
 
 
 _GARBAGE = 200_000
-"""New objects among which the collector looks for circles: what a command imports is none of them,
-and by 700, as Python begins, a tenth of a start went into looking through it again and again."""
+"""Number of new objects after which the garbage collector runs. Imports create no cycles, and with
+Python's default of 700 the collector takes a tenth of the start-up time."""
 
 
 def _prepare() -> None:
-    """Closed or narrow streams and a termination must cost neither the exit status nor files.
+    """Make streams and signals safe: closed pipes and SIGTERM keep exit status and files intact.
+
+        Nothing in the current folder is executed by accident.
 
     Nor is anything executed that happens to lie in the current folder.
     """
@@ -180,7 +182,7 @@ def _prepare() -> None:
 
 
 def _run() -> None:
-    """Not click's own `main`: that takes a closed pipe for exit status 1, a violation."""
+    """Run the command without click's `main`, which maps a closed pipe to exit status 1."""
     if answered(cli):
         return
     with cli.make_context("fretc", sys.argv[1:]) as context:
@@ -194,7 +196,7 @@ def _run() -> None:
 
 
 def _no_output(error: OSError) -> None:
-    """The reader of standard output has gone, or it cannot be written."""
+    """Report that standard output cannot be written; a closed pipe is not reported."""
     if not isinstance(error, BrokenPipeError):
         print_diagnostics([not_written("standard output", error.strerror or str(error))])
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

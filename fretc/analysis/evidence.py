@@ -1,6 +1,6 @@
-"""An analysis as evidence: what it is of, exactly, and whether that is what there is now.
+"""Analysis results as evidence: `build/analysis.json`, and whether it is up to date.
 
-Nothing in a file is trusted: a verdict that does not follow from what stands beside it is F503.
+The file is not trusted: a verdict that does not follow from its findings is F503.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from fretish.printer import sentence as printed
 
 SCHEMA: Final = "fretc-analyzed-set-1"
 DEFAULT = "build/analysis.json"
-"""Where `fretc analyze` writes."""
+"""Default path of the output of `fretc analyze`."""
 
 
 class Member(Record, frozen=True):
-    """A requirement, or an assumption, as it was when it was analyzed."""
+    """A requirement or an assumption when it was analyzed."""
 
     sentence: Annotated[str, about("in FRETish")]
     sha256: Annotated[
@@ -44,7 +44,7 @@ class Member(Record, frozen=True):
 
 
 class Document(Record, frozen=True):
-    """What `build/analysis.json` holds."""
+    """Content of `build/analysis.json`."""
 
     schema: Literal["fretc-analyzed-set-1"]
     fretc: Annotated[str, about("version of the tool")]
@@ -75,14 +75,14 @@ def document(
     *,
     as_fret: bool,
 ) -> Document:
-    """The evidence of an analysis of these."""
+    """The evidence of an analysis of these requirements."""
     return Document(
         SCHEMA, __version__, as_fret, members(requirements), members(assumptions), analysis
     )
 
 
 def members(requirements: Sequence[FormalizedRequirement]) -> dict[str, Member]:
-    """Requirements, or assumptions, as they are now, by their ids."""
+    """Present requirements or assumptions, by id."""
     return {
         requirement.id: Member(printed(requirement.written), _digest(requirement))
         for requirement in requirements
@@ -90,7 +90,7 @@ def members(requirements: Sequence[FormalizedRequirement]) -> dict[str, Member]:
 
 
 def _digest(requirement: FormalizedRequirement) -> str:
-    """Of all that the analysis reads of a requirement."""
+    """SHA-256 of everything that the analysis reads of a requirement."""
     declared = requirement.declarations
     return canonical.digest(
         {
@@ -116,12 +116,12 @@ def suspicions(
     requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
 ) -> Iterator[str]:
-    """Why an analysis says nothing of these: what was added, was taken out, or has changed.
+    """Reasons why an analysis is out of date: added, removed or changed requirements.
 
     Args:
         known: the evidence.
-        requirements: the requirements in force now.
-        assumptions: what the environment is taken to keep now.
+        requirements: the present active requirements.
+        assumptions: the present assumptions.
     """
     if known.as_fret:
         yield "it answers FRET's question, in which `eventually` means at once"
@@ -133,7 +133,7 @@ def changes(
     requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
 ) -> Iterator[str]:
-    """What was added, was taken out, or has changed since an analysis."""
+    """Added, removed and changed requirements since an analysis."""
     yield from _changes(known.requirements, members(requirements), "")
     yield from _changes(known.assumptions, members(assumptions), "assumption ")
 
@@ -151,7 +151,7 @@ def _changes(then: Mapping[str, Member], now: Mapping[str, Member], what: str) -
 def remarks(
     analysis: Analysis, requirements: Sequence[FormalizedRequirement]
 ) -> Iterator[Diagnostic]:
-    """F561 for each conflict; F562 where nobody knows."""
+    """F561 for each conflict; F562 if realizability is unknown."""
     places = {requirement.id: requirement.entry.wording for requirement in requirements}
     for each in analysis.conflicts:
         ids = each.requirements
@@ -186,7 +186,7 @@ def remarks(
 
 @dataclass(frozen=True, slots=True)
 class AnalyzedSet:
-    """A whole file, with its name and its SHA-256."""
+    """A complete file, with its name and SHA-256."""
 
     file: str
     sha256: str
@@ -215,18 +215,18 @@ def read(path: str) -> AnalyzedSet | Diagnostic:
 
 
 def known(path: str | None) -> AnalyzedSet | Diagnostic | None:
-    """The file; None: that at its usual place, where there is one."""
+    """The analysis of a file, or of the default file if it exists; None: there is none."""
     place = path or default_path()
     return read(place) if place is not None else None
 
 
 def default_path() -> str | None:
-    """The file of `fretc analyze` at its usual place, if there is one."""
+    """Default path of the analysis, if the file exists."""
     return DEFAULT if Path(DEFAULT).exists() else None
 
 
 def _contradiction(found: Document) -> str:
-    """Why the verdict does not follow; empty where it does."""
+    """Why the verdict does not follow from the findings; empty if it does."""
     analysis = found.analysis
     ids = found.requirements.keys()
     named = {id for each in analysis.components for id in each.requirements}

@@ -1,8 +1,8 @@
-"""What an analysis of a requirement set has found, as it is written and printed.
+"""Findings of the analysis of a requirement set, as they are written and printed.
 
-A requirement set is *realizable* where a system can choose its outputs tick by tick, knowing the
-inputs up to and including that tick, and keep every requirement whatever the inputs are. Whatever
-has no answer within its limits is `not checked`: no finding is ever left out in silence.
+A requirement set is *realizable* if a system can choose its outputs tick by tick, knowing the
+inputs up to and including that tick, and satisfy every requirement for all inputs. A question
+without an answer within its limits is reported as `not checked`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ SCHEMA: Final = "fretc-analysis-1"
 
 
 class Verdict(StrEnum):
-    """Can the requirements be kept together? The values are the words of files."""
+    """Whether the requirements are realizable. The values are those of files."""
 
     REALIZABLE = "realizable"
     UNREALIZABLE = "unrealizable"
@@ -26,7 +26,7 @@ class Verdict(StrEnum):
 
 
 class Component(Record, frozen=True):
-    """Requirements that share outputs, directly or by way of others; no other one has these."""
+    """Requirements linked by shared outputs; no other requirement has these outputs."""
 
     requirements: Annotated[tuple[Name, ...], about("ids, in the order of the files")]
     outputs: Annotated[tuple[Name, ...], about("the outputs that the requirements are about")]
@@ -53,7 +53,7 @@ class Conflict(Record, frozen=True):
 
 
 class Repair(Record, frozen=True):
-    """What would settle a conflict, as the game of the changed set has shown."""
+    """A proved change that resolves a conflict."""
 
     conflict: Annotated[tuple[Name, ...], about("the ids of the conflict that the repair resolves")]
     requirement: Annotated[
@@ -66,14 +66,14 @@ class Repair(Record, frozen=True):
 
 
 class Redundancy(Record, frozen=True):
-    """A requirement that others imply: no run that keeps these breaks it."""
+    """A requirement that others imply: every run that satisfies them satisfies it."""
 
     requirement: Name
     by: Annotated[tuple[Name, ...], about("a minimal set of others that imply it; sorted")]
 
 
 class Vacuity(Record, frozen=True):
-    """A requirement of which a part never happens, in any run that keeps the others."""
+    """A requirement with a part that never happens in runs that satisfy the others."""
 
     requirement: Name
     by: Annotated[tuple[Name, ...], about("a minimal set of others that exclude it; sorted")]
@@ -81,9 +81,9 @@ class Vacuity(Record, frozen=True):
 
 
 class Inconsistency(Record, frozen=True):
-    """Requirements that a run can lead to where they cannot be satisfied together any more.
+    """Requirements that become impossible to satisfy together after a run (rt-inconsistency).
 
-    No single one is broken then, or has become impossible.
+    No single requirement is violated or impossible then.
     """
 
     requirements: Annotated[tuple[Name, ...], about("ids, sorted")]
@@ -91,7 +91,7 @@ class Inconsistency(Record, frozen=True):
 
 
 class Assumption(Record, frozen=True):
-    """What the environment is taken to keep."""
+    """An assumption about the environment."""
 
     id: Name
     text: Annotated[str, about("in natural language; it may be empty")]
@@ -111,7 +111,7 @@ class OpenQuestion(Record, frozen=True):
 
 
 class Analysis(Record, frozen=True):
-    """All that is known of a requirement set."""
+    """All findings about a requirement set."""
 
     schema: Literal["fretc-analysis-1"]
     fretc: Annotated[str, about("version of the tool")]

@@ -1,4 +1,4 @@
-"""What `fretc analyze` prints: the answer, each conflict as a play, then what else is known."""
+"""Text output of `fretc analyze`: the verdict, each conflict with a trace, then other findings."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ SIGNS: Mapping[Verdict, Sign] = {
     Verdict.NOT_CHECKED: signs.UNKNOWN,
     Verdict.REALIZABLE: signs.GOOD,
 }
-"""The worst first, as for verdicts."""
+"""Symbols of verdicts, the worst first."""
 _UNKNOWN = signs.UNKNOWN.colour
 _WIDEST = 14
-"""Columns of a play that are drawn side by side; the next ones stand below them."""
+"""Maximum number of adjacent columns of a trace; further ones follow below."""
 
 
 def lines(
     analysis: Analysis, sentences: Mapping[str, str], left_out: Sequence[str] = ()
 ) -> Iterator[Line]:
-    """All of it.
+    """All lines of the text output.
 
     Args:
-        analysis: what is known.
+        analysis: the analysis.
         sentences: each requirement in FRETish, by its id.
-        left_out: ids of requirements that nothing is known of, because of mistakes.
+        left_out: ids of requirements that were not analyzed because of errors.
     """
     sign = SIGNS[analysis.verdict]
     yield f"{sign.glyph} {_headline(analysis, 'other ' if left_out else '')}", sign.colour
@@ -120,9 +120,9 @@ def _inconsistency(clash: Inconsistency, analysis: Analysis) -> Iterator[Line]:
 
 
 def drawn(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> Iterator[str]:
-    """A lane for each variable, inputs first; equal ticks in one column."""
+    """A row for each variable, inputs first; equal ticks share a column."""
     names = lanes(play, roles)
-    if not names:  # no tick, or no variable: all that is compared are outputs
+    if not names:  # There is no tick, or no variable because only outputs are compared.
         return
     found = columns(play, names)
     width = max(len("tick"), *(len(_lane(name, roles)) for name in names))
@@ -136,7 +136,7 @@ def drawn(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> It
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """Equal ticks in a row, and the value of each lane."""
+    """Equal adjacent ticks, and the value of each row."""
 
     first: int
     last: int
@@ -149,13 +149,13 @@ class Column:
 
 
 def lanes(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> list[str]:
-    """The names of a play, those of inputs first."""
+    """Names of the variables of a trace, inputs first."""
     names = play[0] if play else ()
     return sorted(names, key=lambda name: (roles.get(name) is Role.OUTPUT, name))
 
 
 def columns(play: Sequence[Mapping[str, object]], names: Sequence[str]) -> list[Column]:
-    """A play with equal ticks in one column."""
+    """A trace with equal adjacent ticks in one column."""
     found: list[Column] = []
     for _, group in groupby(enumerate(play), lambda pair: pair[1]):
         run = list(group)
@@ -181,7 +181,7 @@ def _value(value: object) -> str:
 
 
 def remarks(analysis: Analysis) -> Iterator[Line]:
-    """What single requirements say, or do not."""
+    """Findings about single requirements."""
     empty = signs.EMPTY
     if analysis.consistent is False:
         yield f"{signs.BAD.glyph} no run satisfies all requirements", signs.BAD.colour
@@ -207,7 +207,7 @@ def remarks(analysis: Analysis) -> Iterator[Line]:
 
 
 def _rest(analysis: Analysis) -> Iterator[Line]:
-    """What it rests on, and what is open."""
+    """Open questions and assumptions of the analysis."""
     for each in analysis.open:
         text = f"{signs.UNKNOWN.glyph} open: {each.question}: {each.why}"
         yield text, signs.UNKNOWN.colour

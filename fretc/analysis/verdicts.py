@@ -1,4 +1,4 @@
-"""Whether a component can be kept, and if not, which of its requirements fight."""
+"""Verdict of a component, and its conflicts if it is unrealizable."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from fretish.bindings.declarations import Role
 
 @dataclass(frozen=True, slots=True)
 class Completeness:
-    """All minimal conflicts among these are found."""
+    """All minimal conflicts among these requirements were found."""
 
     requirements: tuple[str, ...]
 
@@ -34,9 +34,9 @@ class Completeness:
 def verdict(
     setting: RealizabilityProblem, budget: Budget
 ) -> tuple[Component, RealizabilityProblem]:
-    """Whether the requirements of a component can be kept together, and the stage that tells.
+    """Whether the requirements of a component are realizable, and the problem that decides it.
 
-    Where that depends on numbers of earlier ticks, more and more of them is remembered.
+    If the answer depends on numbers of earlier ticks, more and more of them are stored.
     """
     answer, why = _answer(setting, budget)
     there = setting
@@ -56,7 +56,7 @@ def verdict(
 
 
 def _has_room(budget: Budget) -> bool:
-    """Whether there is time to remember more: each time takes several times as long."""
+    """Whether there is time to store more; each refinement takes several times as long."""
     return budget.spent < budget.seconds / 8
 
 
@@ -86,7 +86,7 @@ def component(
 
 
 def _verdict(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str]:
-    """The verdict, and how it is known, or why it is not."""
+    """The verdict with its reason."""
     _check_assumptions(setting, budget)
     if not _is_lost(setting, [each.id for each in setting.arena.counters], budget):
         doubt = setting.left_out or setting.of_outputs
@@ -112,7 +112,7 @@ _WHATEVER = "whatever the unknown values are"
 
 
 def _unrolled(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str] | None:
-    """What a run shows where there are no inputs: it keeps all, or there is none."""
+    """Verdict without inputs: a satisfying run, or proof that there is none."""
     from fretc.analysis.games.lassos import Impossible, lasso
 
     chosen = [
@@ -141,13 +141,13 @@ def _is_lost(setting: RealizabilityProblem, ids: Sequence[str], budget: Budget) 
 def strategy(
     setting: RealizabilityProblem, budget: Budget, *, number: int, form: Form
 ) -> Iterator[Circuit | Mealy | OpenQuestion]:
-    """How a component that can be kept is kept.
+    """The controller of a realizable component.
 
     Args:
-        setting: of the component.
-        budget: for finding it.
-        number: of the component.
-        form: in which the strategy is to be written.
+        setting: problem of the component.
+        budget: time limit.
+        number: number of the component.
+        form: output form of the controller.
     """
     ids = tuple(requirement.id for requirement in setting.requirements)
     try:
@@ -162,7 +162,7 @@ def strategy(
 
 
 def _check_assumptions(setting: RealizabilityProblem, budget: Budget) -> None:
-    """Raise UnsupportedError where no run keeps the assumptions: all would follow from them."""
+    """Raise UnsupportedError if no run satisfies the assumptions: every result would follow."""
     if not setting.assumptions:
         return
     runs = setting.runs((), budget)
@@ -174,11 +174,11 @@ def _check_assumptions(setting: RealizabilityProblem, budget: Budget) -> None:
 def conflicts(
     setting: RealizabilityProblem, budget: Budget
 ) -> Iterator[Conflict | Completeness | OpenQuestion]:
-    """Every minimal conflict; at the end a question, where there may be more.
+    """Every minimal conflict; at the end an open question if there may be more.
 
-    Where something is not known, a conflict is certain if the environment wins whatever it is taken
-    for; it is minimal for certain if the environment does not win any less, though it is favoured.
-    Where neither is certain, more of numbers is remembered.
+    With unknown values, a conflict is certain if the environment wins for all of them; it is
+    certainly minimal if the environment does not win with fewer requirements even when favoured. If
+    neither is certain, more about numbers is stored.
     """
     question = (
         "which others of "
@@ -219,24 +219,24 @@ def _perhaps_larger(conflict: Conflict) -> Conflict:
 
 @dataclass(slots=True)
 class _Fights:
-    """The minimal conflicts of a stage, as far as what is not known lets them be told."""
+    """Minimal conflicts of a problem, as far as unknown values permit."""
 
     strict: RealizabilityProblem
-    """Where the environment is favoured."""
+    """Problem with the environment favoured."""
     generous: RealizabilityProblem
-    """Where the system is."""
+    """Problem with the system favoured."""
     larger: list[tuple[str, ...]] = field(default_factory=list)
-    """Conflicts of which it is not certain that they are minimal."""
+    """Conflicts that may not be minimal."""
     smaller: list[tuple[str, ...]] = field(default_factory=list)
-    """What the environment wins only where it is favoured."""
+    """Sets against which the environment wins only if it is favoured."""
 
     @property
     def is_open(self) -> bool:
-        """Whether more might be told of them."""
+        """Whether more could be decided about them."""
         return bool(self.larger or self.smaller)
 
     def minimal(self, budget: Budget) -> Iterator[tuple[str, ...]]:
-        """Those that are certain; then all others are known, too."""
+        """Conflicts that are certainly minimal; then all others are known, too."""
         ids = [each.id for each in self.generous.certain]
         for core in _minimal(self.generous, ids, budget):
             fewer = [[id for id in core if id != other] for other in core]
@@ -251,7 +251,7 @@ class _Fights:
                     self.smaller.append(core)
 
     def sure(self, ids: Sequence[str]) -> RealizabilityProblem:
-        """The stage whose plays of these requirements are certain."""
+        """The problem whose traces of these requirements are certain."""
         known = {each.id for each in self.strict.certain}
         return self.strict if known.issuperset(ids) else self.generous
 
@@ -268,7 +268,7 @@ class _Fights:
 def _minimal(
     there: RealizabilityProblem, ids: Sequence[str], budget: Budget
 ) -> Iterator[tuple[str, ...]]:
-    """The minimal conflicts of some requirements."""
+    """Minimal conflicts of some requirements."""
     read = {requirement.id: frozenset(requirement.variables) for requirement in there.requirements}
 
     def chosen(members: Members) -> tuple[str, ...]:
@@ -286,11 +286,11 @@ def _minimal(
 
 
 _SHORT = 200
-"""Ticks of the longest duration where durations are scaled."""
+"""Ticks of the longest duration after scaling."""
 
 
 def _hint(setting: RealizabilityProblem, budget: Budget) -> str:
-    """What fights where all durations are a fraction of what they are: a clue, and no finding."""
+    """Conflict with all durations scaled down: a hint, not a finding."""
     longest = max((requirement.ticks or 0 for requirement in setting.requirements), default=0)
     factor = -(-longest // _SHORT)
     if factor < 2:
@@ -322,11 +322,11 @@ def _hint(setting: RealizabilityProblem, budget: Budget) -> str:
 
 
 _LONGEST = 200_000
-"""Ticks of a play that is written down."""
+"""Maximum number of ticks of a trace in the output."""
 
 
 def _conflict(whole: RealizabilityProblem, members: Sequence[str], budget: Budget) -> Conflict:
-    """A minimal conflict, with a play that the formulas of its monitors confirm."""
+    """A minimal conflict, with a trace that the formulas of its monitors confirm."""
     ids, setting = sorted(members), whole.close(members, budget)
     counters = setting.counters(ids)
     game = setting.game(counters, budget)

@@ -1,6 +1,6 @@
-"""`fretc analyze`: can requirements be kept together, which fight, which say nothing.
+"""`fretc analyze`: realizability, conflicts and redundancy of a requirement set.
 
-`fretc.analysis` answers; this module reads the options and prints.
+`fretc.analysis` computes the findings; this module reads the options and prints.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ def analyze(
     analysis, stopped = asked(formalized, assumed, chosen, Options(seconds, as_fret))
     evidence = f"{to_json(plain(document(formalized, assumed, analysis, as_fret=as_fret)))}\n"
     if emitted is not None and emit_to == "-":
-        pass  # what is printed is the strategy
+        pass  # Standard output then holds the controller.
     elif output == "-":
         click.echo(evidence, nl=False)
     elif form == "json":
@@ -148,7 +148,7 @@ def asked(
     chosen: Roles,
     options: Options,
 ) -> tuple[Analysis, bool]:
-    """What is found of the requirements, and whether Ctrl-C has stopped it."""
+    """The analysis of the requirements, and whether Ctrl-C has stopped it."""
     from fretc.analysis.analysis import Finding, assembled, jobs
     from fretc.analysis.worker import Stopped, findings
     from fretc.terminal.progress import at_work
@@ -172,7 +172,7 @@ def _emit(
     emitted: str,
     output: str,
 ) -> None:
-    """Write the strategies of all components, or none of them."""
+    """Write the controllers of all components, or none of them."""
     from fretc.analysis.analysis import controllers
     from fretc.analysis.controllers.circuit import Circuit
     from fretc.analysis.controllers.files import Form, automata, controller
@@ -217,7 +217,7 @@ def _smaller(form: str) -> str:
 def active_requirements(
     project: Project, component: str | None
 ) -> tuple[FormalizedRequirement, ...]:
-    """The requirements that are asked about: those that are in force."""
+    """The requirements to analyze: all that are in force."""
     requirements = tuple(
         requirement for requirement in project.formalized if requirement.entry.status != "retired"
     )

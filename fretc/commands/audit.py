@@ -1,4 +1,4 @@
-"""The command that audits runs."""
+"""`fretc audit`: check recorded runs against the requirements."""
 
 from __future__ import annotations
 
@@ -291,7 +291,7 @@ def audit(
             result = audit_in_memory(plan, logs, _engine(engine, jobs, limits, kept))
         diagnostics = project.answered(result.diagnostics)
         print_diagnostics_below(diagnostics, (*project.diagnostics, *refusals))
-        if result.read:  # a mistyped name must not cost the evidence of the last audit
+        if result.read:  # A mistyped log name must not overwrite the evidence of the last audit.
             wanted = annotate or annotations is not None
             made = outputs.annotation_files(result, project, annotations) if wanted else {}
             if parquet is not None:
@@ -322,7 +322,7 @@ def audit(
         else:
             click.echo(outputs.text(result, project, refusals, form), nl=False)
         notice = summary_of(subject, status) if hook is not None else {}
-    if hook is not None:  # when the store is free again: the command may read it
+    if hook is not None:  # The store is closed first, because the command may read it.
         notify(hook, notice)
     raise SystemExit(status)
 
@@ -350,7 +350,7 @@ def _session(folder: Path, plan: Plan, logs: Sequence[str], *, rehash: bool) -> 
 def _deliver(
     result: Outcome, target: Target, others: Mapping[Path, bytes], inputs: Sequence[str]
 ) -> None:
-    """Write everything but a store, which is written."""
+    """Write all outputs except a store, which is already written."""
     from fretc.audit.many_logs import Audit
     from fretc.commands.audit_outputs import remove_other
 
@@ -367,7 +367,7 @@ def _deliver(
 
 
 def _samples(target: Target, *, rehash: bool) -> SampleCache | None:
-    """Where samples are kept; None where there is no key of the user, which says who kept them."""
+    """Cache for samples beside the evidence; None without the user's key."""
     from compiler.files.user_key import user_key
     from fretc.audit.store.recordings import SUFFIX, SampleCache
 

@@ -1,4 +1,4 @@
-"""The logs of an audit and the time for them, as the options say."""
+"""Selection of the logs of an audit, and its time limits."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 def selected(
     paths: Sequence[str], since: str | None, sample: int | None, seed: int
 ) -> tuple[list[str], Selection | None]:
-    """The logs that are audited; exit status 3 where none of those that are named is left.
+    """The selected logs; exits with status 3 if no log is left.
 
     Args:
-        paths: as the user names them.
-        since: of which none is older; None: whatever their dates.
-        sample: how many of them by chance; None: all.
-        seed: of the chance.
+        paths: logs as named by the user.
+        since: date of the oldest log; None: any date.
+        sample: size of the random sample; None: all logs.
+        seed: seed of the random sample.
     """
     from fretc.audit.log_paths import logs as logs_of
     from fretc.audit.selection.choice import chosen, in_words
@@ -45,13 +45,13 @@ def selected(
 
 
 def time_limits(log: str | None, whole: str | None, logs: Sequence[str], engine: str) -> Limits:
-    """The time for each log and for all of them.
+    """Time limits for each log and for all logs.
 
     Args:
-        log: `--log-time`; None: any.
-        whole: `--time`; None: any.
-        logs: that are audited.
-        engine: where.
+        log: `--log-time`; None: no limit.
+        whole: `--time`; None: no limit.
+        logs: the logs to audit.
+        engine: name of the engine.
     """
     from fretc.audit.pool import ENDLESS, Limits
     from fretc.logs.storage.log_names import STDIN

@@ -1,4 +1,4 @@
-"""Where evidence of an audit goes, and the other forms of its results."""
+"""Outputs of an audit: the place of its evidence, and other formats of its results."""
 
 from __future__ import annotations
 
@@ -18,46 +18,46 @@ if TYPE_CHECKING:
     from fretc.audit.evidence.schema import Result
 
 _BATCH = 256
-"""Results that are read at once."""
+"""Number of results that are read at once."""
 
 
 class Outcome(Protocol):
-    """An audit, in memory or in a store."""
+    """Result of an audit, in memory or in a store."""
 
     @property
     def source(self) -> EvidenceSource:
-        """Its results."""
+        """The results."""
 
     @property
     def estimates(self) -> Sequence[Estimated]:
-        """What all runs say of each requirement with a probability."""
+        """Estimates of the requirements with a probability, over all runs."""
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What there is to say of the logs."""
+        """Diagnostics of the logs."""
 
     @property
     def read(self) -> int:
-        """How many of the logs could be read."""
+        """Number of logs that could be read."""
 
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Where evidence goes."""
+    """Output path of the evidence."""
 
     path: Path
     is_store: bool
     other: Path | None = None
-    """Where evidence of an earlier audit may be, of which this one takes the place."""
+    """Default path of the other kind, where an earlier audit may have written evidence."""
 
     @property
     def is_printed(self) -> bool:
-        """Whether it goes to standard output."""
+        """Whether the evidence is printed to standard output."""
         return str(self.path) == "-"
 
 
 def target(output: str | None, logs: int) -> Target:
-    """A file for one log, a store for several, if nobody says otherwise."""
+    """The output path: by default a file for one log and a store for several."""
     if output is None:
         places = (EVIDENCE, STORE) if logs == 1 else (STORE, EVIDENCE)
         path, other = map(Path, places)
@@ -66,7 +66,7 @@ def target(output: str | None, logs: int) -> Target:
 
 
 def check(target: Target, parquet: str | None) -> None:
-    """Stop where they cannot be written, before hours of audit have gone by."""
+    """Check that the outputs can be written, before the audit starts."""
     path = target.path
     if parquet is not None:
         _check_table(parquet, path)
@@ -101,7 +101,7 @@ def table(outcome: Outcome) -> bytes:
 
 
 def remove_other(target: Target) -> None:
-    """Remove what an earlier audit wrote in the other default place: it is not read by mistake."""
+    """Remove evidence of an earlier audit at the other default path."""
     other = target.other
     if other is None:
         return
@@ -127,7 +127,7 @@ def _is_evidence(path: Path) -> bool:
 
 
 def results(source: EvidenceSource) -> Iterator[Result]:
-    """All results, of a store little at a time."""
+    """All results; those of a store are read in batches."""
     places = [place for place, _ in source.briefs()]
     for start in range(0, len(places), _BATCH):
         yield from (result for _, result in source.details(places[start : start + _BATCH]))
@@ -142,7 +142,7 @@ def bare(source: EvidenceSource, project: Project) -> Iterator[Result]:
 
 
 def annotation_files(outcome: Outcome, project: Project, folder: str | None) -> dict[Path, bytes]:
-    """A log of annotations for each run, and a layout that shows them."""
+    """An annotation log for each run, and a Foxglove layout that shows them."""
     from fretc.audit.outputs.annotations import sidecars
     from fretc.audit.outputs.foxglove_layout import layout_file
 
@@ -154,7 +154,7 @@ def annotation_files(outcome: Outcome, project: Project, folder: str | None) -> 
 
 
 def text(outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], form: str) -> str:
-    """The results for a program."""
+    """The results in a format for programs."""
     from fretc.audit.outputs.junit import github, junit
     from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
 
@@ -173,7 +173,7 @@ def text(outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], for
 
 
 def _json(outcome: Outcome) -> str:
-    """One JSON array, an object per run and requirement; with probabilities, both by name."""
+    """JSON array with an object for each run and requirement; an object with probabilities."""
     from compiler.files.records import plain
     from compiler.files.templating import to_json
 

@@ -1,4 +1,4 @@
-"""An audit while it goes on: how far it is, what of it is kept, and that Ctrl-C ends it."""
+"""Progress of an audit, and what is saved if it ends early."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def audit_in_memory(plan: Plan, logs: Sequence[str], engine: Engine) -> Audit:
-    """Audit the logs; whatever ends that early, nothing is kept."""
+    """Audit the logs in memory; an interrupted audit saves nothing."""
     from fretc.audit.many_logs import audit_logs
 
     try:
@@ -39,7 +39,7 @@ def audit_in_memory(plan: Plan, logs: Sequence[str], engine: Engine) -> Audit:
 
 
 def audit_into(session: StoreWriter, engine: Engine) -> StoredAudit:
-    """Audit the logs of a session; whatever ends that early, what is finished is in its store."""
+    """Audit the logs of a session; an interrupted audit leaves finished results in the store."""
     if session.known:
         count = len(session.known) + len(session.new)
         print_status(
@@ -76,7 +76,7 @@ def audit_into(session: StoreWriter, engine: Engine) -> StoredAudit:
 
 
 def _kept(session: StoreWriter) -> str:
-    """What is not lost, and how to go on; nothing where nothing is kept."""
+    """Message about the saved results and how to continue; empty if nothing is saved."""
     if not session.kept:
         return ""
     kept, count = session.kept + len(session.known), len(session.known) + len(session.new)
@@ -85,7 +85,7 @@ def _kept(session: StoreWriter) -> str:
 
 @contextmanager
 def shown(logs: Sequence[str]) -> Iterator[Callable[[str], None]]:
-    """Show how many bytes of these logs are done; gives what is to be called with each of them."""
+    """Show the progress in bytes; yields a function to call with each finished log."""
     sizes = {log: _size(log) for log in logs}
     logs_done = bytes_done = 0
     total = sum(sizes.values())
@@ -101,7 +101,7 @@ def shown(logs: Sequence[str]) -> Iterator[Callable[[str], None]]:
 
 
 def _size(log: str) -> int:
-    """In bytes; something even where it cannot be told, so that the log counts."""
+    """Size of a log in bytes; 1 if it is unknown, so that the log counts."""
     try:
         return max(1, os.path.getsize(log))
     except OSError:

@@ -1,4 +1,4 @@
-"""`fretc bind`: draft bindings from a log, or check what bindings see in logs."""
+"""`fretc bind`: draft bindings from a log, or check bindings against logs."""
 
 from __future__ import annotations
 
@@ -92,15 +92,15 @@ def bind(
 
 
 def _project(requirements: str, bindings: str | None, replaced: str | None = None) -> Project:
-    """The requirements and their bindings. Mistakes fail the command in the end.
+    """The requirements and their bindings. Errors make the command exit with 2 at its end.
 
-    It stops where no part of the bindings can be used. There may be no requirements at all, unless
-    the user names where they are.
+    The command stops if no part of the bindings can be used. Requirements may be missing, unless
+    the user names their path.
 
     Args:
         requirements: a folder or a file.
-        bindings: their file; None: the one beside the requirements, if any.
-        replaced: a file that the command will write; mistakes in what it holds now do not count.
+        bindings: bindings file; None: the one beside the requirements, if any.
+        replaced: file that the command will write; errors in its present content do not count.
     """
     from compiler.project.folder import load
     from compiler.project.paths import requirement_files, sibling_path
@@ -120,7 +120,7 @@ def _project(requirements: str, bindings: str | None, replaced: str | None = Non
 
 
 def _is_in(diagnostic: Diagnostic, path: str) -> bool:
-    """Whether the place of the diagnostic is in this file."""
+    """Whether the diagnostic is about this file."""
     span = diagnostic.span
     return span is not None and os.path.realpath(span.source.name) == os.path.realpath(path)
 
@@ -151,7 +151,7 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
 
 
 def _exists(path: str) -> Diagnostic:
-    """F905: only `--force` writes over a file."""
+    """F905: a file exists, and `--force` is not given."""
     return Diagnostic(
         Code.NOT_WRITTEN,
         f"`{path}` already exists",
@@ -169,7 +169,7 @@ def _not_one_mode() -> Diagnostic:
 
 
 def _second_log(path: str) -> Diagnostic:
-    """F907: a LOG beside the one of `--from`."""
+    """F907: a LOG in addition to that of `--from`."""
     return Diagnostic(
         Code.BAD_USAGE,
         f"bindings are drafted from one log, but a second one is given: `{path}` is one more",
@@ -192,7 +192,9 @@ def _check(
         fail(logs)
     if project.declarations is None:
         fail(_no_bindings())
-    plan = planned(project)  # not a plan where no requirement can be audited: bindings still can
+    plan = planned(
+        project
+    )  # Not an audit plan: bindings can be checked even if no requirement can be audited.
     result = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
     if isinstance(result, Diagnostic):
         fail(*([each for each in project.diagnostics if each.is_error] or [result]))
@@ -207,7 +209,9 @@ def _check(
 
 
 def _unbound(project: Project) -> list[Diagnostic]:
-    """Of each proposition that a requirement names and the bindings do not define.
+    """A diagnostic for each proposition that a requirement names and the bindings do not define.
+
+        Retired requirements are skipped, because no audit evaluates them.
 
     Retired requirements do not count: no audit judges them.
     """

@@ -1,4 +1,4 @@
-"""The command about a project as a whole, before any run."""
+"""`fretc check`: report errors and warnings of a project, before any run."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def check(
 
 
 def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnostic]:
-    """F561 for each conflict, F562 where there is no answer."""
+    """F561 for each conflict, F562 if realizability is unknown."""
     from fretc.analysis.analysis import DEFAULT
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.assumptions import assumptions
@@ -167,7 +167,7 @@ def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnosti
 
 
 def _fix(folder: str) -> None:
-    """Apply the safe fixes, to all files or to none, and list each."""
+    """Apply the safe fixes to all files or to none, and list each fix."""
     from compiler.project.fixes import fixed
     from compiler.project.paths import requirement_files
 
@@ -182,7 +182,7 @@ def _fix(folder: str) -> None:
 
 
 def _finish(diagnostics: tuple[Diagnostic, ...], count: int, form: str) -> None:
-    """Print them, and exit with what they mean."""
+    """Print the diagnostics and exit with the matching status."""
     from compiler.files.templating import to_json
 
     accepted = [d for d in diagnostics if d.accepted]

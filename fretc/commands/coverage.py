@@ -1,4 +1,4 @@
-"""`fretc coverage`: what recorded runs have exercised of each requirement.
+"""`fretc coverage`: which situations recorded runs have exercised.
 
 `fretc.audit` reads the logs, `fretc.coverage` counts; this module reads the options and prints.
 """
@@ -110,7 +110,7 @@ def coverage(
 
 
 def _directions(covered: Coverage, named: str | None) -> Directions:
-    """How runs come by situations, as far as tests say; those of other sentences say nothing."""
+    """The verdicts with which tests reach situations; tests for other sentences are ignored."""
     from fretc.coverage.directions import directions
 
     fingerprints = {each.id: each.fingerprint for each in covered.requirements}
@@ -119,11 +119,11 @@ def _directions(covered: Coverage, named: str | None) -> Directions:
 
 
 def suite_of(named: str | None, fingerprints: Mapping[str, str]) -> Suite | None:
-    """The tests that the user names, or that are there; None: there are none.
+    """The test suite of the user, or the default one if it exists; None: there is none.
 
     Args:
-        named: their file; None: the one that `fretc test` writes.
-        fingerprints: of each requirement: a line says of which of them the tests say nothing.
+        named: path of the suite; None: the default path of `fretc test`.
+        fingerprints: fingerprint of each requirement, to detect outdated tests.
     """
     from fretc.testing.reader import DEFAULT, read
 
@@ -156,9 +156,9 @@ def _recorded(evidence: str) -> EvidenceSource:
 def _audited(
     paths: Sequence[str], requirements: str, bindings: str | None, jobs: int
 ) -> tuple[EvidenceSource, dict[str, str], bool]:
-    """The audit of some logs, what requirements are called, and whether some input was bad.
+    """The audit of some logs, the titles of requirements, and whether some input was bad.
 
-    Nothing is written.
+    No file is written.
     """
     from fretc.audit.many_logs import local_executor
     from fretc.commands.audit_logs import selected
@@ -176,7 +176,7 @@ def _audited(
 
 
 def planned_project(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
-    """The project, and the plan to audit what of it can be judged."""
+    """The project, and the audit plan for its usable requirements."""
     from compiler.project.folder import load
     from compiler.project.paths import requirement_files, sibling_path
 

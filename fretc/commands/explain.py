@@ -1,4 +1,4 @@
-"""The command that explains: a requirement by its id or file, or the code of a diagnostic."""
+"""`fretc explain`: explain a requirement, or the code of a diagnostic."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def explain(
 
 
 def _is_path(what: str) -> bool:
-    """A folder is one only where it is written like a path: an id may be the name of a folder."""
+    """Whether the argument is a path; a bare word is an id, also if a folder has its name."""
     return Path(what).is_file() or (os.sep in what and Path(what).is_dir())
 
 
@@ -98,7 +98,7 @@ def _explain_code(code: Code, form: str) -> None:
 
 
 _MOST_TICKS = 100_000
-"""Of a duration: a picture has a column for each of them."""
+"""Maximum duration in a diagram, which has a column for each tick."""
 
 
 def _too_long(requirement: FormalizedRequirement) -> Diagnostic:
@@ -132,7 +132,7 @@ def _explain_rules(
 
 
 def _typed(sentence: str, folder: str, bindings: str | None) -> list[FormalizedRequirement]:
-    """A sentence as a requirement; the clock of the project, if any, says what a second is."""
+    """A sentence as a requirement; the project's clock, if any, gives the length of a tick."""
     from compiler.formalization.binding_agreement import broken_tables
     from compiler.formalization.formalize import formalize
     from compiler.project.folder import load
@@ -158,7 +158,7 @@ def _typed(sentence: str, folder: str, bindings: str | None) -> list[FormalizedR
 def _rules(
     what: str, folder: str, bindings: str | None, *, is_file: bool
 ) -> list[FormalizedRequirement]:
-    """The requirements asked for; exits where there is none."""
+    """The requirements to explain; exits if there is none."""
     from compiler.project.folder import load
     from compiler.project.paths import listed, requirement_files
 
@@ -177,14 +177,16 @@ def _rules(
         requirement for requirement in project.sound.formalized if requirement.id in matches
     ]
     if not requirements:
-        raise SystemExit(EXIT_INCONCLUSIVE)  # free text, or a mistake, which wins
+        raise SystemExit(
+            EXIT_INCONCLUSIVE
+        )  # Free text has status 3; an error has status 2 and wins.
     refused = {r.requirement.id: r.why for r in project.refused if r.requirement.id in matches}
     list_refused(refused, len(subjects))
     return requirements
 
 
 def _say_of(project: Project, subjects: Sequence[RequirementEntry]) -> None:
-    """Print what there is to say of the chosen requirements and of the bindings."""
+    """Print the diagnostics of the chosen requirements and of the bindings."""
     others = {
         diagnostic
         for requirement in project.requirements
@@ -201,7 +203,7 @@ def _say_of(project: Project, subjects: Sequence[RequirementEntry]) -> None:
 
 
 def _nearest(project: Project, diagnostic: Diagnostic) -> RequirementEntry | None:
-    """The requirement that a place in its file belongs to: the first that does not end before."""
+    """The requirement at a position in its file: the first one that does not end before it."""
     assert diagnostic.span is not None
     for requirement in project.requirements:
         wording = requirement.wording
@@ -211,7 +213,7 @@ def _nearest(project: Project, diagnostic: Diagnostic) -> RequirementEntry | Non
 
 
 def _unknown_code(what: str) -> Diagnostic | None:
-    """F515 for a word that looks like a code and is none."""
+    """F515 for an unknown diagnostic code."""
     if not re.fullmatch(r"[Ff]\d+", what):
         return None
     area = [code.number for code in Code if code.number[1] == what[1]]
@@ -223,7 +225,7 @@ def _unknown_code(what: str) -> Diagnostic | None:
 
 
 def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Diagnostic:
-    """F515; a word that looks like a code is taken for one."""
+    """F515 for an unknown requirement, or F515 for an unknown code if it looks like one."""
     if is_file:
         return Diagnostic(
             Code.NO_SUCH_REQUIREMENT,

@@ -1,4 +1,4 @@
-"""The commands about requirements: formalize and emit, format, import."""
+"""The commands about requirement files: formalize and emit, `fmt`, `import`."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def compile_(
 
 
 def _undecided(requirements: Sequence[FormalizedRequirement]) -> list[Diagnostic]:
-    """F203 for each requirement that no run decides: the same, whatever is made of it."""
+    """F203 for each requirement that no finite run decides; reported once for all targets."""
     monitor = TARGETS["monitor"]
     remarks = [
         monitor.remark(requirement)
@@ -140,7 +140,7 @@ def _undecided(requirements: Sequence[FormalizedRequirement]) -> list[Diagnostic
 
 
 def _check_weaken(kinds: Sequence[str]) -> None:
-    """F907 where no kind of file that is asked for has a weaker form."""
+    """F907 if no requested target has a weaker form."""
     weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
     if not any(TARGETS[kind].weak for kind in kinds):
         message = f"`--weaken` applies only to {' and '.join(weak)}"
@@ -154,7 +154,7 @@ def _check_weaken(kinds: Sequence[str]) -> None:
 
 
 def _deliver_formulas(project: Project, output: str) -> None:
-    """The array of `--emit ltl --format json`, in the order of the files."""
+    """Write the JSON array of `--emit ltl --format json`, in the order of the files."""
     from compiler.emit import renamed
     from compiler.files.templating import to_json
     from compiler.formalization.record import failed, formulas
@@ -184,7 +184,7 @@ def _emit(
     options: Options,
     remarks: Sequence[Diagnostic],
 ) -> None:
-    """Write whatever can be; what a target refuses is reported and keeps nothing else from it."""
+    """Write the files of all targets; a refusal of one target does not affect the others."""
     named = [TARGETS[kind] for kind in kinds]
     targets = [(options.weaken and target.weak) or target for target in named]
     outputs = [(target, *_emitted(target, project, options)) for target in targets]
@@ -217,12 +217,12 @@ def _emit(
 
 
 def _next_steps(project: Project, firsts: Mapping[str, str], output: str) -> str:
-    """What can be done with files that are made for the first time.
+    """Print the next commands for files that are written for the first time.
 
     Args:
-        project: of which they are made.
-        firsts: name of each target → the first of its files.
-        output: the folder of the files.
+        project: the project of the files.
+        firsts: target name → its first file.
+        output: folder of the files.
     """
     steps = [
         TARGETS[kind].next_step.format(quote(str(Path(output) / path)))
@@ -240,7 +240,9 @@ def _next_steps(project: Project, firsts: Mapping[str, str], output: str) -> str
 def _emitted(
     target: Target, project: Project, options: Options
 ) -> tuple[list[FormalizedRequirement] | None, list[Diagnostic]]:
-    """The requirements that the target accepts, None: no file at all; and what it refuses.
+    """The requirements that the target accepts, or None for no file; and the refusals.
+
+        A file that combines all requirements is written for all of them or not at all.
 
     A file of all requirements is made of all of them or not at all.
     """
@@ -255,7 +257,7 @@ def _emitted(
         whole += name_collisions(requirements)
     if target.together and any(
         each.is_error and each.code is Code.BAD_SETTINGS for each in project.diagnostics
-    ):  # a package says who answers for it: the settings do
+    ):  # The settings name the maintainer of a package.
         return None, wrong
     if project.refused and not target.of_bindings and (one_file or not target.per_rule):
         whole.append(_not_of_all(target, project.refused))
@@ -266,7 +268,7 @@ def _emitted(
 
 
 def _not_of_all(target: Target, refused: Sequence[Refused]) -> Diagnostic:
-    """F618: what is made of all requirements would lack some without a word of it."""
+    """F618: a file that combines all requirements would lack some."""
     ids = ", ".join(each.requirement.id for each in refused)
     return Diagnostic(
         Code.NOT_OF_ALL,
@@ -357,7 +359,7 @@ def import_(
 
 
 def _deliver_all(files: Mapping[str, str], output: str) -> None:
-    """Below the folder; or one after the other on standard output, for `-`."""
+    """Write the files below the folder, or print them one after the other for `-`."""
     if output == "-":
         write_outputs({Path("-"): "".join(files.values())})
     else:

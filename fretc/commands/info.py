@@ -1,4 +1,4 @@
-"""The command that says what is in a log."""
+"""`fretc info`: show the topics, rates and damage of logs."""
 
 from __future__ import annotations
 

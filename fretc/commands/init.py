@@ -1,4 +1,4 @@
-"""`fretc init`: begin a project with one requirement, its bindings and its hazards."""
+"""`fretc init`: create a project with one requirement, its bindings and its hazards."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def init(folder: str, log: str | None) -> None:
 
 
 def _say_next_commands(folder: str, requirements: Path, log: str | None) -> None:
-    """Print the commands to run next, so that they can be copied to the present shell."""
+    """Print the next commands, ready to be copied to the shell."""
     from fretc.logs.storage.log_names import shell_word
 
     option = "" if folder == "." else f" --requirements {quote(str(requirements))}"
@@ -69,7 +69,7 @@ def _say_next_commands(folder: str, requirements: Path, log: str | None) -> None
 
 
 def _has_settings(folder: Path) -> bool:
-    """Whether settings of a folder above hold: another file would take their place."""
+    """Whether a folder above has settings that a new file would hide."""
     from compiler.files.settings import settings
 
     found = settings(str(folder))
@@ -77,7 +77,7 @@ def _has_settings(folder: Path) -> bool:
 
 
 def _settings_to_fill_in() -> str:
-    """`fretc.toml` with a comment for all that only the owner of the project knows."""
+    """`fretc.toml` with a comment for everything that only the project owner knows."""
     from compiler.files.attribution import EXAMPLE
 
     table = "".join(f"# {line}\n" for line in EXAMPLE.splitlines())
@@ -89,7 +89,7 @@ def _is_empty_folder(path: Path) -> bool:
 
 
 def _exists(path: str) -> Diagnostic:
-    """F905: the place of the requirements is taken."""
+    """F905: the requirements folder exists already."""
     return Diagnostic(
         Code.NOT_WRITTEN,
         f"`{path}` already exists",

@@ -1,6 +1,6 @@
-"""`fretc mutate`: which wrong requirements recorded runs would not have noticed.
+"""`fretc mutate`: which mutants of requirements recorded runs would not detect.
 
-`fretc.coverage` answers; this module reads the options and prints.
+`fretc.coverage` computes the result; this module reads the options and prints.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""`--notify`: a summary of an audit, for a command of the user.
+"""`--notify`: give a summary of an audit to a command of the user.
 
-The command gets one JSON object on standard input; `text` is for a person, as chat hooks want it.
+The command gets one JSON object on standard input; its `text` suits chat hooks.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import visible
 
 _PATIENCE = 60
-"""Seconds that the command may take."""
+"""Time limit for the command, in seconds."""
 
 
 def words(command: str, option: str = "--notify") -> list[str]:
-    """The words of a command, which no shell sees; stops where there are none."""
+    """The command split into words, without a shell; exits if it is empty or cannot be split."""
     try:
         found = shlex.split(command)
     except ValueError as error:
@@ -37,7 +37,7 @@ def words(command: str, option: str = "--notify") -> list[str]:
 
 
 def notify(command: Sequence[str], summary: Mapping[str, Any]) -> None:
-    """Give the summary to the command, and say how that ended: it changes nothing else."""
+    """Run the command with the summary, and report whether it failed; verdicts are not affected."""
     import subprocess
 
     from compiler.files.processes import shield

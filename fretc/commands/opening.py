@@ -1,7 +1,7 @@
-"""A project as commands open it: every mistake is printed, and the sound part is worked on.
+"""Load a project: print every error, and continue with the usable requirements.
 
-A mistake refuses the requirements that read it. Whatever else a command prints or makes, its exit
-status is then 2.
+An error excludes the requirements that depend on it. The exit status of the command is then 2,
+whatever else it prints or writes.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ if TYPE_CHECKING:
 
 
 OF_AUDITS = ("map", "run")
-"""The shared tables of the bindings that whatever judges logs reads."""
+"""Shared tables of the bindings that commands which evaluate logs read."""
 
 
 def project_of(
     files: Sequence[str], requirements: str, bindings: str | None, reads: Collection[str]
 ) -> tuple[Project, str]:
-    """The sound part of a project, and where it is.
+    """The usable part of a project, and its path.
 
     Args:
-        files: `.fret` files and folders of such; empty: those of `requirements`.
+        files: `.fret` files and folders; empty: those of `requirements`.
         requirements: a folder, or one file.
-        bindings: their file; None: the one beside the first of them, if any.
-        reads: the shared tables of the bindings that the command reads.
+        bindings: bindings file; None: the one beside the first requirement file, if any.
+        reads: shared tables of the bindings that the command reads.
     """
     from compiler.project.folder import load
     from compiler.project.paths import listed, requirement_files
@@ -55,13 +55,14 @@ def project_of(
 
 
 def sound_part(project: Project, *, others: bool = False) -> Project:
-    """What no mistake reaches. The mistakes have been printed; what they refuse is listed.
+    """The part of a project that no error affects; lists the excluded requirements.
 
-    The command stops where they leave nothing, unless it has something else to do.
+    Exits if nothing is left, unless the bindings alone are enough. The errors have already been
+    printed.
 
     Args:
-        project: as it was read.
-        others: whether something is made of the bindings alone.
+        project: the whole project.
+        others: whether the command can use the bindings alone.
     """
     if has_errors(project.diagnostics):
         fail_at_end()
@@ -73,11 +74,11 @@ def sound_part(project: Project, *, others: bool = False) -> Project:
 
 
 def plan_of(project: Project, requirements: str) -> Plan:
-    """The plan to audit what of a project can be judged; all that keeps back the rest is printed.
+    """Audit plan for the usable requirements; prints why the others are excluded.
 
     Args:
-        project: it may have mistakes.
-        requirements: where it is, as the user names it.
+        project: the project, which may have errors.
+        requirements: its path, as named by the user.
     """
     from fretc.audit.plan import Plan, planned
 
@@ -97,17 +98,17 @@ def plan_of(project: Project, requirements: str) -> Plan:
 
 
 def list_mistaken(project: Project) -> None:
-    """Print which requirements in force a mistake reaches."""
+    """Print which active requirements have errors."""
     refused = {each.requirement.id: each.why for each in project.refused if each.is_in_force}
     list_refused(refused, len(project.requirements))
 
 
 def list_refused(refused: Mapping[str, Sequence[Diagnostic]], count: int) -> None:
-    """Print which requirements are left out: first those of the mistake that reaches the most.
+    """Print which requirements are left out, the most frequent error first.
 
     Args:
-        refused: the id of each of them → its mistakes.
-        count: of all requirements.
+        refused: id of each excluded requirement → its errors.
+        count: number of all requirements.
     """
     if not refused:
         return
@@ -128,7 +129,7 @@ _MOST_LINES, _MOST_IDS = 20, 8
 
 
 def _where(why: Diagnostic) -> str:
-    """Its code and its place, as they are printed with it."""
+    """Code and position of a diagnostic, as they are printed with it."""
     if why.span is None:
         return why.code.number
     place = why.span.source.name

@@ -1,4 +1,4 @@
-"""The command that makes a page to play with traces."""
+"""`fretc play`: make an HTML page on which traces can be edited."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 _SECONDS = 20
-"""Of a processor, for the search of a trace that tells two versions apart."""
+"""CPU seconds for the search of a trace that distinguishes two versions."""
 
 
 @click.command()
@@ -115,7 +115,7 @@ def play(
 
 
 def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
-    """One version of a project, and why no monitor can be made of some sound requirements."""
+    """One version of a project, and why some requirements without errors have no monitor."""
     from compiler.targets.javascript.monitor import refuse
     from fretc.commands.analyze import active_requirements
     from fretc.play.versions import Side
@@ -135,7 +135,7 @@ def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
 def _recorded(
     project: Project, known: Sequence[FormalizedRequirement], logs: Sequence[str]
 ) -> Iterator[Recorded]:
-    """What some logs show; one that cannot be read, or judged, stops the command."""
+    """Traces from logs; exits if a log cannot be read or evaluated."""
     from fretc.audit.plan import Plan, planned
     from fretc.play.recorded import of_log
 
@@ -157,7 +157,7 @@ def of_files(
     tests: str | None,
     analysis: str | None,
 ) -> Iterator[Start]:
-    """What other commands have found, as far as it is about the requirements as they are."""
+    """Results of other commands, as far as they are about the present requirements."""
     from fretc.analysis.evidence import default_path
     from fretc.analysis.evidence import read as read_analysis
     from fretc.play.starts import changed, of_analysis, of_suite, others, stale

@@ -1,4 +1,4 @@
-"""The command about everything: the traceability report, in each of its forms."""
+"""`fretc report`: the traceability report, in all formats."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ _HEADINGS = {
 
 
 def _forms(command: Callable[..., None]) -> Callable[..., None]:
-    """The option of each form."""
+    """Output option of each format."""
     for form in FORMS.values():
         shown = form.default is not None
         option = path_option(
@@ -190,7 +190,7 @@ def report(
 
 
 def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | None) -> Inset | None:
-    """The page to play with traces; None: no requirement can be on it."""
+    """The embedded page of `fretc play`; None: no requirement can be on it."""
     from compiler.formalization.formalize import name_collisions
     from compiler.targets.javascript.monitor import refuse
     from fretc.audit.plan import Plan, planned
@@ -224,7 +224,7 @@ def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | No
 def _outputs(
     form: str | None, output: str | None, places: Mapping[str, str | None]
 ) -> list[tuple[Form, str]]:
-    """Each form that is asked for, and its place; the default one only where none is."""
+    """Each requested format and its path; the default path if none is requested."""
     named = [(kind, path) for name, kind in FORMS.items() if (path := places[name]) is not None]
     if form is None and output is None:
         return named
@@ -233,7 +233,7 @@ def _outputs(
 
 
 def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequence[str]) -> None:
-    """Each form to its own place."""
+    """Write each format to its path."""
     from fretc.terminal.output import not_written
 
     paths: dict[Path, str | Iterable[str]] = {}

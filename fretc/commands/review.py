@@ -1,4 +1,4 @@
-"""The commands about reviews: accept the present state, and say what has changed since."""
+"""`fretc lock` and `fretc diff`: record reviews, and show what has changed since."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ def lock(
 def _signatures(
     path: str, reviews: Mapping[str, Review], chosen: Sequence[Chain], key: str
 ) -> dict[Path, str]:
-    """The signatures beside the lock, with one of the reviews that are accepted now."""
+    """The signatures beside the lock, with a new one for the reviews that are accepted now."""
     from fretc.commands.sign import of_reviews, private, signed
 
     mine = private(key)
@@ -207,7 +207,7 @@ def diff(
 
 
 def _refused(project: Project) -> Mapping[str, Sequence[Diagnostic]]:
-    """The ids of the requirements that a mistake reaches, which are listed, and the mistakes."""
+    """Ids of the requirements with errors, and the errors; the ids are also printed."""
     from compiler.project.refusals import unreviewable
 
     if not has_errors(project.diagnostics):
@@ -228,14 +228,14 @@ def _chains(
     *,
     accept: bool = False,
 ) -> tuple[Project, Sequence[Chain], Collection[str]]:
-    """The project, its chains, and which requirements all runs together refute.
+    """The project, its chains, and the requirements that all runs together refute.
 
     Args:
-        requirements: their folder or file.
-        evidence: of audits.
-        verification: of proofs.
-        analysis: of the requirements together.
-        accept: all that is read will be accepted, so a store is compared with its results in full.
+        requirements: folder or file of the requirements.
+        evidence: path of the evidence.
+        verification: path of the proofs.
+        analysis: path of the analysis.
+        accept: whether the results will be accepted, so that a store is checked in full.
     """
     from compiler.project.folder import load_folder
     from fretc.analysis.evidence import known as known_analysis
@@ -270,7 +270,7 @@ def _chains(
 def _chosen(
     chains: Sequence[Chain], ids: tuple[str, ...], orphans: Collection[str]
 ) -> Sequence[Chain]:
-    """The requirements that are named, or all; one that is gone may be named, to let it go."""
+    """The named requirements, or all; a removed requirement may be named, to remove its review."""
     known = [*(chain.requirement for chain in chains), *orphans]
     for id in ids:
         if id not in known:
@@ -288,7 +288,7 @@ def _beside(requirements: str) -> str:
 
 
 def _read(path: str, *, must: bool) -> Lock | None:
-    """The lock; where there is none yet, None, unless there must be one."""
+    """The lock; None if it does not exist and is not required."""
     from fretc.report.traceability.lock import read
 
     lock_ = read(path)

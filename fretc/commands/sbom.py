@@ -1,4 +1,4 @@
-"""The command that says what fretc itself consists of."""
+"""`fretc sbom`: list the installed components."""
 
 from __future__ import annotations
 

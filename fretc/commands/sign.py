@@ -1,4 +1,4 @@
-"""The command that signs, and what others need of it: keys, and signatures that are demanded."""
+"""`fretc sign`, and shared code for keys and required signatures."""
 
 from __future__ import annotations
 
@@ -34,17 +34,17 @@ if TYPE_CHECKING:
     from fretc.verification.reader import Proofs
 
 PASSPHRASE = "FRETC_PASSPHRASE"
-"""The environment variable with the passphrase of a key, where nobody can be asked."""
+"""Environment variable with the passphrase of a key, for use without a terminal."""
 
 
 @dataclass(frozen=True, slots=True)
 class Signable:
-    """A file that can be signed: what a statement says of it, and that in words."""
+    """A file to sign: its statement, and a summary in words."""
 
     path: str
     statement: Statement
     current: frozenset[Subject]
-    """Everything in the file that anybody can sign."""
+    """All subjects in the file that anybody can sign."""
     lines: tuple[str, ...]
 
 
@@ -90,7 +90,7 @@ def _merged(parts: Iterable[Mapping[Path, str]]) -> dict[Path, str]:
 
 
 def installed() -> None:
-    """Stop where what signatures need is not installed."""
+    """Exit if the packages for signatures are not installed."""
     from fretc.attestation.signatures import missing
 
     absent = missing()
@@ -99,7 +99,7 @@ def installed() -> None:
 
 
 def private(path: str) -> PrivateKey:
-    """The private key of a file; its passphrase is asked for where it has one."""
+    """The private key in a file; asks for its passphrase if it has one."""
     from compiler.files.text_files import content, unreadable
 
     installed()
@@ -132,7 +132,7 @@ def _passphrase(path: str) -> str:
 
 
 def signed(what: Signable, key: PrivateKey) -> dict[Path, str]:
-    """The file with the signatures, and one more in it."""
+    """The signature file with the new signature."""
     from fretc.attestation.keys import signed_envelope
     from fretc.attestation.signatures import appended, beside, envelope, kept, read
     from fretc.attestation.statement import text
@@ -182,7 +182,7 @@ def _usage(what: str, fix: str) -> Diagnostic:
 
 
 def _json(path: str, verification: str | None) -> Signable:
-    """Evidence, proofs, an analysis, or a report: they say which."""
+    """The statement of a JSON file: evidence, proofs, an analysis or a report."""
     from compiler.files.text_files import read as read_text
     from compiler.logic import claims as proved
     from fretc.analysis import evidence as analyzed
@@ -209,7 +209,7 @@ def _json(path: str, verification: str | None) -> Signable:
 
 
 def _schema(source: Source) -> object:
-    """What the file says it is; whatever is wrong with it, its own reader says."""
+    """The schema that the file states; F503 if it is not JSON."""
     from compiler.files.checked_json import SchemaError, Shape, plain
 
     try:
@@ -313,7 +313,7 @@ def _summary_of_proofs(proofs: Proofs) -> Iterator[str]:
 
 
 def _same_bytes(path: str, sha256: str) -> None:
-    """What was read, and what everybody else hashes, are the same."""
+    """Exit unless the bytes that were read have this SHA-256."""
     from compiler.files.text_files import file_sha256
 
     if file_sha256(path) != sha256:
@@ -350,7 +350,7 @@ def _lock(path: str, key: str, reviewer: str | None) -> Signable:
 
 
 def of_reviews(path: str, mine: Iterable[Review], all_: Iterable[Review]) -> Signable:
-    """Some of the reviews of a lock."""
+    """The statement of some reviews of a lock."""
     from fretc.attestation import statement as attestation
 
     chosen = sorted(mine, key=lambda review: natural(review.requirement))
@@ -389,7 +389,7 @@ def _waiver_line(waiver: Waiver) -> str:
 
 
 def _names(path: str, written: Sequence[str], key: str, reviewer: str | None) -> Sequence[str]:
-    """By whom the reviews or waivers are that are to be signed."""
+    """Names of the people whose reviews or waivers are signed."""
     names = list(dict.fromkeys(written))
     authors = ", ".join(f"`{name}`" for name in names) or "nobody"
     if reviewer is not None:
@@ -406,7 +406,7 @@ def _names(path: str, written: Sequence[str], key: str, reviewer: str | None) ->
 
 
 def _by_key(path: str, names: Sequence[str], key: str) -> Sequence[str]:
-    """Those of the names that the list of signers gives to the key."""
+    """The names that the list of signers gives to the key."""
     from fretc.attestation.signatures import SIGNERS
     from fretc.attestation.signers import read
 
@@ -422,7 +422,7 @@ def _by_key(path: str, names: Sequence[str], key: str) -> Sequence[str]:
 
 
 def _public(path: str) -> str:
-    """The fingerprint of a public key."""
+    """Fingerprint of a public key."""
     from fretc.attestation.signers import trusted
 
     found = trusted(path)
@@ -435,13 +435,13 @@ def _public(path: str) -> str:
 
 
 def require(evidence: EvidenceSource, by: str, others: Mapping[str, str | None]) -> None:
-    """Stop, with exit status 1, where a key has not signed exactly this evidence.
+    """Exit with status 1 unless a trusted key has signed exactly this evidence.
 
     Args:
-        evidence: as it was read.
-        by: path of the public key, or of a list of signers, that the user trusts.
-        others: kind of other files (`report`, `proofs`, `analysis`) → path, where they must be
-            signed, too.
+        evidence: the evidence that was read.
+        by: path of the trusted public key, or of a list of signers.
+        others: kind of another file (`report`, `proofs`, `analysis`) → path; these must be signed
+            too.
     """
     from compiler.files.text_files import file_sha256
     from fretc.attestation.signatures import book

@@ -1,4 +1,4 @@
-"""The command about simulated missions: record one, or count many."""
+"""`fretc simulate`: record a simulated mission, or run a campaign of many."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def simulate(
 
 
 def demand_simulation() -> None:
-    """Stop where what the simulated robot needs is not installed."""
+    """Exit if the packages for the simulation are not installed."""
     from simulation import missing
 
     absent = missing()
@@ -140,7 +140,10 @@ def _scenario(name: str) -> Scenario:
 
 
 def _known(scenario: Scenario) -> None:
-    """Whether there are the requirements of which it says how they come out.
+    """Check that the requirements with expected verdicts exist.
+
+    Raises:
+        ScenarioError: one does not exist.
 
     Raises:
         ScenarioError: one is not there.
@@ -157,7 +160,7 @@ def _known(scenario: Scenario) -> None:
 
 
 def _place(name: str, why: str) -> Span | None:
-    """Where the key stands that the text names first; the file's start where it cannot be found."""
+    """Position of the first key in the message; the start of the file if it is not found."""
     from compiler.files.text_files import read
 
     source = read(name) if name.endswith(".toml") else None
@@ -182,7 +185,7 @@ def _bad_scenario(name: str, why: str) -> Diagnostic:
 
 
 def _file(out: str) -> Path:
-    """Where a file is to go, if it can."""
+    """Output path of a file; exits if it cannot be written."""
     from compiler.files.text_files import destination
 
     try:
@@ -198,7 +201,7 @@ def _file(out: str) -> Path:
 
 
 def _folder(folder: Path, out: str) -> None:
-    """Make it, with those that it lies in."""
+    """Create the folder and its parents."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -1,4 +1,4 @@
-"""`fretc audit --summary`: what a table of many runs says, for a person or as JSON."""
+"""`fretc audit --summary` and `--query`: aggregated results of many runs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def summarize(paths: Sequence[str], query: str | None, form: str) -> NoReturn:
-    """Print what tables or evidence say, or the answer to a query; exit as their audit did."""
+    """Print a summary of evidence, or the result of a query; exit with the status of the audit."""
     from fretc.audit.outputs.summary import answered, summarized
     from fretc.audit.outputs.table import read
 
@@ -60,7 +60,7 @@ def _json(value: object) -> str:
 
 
 def _plain(value: object) -> object:
-    """Without what JSON has no word for: NaN and the infinities."""
+    """The value with NaN and infinities replaced by None, which JSON can hold."""
     match value:
         case dict():
             return {str(key): _plain(item) for key, item in value.items()}
@@ -133,13 +133,13 @@ def _slowest(summary: Summary) -> tuple[list[str], list[list[str]]]:
 
 
 def _listed(answer: Answer) -> str:
-    """A query's answer: its columns, then its rows."""
+    """Lines of a query result: its columns, then its rows."""
     rows = [["" if value is None else str(value) for value in row] for row in answer.rows]
     return "".join(f"{line}\n" for line in _aligned(list(answer.columns), rows))
 
 
 def _aligned(head: list[str], rows: list[list[str]]) -> Iterator[str]:
-    """Columns of one width each, numbers to the right."""
+    """Lines with aligned columns, numbers to the right."""
     cells = [[visible(cell) for cell in row] for row in (head, *rows)]
     columns = list(zip(*cells, strict=True))
     widths = [max(map(len, column)) for column in columns]

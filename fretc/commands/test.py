@@ -1,6 +1,6 @@
-"""`fretc test`: few short runs that show whether a requirement is right, each with its verdict.
+"""`fretc test`: generate short test traces from requirements, each with its verdict.
 
-`fretc.testing` makes them; this module reads the options, prints and writes.
+`fretc.testing` generates them; this module reads the options, prints and writes.
 """
 
 from __future__ import annotations
@@ -176,7 +176,7 @@ def test(
     )
     text = f"{to_json(plain(suite))}\n"
     if emitted is not None and emit_to == "-":
-        pass  # what is printed is the tests
+        pass  # Standard output then holds the tests.
     elif output == "-" or form == "json":
         click.echo(text, nl=False)
     else:
@@ -204,7 +204,7 @@ def _check_shown(id: str, known: Sequence[str]) -> None:
 
 
 def _of(path: str, requirements: Sequence[FormalizedRequirement]) -> Suite:
-    """The suite of a file, as far as it is about requirements as they are."""
+    """The tests of a file that are about the present requirements."""
     from fretc.testing.exports.saved import WrongError
     from fretc.testing.exports.saved import saved as checked
     from fretc.testing.reader import read
@@ -231,7 +231,7 @@ def _made(
     assumed: Sequence[FormalizedRequirement],
     seconds: float,
 ) -> tuple[Suite, bool]:
-    """The suite, and whether Ctrl-C has stopped it."""
+    """The test suite, and whether Ctrl-C has stopped the search."""
     from fretc.analysis.worker import Stopped, findings
     from fretc.terminal.progress import at_work
     from fretc.testing.assembly import jobs, suite
@@ -253,7 +253,7 @@ def _files(
     output: str,
     languages: Sequence[str],
 ) -> dict[Path, str]:
-    """The tests as files; those that cannot be written so are named."""
+    """The files of the tests; tests without a file are reported."""
     from fretc.testing.exports.files import Form, files
     from fretc.testing.exports.pytest_file import Language
 

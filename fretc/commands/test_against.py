@@ -1,6 +1,6 @@
-"""`fretc test --against`: whether a program keeps requirements, whatever happens to it.
+"""`fretc test --against`: test whether a program satisfies requirements.
 
-`fretc.testing.conformance` drives it; this module reads the command, prints and writes.
+`fretc.testing.conformance` runs the program; this module reads the command, prints and writes.
 """
 
 from __future__ import annotations
@@ -40,17 +40,17 @@ def against(
     output: str,
     protected: Iterable[str],
 ) -> NoReturn:
-    """Test a program, print what was seen, and exit.
+    """Test a program, print the result, and exit.
 
     Args:
-        command: the program and its arguments, as a shell would read them.
+        command: the program and its arguments, in shell syntax.
         requirements: the requirements.
-        assumed: what its environment keeps.
-        seconds: of a processor, for the strategy towards each situation.
-        line_time: seconds that the program may take for a line.
+        assumed: the assumptions about the environment.
+        seconds: CPU seconds for the strategy towards each situation.
+        line_time: time limit for each line of the program, in seconds.
         form: text or json.
-        output: where the evidence goes; `-` prints it.
-        protected: files that are read.
+        output: path of the result; `-` prints it.
+        protected: input files, which no output may replace.
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json

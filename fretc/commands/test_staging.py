@@ -1,4 +1,4 @@
-"""`fretc test --emit mcap|scenario`: tests as logs, and missions that show what tests ask for."""
+"""`fretc test --emit mcap|scenario`: tests as logs, or as simulated missions."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
     from fretc.testing.suite import Suite
 
 FORMS = ("mcap", "scenario")
-"""Of `--emit`: what is staged, and not only written."""
+"""Values of `--emit` that need the simulated robot."""
 
 
 def check(emitted: str, emit_to: str) -> None:
-    """Stop where it cannot be written: without its libraries, or to standard output."""
+    """Exit if the files cannot be written: without the packages, or to standard output."""
     from fretc.commands.simulate import demand_simulation
 
     if emit_to == "-":
@@ -42,7 +42,7 @@ def check(emitted: str, emit_to: str) -> None:
 
 
 def staged(project: Project, suite: Suite, emitted: str, emit_to: str, runs: int, jobs: int) -> int:
-    """Stage a suite and say what came of it; the exit status."""
+    """Write a suite as logs or scenarios and print the result; returns the exit status."""
     folder = Path(emit_to) / emitted
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -85,7 +85,7 @@ def _logs(project: Project, suite: Suite, folder: Path) -> int:
 
 
 def _listed(what: str, reasons: Iterable[tuple[str, str]]) -> None:
-    """Each reason once, with all that it is the reason of."""
+    """Each reason once, with everything that has this reason."""
     by_reason: dict[str, list[str]] = {}
     for why, name in reasons:
         by_reason.setdefault(why, []).append(name)
@@ -122,7 +122,7 @@ def _scenarios(project: Project, suite: Suite, folder: Path, runs: int, jobs: in
 def _written(
     project: Project, found: Found, folder: Path, words: Mapping[Aim, str]
 ) -> Collection[str]:
-    """Write what does not come with fretc; what shows something else again is not written."""
+    """Write the new scenarios; one that does not reproduce its result is not written."""
     from fretc.testing.log_synthesis.scenarios import confirmed, text
     from simulation.world.scenario import names
 

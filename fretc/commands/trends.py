@@ -1,4 +1,4 @@
-"""The command about many audits: what is new, fixed, flaky or worse between them."""
+"""`fretc trends`: changes between many audits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Trends for a person, on one screen: what is left out is counted, and red comes first."""
+"""Text output of `fretc trends`, on one screen: worst changes first, further ones counted."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from fretish.diagnostics.signs import Sign
 Line = tuple[Piece, ...]
 _BLANK: Line = (("", None),)
 _MARKS = 12
-"""Rounds whose marks are shown, the newest ones."""
+"""Number of newest rounds whose symbols are shown."""
 _NAME, _ID = 22, 12
-"""The widest column of scenarios, and of ids."""
+"""Maximum columns of scenario names and of ids."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class _Section:
     kinds: tuple[Change, ...]
     sign: Sign
     most: int
-    """Lines of it."""
+    """Maximum number of lines."""
 
 
 _SECTIONS = (
@@ -142,7 +142,7 @@ def _line(item: Item, screen: Screen) -> Line:
 
 
 def _mark(tone: Tone | None, verdicts: Sequence[str]) -> Piece:
-    """The sign of a round: of an open one that of its worst verdict."""
+    """The symbol of a round; for an open round that of its worst verdict."""
     if tone is None:
         return " ", None
     word = min(verdicts, key=severity)
@@ -155,7 +155,7 @@ def _column(text: str, columns: int, screen: Screen) -> str:
 
 
 def _words(item: Item) -> str:
-    """How many runs of the newest round, and what else there is to know."""
+    """Number of runs in the newest round, and further information."""
     now = item.rounds[-1] or next((r for r in reversed(item.rounds) if r), ())
     verdicts = [f"{now.count(word)} {word}" for word in dict.fromkeys(sorted(now))]
     if len(verdicts) == 1:
@@ -165,7 +165,7 @@ def _words(item: Item) -> str:
 
 
 def _flaky(trends: Trends, screen: Screen) -> Iterator[Line]:
-    """Those that no other list has."""
+    """Flaky requirements that no other section lists."""
     listed = {Change.NEW, Change.FIRST_VIOLATED, Change.STILL, Change.LOST, Change.FIXED}
     items = [item for item in trends.items if item.flaky and item.change not in listed]
     if not items:

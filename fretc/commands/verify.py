@@ -1,6 +1,6 @@
-"""`fretc verify`: prove that monitors, interceptors and agents keep the requirements.
+"""`fretc verify`: prove that monitors, interceptors and agents satisfy the requirements.
 
-`fretc.verification` proves; this module reads the options, prints the proofs and writes them.
+`fretc.verification` proves; this module reads the options, prints and writes the proofs.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ _HEADINGS = {
     ),
     "Output": ("form", "every_claim", "output", "traces"),
 }
-"""The names of the parameters of `verify`, under the headings of its help."""
+"""Names of the parameters of `verify`, under the headings of its help."""
 _HELP = f"""Prove that monitors, interceptors and agents do what the requirements say.
 
 FILE is a requirement file, or a folder of them; it replaces `--requirements`.
@@ -204,13 +204,12 @@ def verify(
 def _demanded(
     layers: Sequence[str], *, monitor: bool, monitor_file: str | None
 ) -> tuple[Layer, ...]:
-    """The layers that the options name, each once; none: each layer is examined where it applies.
+    """The requested layers, each once; empty: every layer that applies.
 
     Args:
-        layers: of `--layer`.
+        layers: values of `--layer`.
         monitor: whether `--monitor` is given.
-        monitor_file: of `--file`. Who gives a monitor and names no layer asks about that monitor
-            alone.
+        monitor_file: value of `--file`. Without a layer, only the layer `monitor` is used.
     """
     names = dict.fromkeys((*map(Layer, layers), *([Layer.MONITOR] if monitor else [])))
     if not names and monitor_file is not None:
@@ -219,7 +218,7 @@ def _demanded(
 
 
 def _ajpf_proofs(project: Project, results: Sequence[str]) -> Sequence[Proof]:
-    """The proofs that files of results of AJPF hold; an error in one stops the command."""
+    """The proofs in result files of AJPF; exits if a file has an error."""
     from fretc.verification.ajpf_results import ajpf_proofs
 
     proofs, diagnostics = ajpf_proofs(project.formalized, results)
@@ -240,7 +239,7 @@ def _half_an_agent(agent: str | None) -> Diagnostic:
 
 
 def _project(files: Sequence[str], requirements: str, bindings: str | None) -> Project:
-    """The sound part of the project, which has a requirement at least; else the command stops."""
+    """The usable part of the project; exits if it has no requirement."""
     project, _ = project_of(files, requirements, bindings, ("interceptor", "assume"))
     if not project.formalized:
         fail(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to verify"))
@@ -248,7 +247,7 @@ def _project(files: Sequence[str], requirements: str, bindings: str | None) -> P
 
 
 def _read(path: str | None) -> Source | None:
-    """The text of a file that an option names; None where the option is not given."""
+    """Text of a file that an option names; None if the option is not given."""
     from compiler.files.text_files import read
 
     if path is None:
@@ -260,7 +259,7 @@ def _read(path: str | None) -> Source | None:
 
 
 def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
-    """The header that a monitor in C includes, from its folder; None: it is not in C."""
+    """Header of a monitor in C, from its folder; None: the monitor is not in C."""
     language = language_of(monitor.name) if monitor else None
     if monitor is None or language is None:
         return None
@@ -289,7 +288,7 @@ def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
 
 
 def _proofs(project: Project, request: Request) -> Sequence[Proof]:
-    """All proofs; a text of the request that cannot be used stops the command."""
+    """All proofs; exits if a given file cannot be used."""
     from fretc.verification.monitor.verifying import NotAMonitorError
     from fretc.verification.verify import prove
 
@@ -320,13 +319,13 @@ def _print_and_write(
 ) -> None:
     """Print the proofs, and write them as JSON and their counterexamples as tables.
 
-    `--output -` prints the JSON in the place of the text.
+    `--output -` prints the JSON instead of the text.
 
     Args:
-        proofs: all of them.
-        text: the lines to print; None: the JSON is printed.
-        output: the file for the JSON.
-        traces: the folder for the tables; None: none are written.
+        proofs: all proofs.
+        text: lines to print; None: the JSON is printed.
+        output: path of the JSON.
+        traces: folder for the tables; None: none are written.
         inputs: files that no output may replace.
     """
     from compiler.files.build_id import __version__
@@ -340,7 +339,7 @@ def _print_and_write(
         click.echo(document, nl=False)
     elif output != "-":
         click.echo(coloured(text), nl=False)
-    if text is not None or output != "-":  # else it has just been printed
+    if text is not None or output != "-":  # Otherwise the JSON was printed.
         files[Path(output)] = document
     if traces is not None:
         files.update(_trace_files(proofs, Path(traces)))
@@ -348,10 +347,10 @@ def _print_and_write(
 
 
 def _trace_files(proofs: Sequence[Proof], folder: Path) -> dict[Path, str]:
-    """A CSV file for each run that a monitor can step: `<requirement>_<layer>_<number>.csv`.
+    """A CSV file for each counterexample: `<requirement>_<layer>_<number>.csv`.
 
-    Its columns are propositions alone. A run of a closed loop has others behind them, for which
-    a monitor has no place.
+    The columns are propositions. Further columns of a closed loop are left out, because monitors do
+    not read them.
     """
     from fretc.verification.loop.replay import EXTRA
     from fretc.verification.text_output import as_csv
@@ -369,7 +368,9 @@ def _trace_files(proofs: Sequence[Proof], folder: Path) -> dict[Path, str]:
 
 
 def _status(proofs: Sequence[Proof]) -> int:
-    """The exit status, as the help says it.
+    """The exit status, as stated in the help.
+
+        A stop that is never released violates no requirement: it gives 3, not 1.
 
     That a stop is never released breaks no requirement: it is 3, and not 1.
     """

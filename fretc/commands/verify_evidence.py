@@ -1,4 +1,4 @@
-"""The command about evidence: whether it still stands."""
+"""`fretc verify-evidence`: recompute evidence and compare."""
 
 from __future__ import annotations
 
@@ -209,7 +209,7 @@ def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tup
 
 
 def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict[str, str]:
-    """Run → where its log is, of those that may be opened; of the others it is said."""
+    """Run → path of its log, for logs that may be opened; others are reported."""
     from fretc.logs.storage.log_names import is_url, name_of
     from fretc.logs.storage.places import Places
     from fretc.reproduction.results import located
@@ -300,7 +300,7 @@ def _analyzed(path: str | None) -> AnalyzedSet | None:
 
 
 def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
-    """What was asked, in words: nothing that was not asked is said to stand."""
+    """The extent of the check in words, so that nothing unchecked seems confirmed."""
     count = len(scope.claimed)
     whole = f"{count} requirement{'' if count == 1 else 's'} of `{requirements}`"
     extent = f"only {', '.join(scope.claimed)}, a part" if scope.part else whole
@@ -318,7 +318,7 @@ def _unmet(
     others: Mapping[str, str | None],
     manifest: Manifest | None,
 ) -> Sequence[Recheck]:
-    """What `--strict` demands and is missing."""
+    """What `--strict` requires and is missing."""
     from compiler.project.paths import sibling_path
     from fretc.attestation.signatures import SIGNERS
     from fretc.report.traceability.lock import NAME
@@ -334,7 +334,7 @@ def _unmet(
 
 
 def _signatures(files: Sequence[str], signers: str | None) -> SignatureBook:
-    """The signatures of files; those that do not verify end the command."""
+    """The signatures of files; exits if one is invalid."""
     from fretc.attestation.signatures import book
     from fretc.attestation.signers import trusted
 
@@ -393,7 +393,7 @@ def _reproved(
 def _asked_again(
     project: Project, known: AnalyzedSet, scope: Scope, *, skip: bool
 ) -> Sequence[Recheck]:
-    """Whether the requirements of an analysis can be kept together, asked again."""
+    """The repeated analysis of the requirement set, compared with the stored one."""
     from fretc.analysis.analysis import Options
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.assumptions import assumptions
@@ -424,7 +424,7 @@ def _asked_again(
     old = [differs(TOGETHER, "", why) for why in changes(document, requirements, assumed)]
     others = (
         requirement.id for requirement in in_force if requirement not in requirements
-    )  # of another `--component`, or new
+    )  # A requirement outside `--component`, or a new one.
     new = [unknown(TOGETHER, id, "it was not part of the set") for id in others]
     return (*old, *new, *compared(document, now))
 
@@ -437,7 +437,7 @@ def _report(
     analysis: str | None,
     requirements: str,
 ) -> bool:
-    """Whether the report that is made now is the one in the file, byte for byte."""
+    """Whether the report that is made now equals the file, byte for byte."""
     from compiler.files.text_files import read
     from compiler.project.paths import sibling_path
     from fretc.attestation.signatures import SIGNERS
@@ -482,7 +482,7 @@ def _print(results: Sequence[Recheck], same: bool | None, against: str) -> None:
 
 
 def _counts(results: Sequence[Recheck], same: bool | None) -> dict[str, int]:
-    """How many of each finding, the report among them."""
+    """Number of each finding, including the report."""
     from fretc.reproduction.outcome import Finding, counts
 
     totals = {str(finding): count for finding, count in counts(results).items()}

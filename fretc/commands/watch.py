@@ -1,4 +1,4 @@
-"""The command that watches a robot that runs."""
+"""`fretc watch`: check a running robot against the requirements."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def watch(
     if record == "-":
         fail(not_written(record, "a recording cannot be printed"))
     for path in outputs:
-        if path.is_dir():  # not after a night of watching
+        if path.is_dir():  # Checked before the watch, which may take all night.
             fail(not_written(str(path), "it is a folder"))
     publishers = _opened(publish, source)
     try:
@@ -142,7 +142,7 @@ def watch(
 
 
 def _opened(words: Sequence[str], source: Source) -> Sequence[Publisher]:
-    """Where verdicts go; where a server is, is said."""
+    """The publishers of verdicts; prints the address of a server."""
     if not words:
         return ()
     from fretc.watch.publishing.choice import addresses, chosen
@@ -156,7 +156,7 @@ def _opened(words: Sequence[str], source: Source) -> Sequence[Publisher]:
 
 
 def _planned(requirements: str, bindings: str | None) -> tuple[Project, Plan, Sequence[str]]:
-    """The plan, which is that of an audit, and the files that it is made of."""
+    """The audit plan, and its input files."""
     from compiler.project.folder import load
     from compiler.project.paths import companions, requirement_files, sibling_path
 
@@ -180,7 +180,7 @@ def _status(runs: Sequence[RunEnded]) -> int:
 def _audited(
     plan: Plan, logs: Sequence[str], evidence: str, inputs: Sequence[str], project: Project
 ) -> int:
-    """Write what an audit says of the recordings, through its own door."""
+    """Audit the recordings and write the evidence."""
     from fretc.audit.many_logs import local_executor
     from fretc.commands.audit_progress import audit_in_memory
 

@@ -1,8 +1,8 @@
-"""The results of AJPF itself, as the `run.py` of a bundle writes them.
+"""Results of AJPF, in the files that the `run.py` of a bundle writes.
 
-Nothing in a file is trusted: a wrong shape is F616. A result counts only where it is about the
-present texts of fretc. Its conclusion is not read: it follows from its single checks, which must be
-those of the present bundle and agree with their logs, where these lie beside it.
+The files are not trusted: a wrong shape is F616. A result counts only if it is about the present
+files of fretc. Its conclusion is not read: it is derived from its checks, which must be those of
+the present bundle and agree with their logs, if these are in the same folder.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ from fretish.diagnostics.source import Source
 from fretish.reading.recursion import with_recursion_limit
 
 PLACES = "build/*_ajpf/result.json"
-"""Where `--emit ajpf-bundle -o build/` and `run.py` leave them."""
+"""Default paths of the results of `--emit ajpf-bundle -o build/` and `run.py`."""
 _UNHASHED = ("README.md",)
-"""The files of a bundle that no verdict depends on."""
+"""Files of a bundle on which no verdict depends."""
 _ASSUMED = (
     "the environment can show or hide every trigger at the start, at every action and whenever "
     "the agent is idle (Env.java)",
@@ -64,32 +64,32 @@ class Check:
     seconds: float
     states: int | None
     log: str
-    """The name of the file that has what AJPF printed."""
+    """Name of the file with the output of AJPF."""
     log_sha256: str
     trace: Trace | None
 
     @property
     def question(self) -> tuple[str, str, str, str, str]:
-        """The property and its place, and the verdict that is expected."""
+        """The property, its role, and the expected verdict."""
         return self.role, self.key, self.jpf, self.text, self.expected
 
 
 @dataclass(frozen=True, slots=True)
 class AjpfResult:
-    """A whole file."""
+    """Content of a result file."""
 
     file: str
     requirement: str
     weakened: bool
     own: tuple[str, str] | None
-    """File and SHA-256 of the user's own agent, in the place of the one of the bundle."""
+    """File and SHA-256 of the user's own agent, which replaces that of the bundle."""
     engine: str
     files: Mapping[str, str]
     checks: tuple[Check, ...]
 
 
 def default_paths() -> tuple[str, ...]:
-    """The results at their usual place."""
+    """The result files at the default paths."""
     return tuple(sorted(map(str, Path().glob(PLACES))))
 
 
@@ -99,11 +99,11 @@ def ajpf_proofs(
     """A proof for each result, in the order of the paths, and the diagnostics of the files.
 
     Args:
-        requirements: the requirements as they are now.
+        requirements: the present requirements.
         paths: files of `run.py`.
 
     Returns:
-        The proofs; F616 for what cannot be read, F617 for a requirement that is not there.
+        The proofs; F616 for an unreadable file, F617 for an unknown requirement.
     """
     known = {requirement.id: requirement for requirement in requirements}
     proofs: list[Proof] = []
@@ -120,10 +120,10 @@ def ajpf_proofs(
 
 
 def merged(proofs: Sequence[Proof], present: Sequence[Proof]) -> tuple[Proof, ...]:
-    """The proofs of a file, with the present ones of AJPF in the place of its own.
+    """The proofs of a file, with its proofs of AJPF replaced by the present ones.
 
-    A proof of AJPF in the file that has no present result becomes one that is not checked: nothing
-    compares it with the present texts. A counterexample stays one.
+    A proof of AJPF without a present result becomes unchecked, because nothing compares it with the
+    present files. A counterexample stays.
     """
     fresh = {proof.requirement for proof in present}
     old = [
@@ -263,7 +263,7 @@ def _proof(requirement: FormalizedRequirement, result: AjpfResult) -> Proof:
 
 
 def _reason(requirement: FormalizedRequirement, result: AjpfResult, options: Options) -> str | None:
-    """Why the result is not about the present texts; None: it is."""
+    """Why the result is not about the present files; None: it is."""
     refused = bundle.refusal(requirement, options)
     if refused is not None:
         why = f"{refused.code.number} {refused.message}"
@@ -287,7 +287,7 @@ def _reason(requirement: FormalizedRequirement, result: AjpfResult, options: Opt
 def _otherwise(file: str, check: Check) -> str | None:
     """Why a check disagrees with its log; None: they agree, or there is no log.
 
-    A refutation stays one, whatever its log says.
+    A refutation stays one, whatever its log contains.
     """
     if check.role == "requirement" and check.verdict == VIOLATED:
         return None
@@ -314,7 +314,7 @@ def _stale(result: AjpfResult, now: Mapping[str, str]) -> Iterator[str]:
 
 
 def _changed(file: str, hashed: str) -> str | None:
-    """Why the user's own agent is another one now; None: it is the same."""
+    """Why the user's own agent has changed; None: it has not."""
     try:
         own = content(file)
     except (OSError, ValueError):
@@ -328,7 +328,7 @@ def _changed(file: str, hashed: str) -> str | None:
 
 
 def _conclusion(result: AjpfResult) -> Outcome:
-    """The outcome of all checks together: a refutation first, then what is not known."""
+    """The outcome of all checks together: a refutation first, then missing answers."""
     checks = result.checks
     for check in checks:
         if check.role == "requirement" and check.verdict == VIOLATED:

@@ -1,6 +1,6 @@
-"""Who chooses each variable: the environment its inputs, the system its outputs.
+"""Roles of variables: the environment chooses inputs, the system chooses outputs.
 
-A role is declared, never guessed: whether requirements can be kept together depends on it.
+A role is declared, never guessed, because realizability depends on it.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.toml_text import as_key
 
 Roles = Mapping[str, Role]
-"""Input or output, of every variable of the requirements."""
+"""Role of every variable of the requirements."""
 CHOSEN = (Role.INPUT, Role.OUTPUT)
 
 
 def roles(requirements: Sequence[FormalizedRequirement]) -> Roles | tuple[Diagnostic, ...]:
-    """The role of each variable; or what is wrong with each that has none, or has two.
+    """The role of each variable, or the errors of variables without a role or with two.
 
-    F354 stands where a variable without a role is read first. F907 is of one that is an input of
-    one component and an output of another one.
+    F354 is reported where a variable without a role is read first. F907 is about an input of one
+    component that is an output of another.
     """
     found: dict[str, tuple[Role, str]] = {}
     wrong: dict[str, Diagnostic] = {}
@@ -55,7 +55,7 @@ def _two_roles(
 
 
 def role(requirement: FormalizedRequirement, name: str) -> Role | None:
-    """The role that is declared; that of its signals, where a proposition has none of its own."""
+    """The declared role of a variable, or the common role of a proposition's signals."""
     variable = requirement.glossary.get(name)
     if variable is not None and variable.role in CHOSEN:
         return Role(variable.role)
@@ -107,7 +107,7 @@ def _no_role(
 
 
 _SHOWN = 60
-"""Characters of an assignment that a message shows."""
+"""Maximum number of characters of an assignment in a message."""
 
 
 def _answers(requirement: FormalizedRequirement) -> frozenset[str]:

@@ -12,7 +12,7 @@ from compiler.logic import decision_diagrams as bdd
 from fretc.analysis.controllers.machine import Machine, NoMachineError
 
 MOST_NODES = 20_000
-"""Of a circuit: each is a line of a program."""
+"""Maximum number of nodes of a circuit; each is a line of a program."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class Choice:
 
     @property
     def text(self) -> str:
-        """As Python says it best."""
+        """The choice as a Python expression."""
         match self.high, self.low:
             case "False", "True":
                 return f"not {self.variable}"
@@ -44,34 +44,34 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Circuit:
-    """The machine of some requirements; every name is one of Python."""
+    """The machine of some requirements; every name is a Python name."""
 
     requirements: tuple[str, ...]
     inputs: Mapping[str, str]
-    """Each proposition that the environment sets, by its name."""
+    """Name → proposition that the environment sets."""
     outputs: Mapping[str, str]
-    """Each proposition that the machine sets, by its name."""
+    """Name → proposition that the machine sets."""
     bits: tuple[str, ...]
     replies: tuple[Choice, ...]
-    """What is computed before the outputs."""
+    """Choices that are computed before the outputs."""
     values: tuple[str, ...]
-    """Of each output, in their order."""
+    """Value of each output, in the order of `outputs`."""
     steps: tuple[Choice, ...]
-    """What is computed after the outputs."""
+    """Choices that are computed after the outputs."""
     following: tuple[str, ...]
-    """Of each bit its value after the tick, in their order."""
+    """Value of each bit after the tick, in order."""
 
 
 def circuit(machine: Machine, requirements: Sequence[str], number: int) -> Circuit:
     """The circuit of a machine.
 
     Args:
-        machine: whatever its size.
-        requirements: their ids.
-        number: keeps its names apart from those of other circuits.
+        machine: a machine of any size.
+        requirements: ids of its requirements.
+        number: number that makes its names unique.
 
     Raises:
-        NoMachineError: it would be too long.
+        NoMachineError: the circuit would be too long.
     """
     names = {each: f"i{number}_{i}" for i, each in enumerate(machine.inputs)}
     names |= {each: f"o{number}_{i}" for i, each in enumerate(machine.outputs)}
@@ -101,7 +101,7 @@ def _choices(
     known: dict[bdd.Function, str],
     number: int,
 ) -> Iterator[Choice]:
-    """What the roots need and is not known yet; it is known then."""
+    """Choices that the roots need and that are not yet in `known`, which is extended."""
     for part in bdd.parts(roots):
         if part not in known:
             variable, high, low = bdd.branches(part)

@@ -15,7 +15,7 @@ from fretc.analysis.controllers.moves import Mealy, Move, Term
 
 
 class Form(StrEnum):
-    """What a strategy is written as; the values are the words of `--emit`."""
+    """Form of a controller; the values are those of `--emit`."""
 
     PYTHON = "python"
     HOA = "hoa"
@@ -23,13 +23,13 @@ class Form(StrEnum):
 
 
 Sentences = Mapping[str, str]
-"""FRETish, by ids."""
+"""FRETish sentences by id."""
 
 
 def controller(
     circuits: Sequence[Circuit], requirements: Sentences, assumptions: Sentences
 ) -> Artifact:
-    """`controller.py`, which keeps all requirements."""
+    """`controller.py`, which satisfies all requirements."""
     text = render(
         "controller/controller.py.j2",
         circuits=circuits,
@@ -46,7 +46,7 @@ def controller(
 
 
 def automata(machines: Sequence[Mealy], form: Form) -> tuple[Artifact, ...]:
-    """`controller.hoa` or `controller.dot`; with a number, where there are several components."""
+    """`controller.hoa` or `controller.dot`; with a number for several components."""
     return tuple(
         Artifact(
             PurePosixPath(f"controller{f'-{number}' if len(machines) > 1 else ''}.{form}"),

@@ -1,8 +1,8 @@
 """Dafny, for the files of `--emit dafny`.
 
-It runs in a process of its own, with limits. A claim is proved only where the whole output says so:
+It runs in a separate process, with limits. A claim is proved only if the whole output confirms it:
 with a missing line, another exit status, or fewer verified parts than the text has, the claim is
-not checked. Where Dafny finds no proof, nothing is refuted.
+not checked. A failed proof refutes nothing.
 """
 
 from __future__ import annotations
@@ -46,15 +46,15 @@ def with_dafny(
     *,
     seconds: float = DAFNY_SECONDS,
 ) -> tuple[Proof, ...]:
-    """Let Dafny verify the file of a requirement: one line for each claim of the file.
+    """Verify the file of a requirement with Dafny: one proof for each claim of the file.
 
-    Dafny gives one verdict for a file. So either all claims are proved, or none is.
+    Dafny gives one verdict for a file, so either all claims are proved, or none is.
 
     Args:
-        requirement: one that the target does not refuse.
-        text: the file of `--emit dafny`; with any other text nothing is checked.
-        declarations: those of the file.
-        seconds: the limit of Dafny.
+        requirement: a requirement that the target accepts.
+        text: file of `--emit dafny`; any other text is not checked.
+        declarations: declarations of the requirement's file.
+        seconds: time limit of Dafny.
     """
     if text == dafny.text(requirement, declarations):
         outcome, engine = answer(text, seconds=seconds)
@@ -79,7 +79,7 @@ def answer(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Outcome, str]:
     """The outcome of a text, and the name and version of Dafny.
 
     Proved: Dafny verifies at least every lemma, method and constructor, and reports no error. Else
-    not checked, with the places without a proof.
+    not checked, with the parts that have no proof.
     """
     program = shutil.which("dafny")
     if program is None:
@@ -99,7 +99,7 @@ def answer(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Outcome, str]:
 
 
 def _version(program: str, folder: Path) -> str | None:
-    """2.x prints it above a complaint, 4.x alone."""
+    """The version; 2.x prints it above a complaint, 4.x alone."""
     for question in ("--version", "/version"):
         end = run([program, question], folder, seconds=STARTED, memory=MEMORY)
         for line in end.text.splitlines():
@@ -110,7 +110,7 @@ def _version(program: str, folder: Path) -> str | None:
 
 
 def _options(program: str, known: str, folder: Path, seconds: float) -> list[str]:
-    """4 has commands; from some version on warnings are errors unless they are allowed."""
+    """Options by version: 4 has commands; later versions treat warnings as errors by default."""
     limit = max(int(seconds) - 1, 1)
     if int(known.partition(".")[0]) < 4:
         return ["/compile:0", f"/timeLimit:{limit}"]
@@ -143,7 +143,7 @@ def _outcome(text: str, end: Completion, seconds: float) -> Outcome:
 
 
 def _member(text: str, line: int) -> str:
-    """What is declared at a line of the text or above it."""
+    """Name of the declaration at a line of the text or above it."""
     for above in reversed(text.splitlines()[:line]):
         match = _MEMBER.match(above)
         if match:

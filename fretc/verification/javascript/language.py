@@ -21,15 +21,15 @@ _IDS = re.compile(r'^[ \t]*\{ id: ("(?:[^"\\]|\\.)*"), sentence: ', re.MULTILINE
 
 
 def tool() -> str | None:
-    """The path of Node, if it is installed."""
+    """Path of Node, or None."""
     return shutil.which("node")
 
 
 def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) -> ParsedSource:
-    """The text in the form that fretc writes.
+    """The parsed layout of the text.
 
     Raises:
-        UnexpectedLayoutError: it has another form.
+        UnexpectedLayoutError: the layout differs from that of fretc.
     """
     own_rules = implemented([json.loads(id) for id in _IDS.findall(given.text)], requirements)
     made = _program(own_rules)
@@ -56,12 +56,12 @@ def _program(requirements: Sequence[FormalizedRequirement]) -> Program:
 
 
 def _windows(program: Program) -> dict[str, int]:
-    """Each window with the age of the oldest that it looks at."""
+    """Window → maximum age of its values."""
     return {cell.name: cell.hi for cell in program.cells if isinstance(cell, Window)}
 
 
 def _ages(requirement: Requirement) -> tuple[str, ...]:
-    """The marks whose age counts: those that a deadline is reported by."""
+    """Marks whose age is read, to report a deadline."""
     if requirement.horizon is None:
         return ()
     return ("open", "last") if requirement.renewed else ("open",)

@@ -1,7 +1,7 @@
-"""Layer AGENT: the text of an agent has its properties.
+"""Layer AGENT: the text of an agent satisfies its properties.
 
-Of a requirement that plans none, the agent of its bundle is examined only if the user names the
-layer.
+For a requirement whose header does not plan the layer, the agent of its bundle is examined only if
+the user names the layer.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from fretish.printer import timing as printing_of
 
 CLAIM = "the agent has its properties"
 _OF_AGENT = (Layer.AGENT, Layer.AJPF)
-"""Who plans AJPF's own verdict means that agent, too."""
+"""Planning AJPF's own verdict also plans this layer."""
 
 
 def prove(
     requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> tuple[Proof, ...] | Diagnostic:
-    """Of the agent that is given; else of the one that the bundle of each requirement has."""
+    """Proofs about the given agent, or about the agent in the bundle of each requirement."""
     request.progress("agent: its properties")
     agent, properties = request.agent, request.properties
     if agent is None or properties is None:
@@ -70,7 +70,7 @@ def _bundle(requirement: FormalizedRequirement, limits: Limits) -> tuple[Proof, 
 
 
 _TOO_SOON = (Code.STATE_ZERO, Code.NO_TIME_TO_REACT)
-"""What no reasoning cycle can keep: the agent that breaks it is one that no bundle has."""
+"""Timings that no reasoning cycle can satisfy; no bundle has such an agent."""
 
 
 def _without_agent(requirement: FormalizedRequirement, reason: str) -> Proof:

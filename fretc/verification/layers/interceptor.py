@@ -1,4 +1,4 @@
-"""Layer INTERCEPTOR: the text of the interceptor keeps its contracts."""
+"""Layer INTERCEPTOR: the text of the interceptor satisfies its contracts."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def prove(
 
 
 def _contracts(file: NamedText, declared: Interception, limits: Limits) -> Iterator[Proof]:
-    """Of the deployed module: its core may be any, the rest is what fretc writes."""
+    """Contracts of the deployed module: any core, within the node that fretc writes."""
     deviation = otherwise(file.text, declared)
     proofs: Stopped | tuple[Proof, ...]
     if deviation is not None:

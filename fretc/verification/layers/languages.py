@@ -1,4 +1,4 @@
-"""The languages of monitors that can be proved, beside Python."""
+"""Languages of provable monitors, besides Python."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A language of the table; its module is imported when it is asked for."""
+    """A language of the table; its module is imported on demand."""
 
     name: str
     suffixes: tuple[str, ...]
-    """Of its files."""
+    """Suffixes of its files."""
     emit: str
-    """The kind of `--emit` that writes it."""
+    """The `--emit` kind that writes it."""
     room: str
-    """The package below `fretc.verification`."""
+    """The package in `fretc.verification`."""
     missing: str
-    """What its monitors need, where that is not installed."""
+    """Message about the missing tool of its monitors."""
     install: str
     under: str
-    """What is assumed of the tool, before its name."""
+    """Assumption about the tool, before its name."""
 
     @property
     def module(self) -> Language:
-        """What reads, compiles and runs its texts."""
+        """Module that checks, compiles and runs its texts."""
         name = f"fretc.verification.{self.room}.language"
         return cast("Language", import_module(name))
 

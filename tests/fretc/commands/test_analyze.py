@@ -293,7 +293,8 @@ def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) ->
     both = fretc("analyze", folder)
     assert both.status == 2
     assert both.err.startswith(
-        "F907 `link` is an output of `sender`, and an input of `receiver`: these are two different systems\n"
+        "F907 `link` is an output of `sender`, and an input of `receiver`: these are two "
+        "different systems\n"
     )
     assert both.err.endswith("help: analyze one of them: `--component receiver`\n")
 
