@@ -19,7 +19,7 @@ from compiler.emit import TARGETS
 from compiler.files.build_id import __version__
 from compiler.files.processes import shield
 from fretc.api.refusal import too_deep
-from fretc.terminal.completion import answered
+from fretc.terminal.completion import answer_query
 from fretc.terminal.group import DEFAULT, Commands, Registry
 from fretc.terminal.output import (
     EXIT_INTERRUPTED,
@@ -183,7 +183,7 @@ def _prepare() -> None:
 
 def _run() -> None:
     """Run the command without click's `main`, which maps a closed pipe to exit status 1."""
-    if answered(cli):
+    if answer_query(cli):
         return
     with cli.make_context("fretc", sys.argv[1:]) as context:
         try:

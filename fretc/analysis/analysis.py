@@ -17,7 +17,7 @@ from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.components import by_outputs, by_variables
 from fretc.analysis.controllers.circuit import Circuit
-from fretc.analysis.controllers.files import Form
+from fretc.analysis.controllers.files import ControllerFormat
 from fretc.analysis.controllers.moves import Mealy
 from fretc.analysis.findings import (
     SCHEMA,
@@ -160,7 +160,7 @@ def controllers(
     roles: Roles,
     assumptions: Sequence[FormalizedRequirement],
     options: Options,
-    form: Form,
+    form: ControllerFormat,
 ) -> tuple[Job, ...]:
     """Jobs that compute a controller of each realizable component in the given form."""
     return tuple(
@@ -275,7 +275,7 @@ class _Setting:
 
         return Job(title, ask, partial(OpenQuestion, title))
 
-    def controller(self, number: int, form: Form) -> Job:
+    def controller(self, number: int, form: ControllerFormat) -> Job:
         """Job: a controller of a realizable component."""
         title = f"how can {self._name} be satisfied?"
 

@@ -11,7 +11,7 @@ from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.controllers.circuit import Circuit, circuit
-from fretc.analysis.controllers.files import Form
+from fretc.analysis.controllers.files import ControllerFormat
 from fretc.analysis.controllers.machine import NoMachineError, machine
 from fretc.analysis.controllers.moves import Mealy, mealy
 from fretc.analysis.findings import Component, Conflict, OpenQuestion, Verdict
@@ -139,7 +139,7 @@ def _is_lost(setting: RealizabilityProblem, ids: Sequence[str], budget: Budget) 
 
 
 def strategy(
-    setting: RealizabilityProblem, budget: Budget, *, number: int, form: Form
+    setting: RealizabilityProblem, budget: Budget, *, number: int, form: ControllerFormat
 ) -> Iterator[Circuit | Mealy | OpenQuestion]:
     """The controller of a realizable component.
 
@@ -153,7 +153,7 @@ def strategy(
     try:
         game = setting.game(setting.arena.counters, budget)
         found = machine(game, game.solution(), budget)
-        if form is Form.PYTHON:
+        if form is ControllerFormat.PYTHON:
             yield circuit(found, ids, number)
         else:
             yield mealy(found, ids, budget)

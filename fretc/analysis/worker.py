@@ -26,7 +26,7 @@ MEMORY = 4 * 2**30
 """Limit of the process's address space, in bytes."""
 
 
-class Stopped(Exception):  # noqa: N818
+class Interrupted(Exception):  # noqa: N818
     """Ctrl-C was pressed; earlier findings have been yielded."""
 
 
@@ -70,7 +70,7 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
         if is_stopped():
             for job in jobs[number:]:
                 yield job.lost("stopped by Ctrl-C")
-            raise Stopped
+            raise Interrupted
 
 
 @contextmanager

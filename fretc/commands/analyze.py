@@ -84,7 +84,7 @@ def analyze(
     as_fret: bool,
     requirements: str,
     bindings: str | None,
-    form: str,
+    output_format: str,
     output: str,
 ) -> None:
     """Find out whether a system can satisfy all requirements together.
@@ -126,7 +126,7 @@ def analyze(
         pass  # Standard output then holds the controller.
     elif output == "-":
         click.echo(evidence, nl=False)
-    elif form == "json":
+    elif output_format == "json":
         click.echo(to_json(plain(analysis)))
     else:
         sentences = {requirement.id: printed(requirement.written) for requirement in formalized}
@@ -150,15 +150,15 @@ def asked(
 ) -> tuple[Analysis, bool]:
     """The analysis of the requirements, and whether Ctrl-C has stopped it."""
     from fretc.analysis.analysis import Finding, assembled, jobs
-    from fretc.analysis.worker import Stopped, findings
-    from fretc.terminal.progress import at_work
+    from fretc.analysis.worker import Interrupted, findings
+    from fretc.terminal.progress import print_activity
 
     found: list[Finding] = []
     stopped = False
     try:
-        for finding in findings(jobs(requirements, chosen, assumed, options), at_work):
+        for finding in findings(jobs(requirements, chosen, assumed, options), print_activity):
             found.append(finding)
-    except Stopped:
+    except Interrupted:
         stopped = True
     return assembled(requirements, chosen, assumed, options, found), stopped
 
@@ -175,41 +175,45 @@ def _emit(
     """Write the controllers of all components, or none of them."""
     from fretc.analysis.analysis import controllers
     from fretc.analysis.controllers.circuit import Circuit
-    from fretc.analysis.controllers.files import Form, automata, controller
+    from fretc.analysis.controllers.files import ControllerFormat, automata, controller
     from fretc.analysis.controllers.moves import Mealy
     from fretc.analysis.findings import OpenQuestion, Verdict
-    from fretc.analysis.worker import Stopped, findings
-    from fretc.terminal.progress import at_work
+    from fretc.analysis.worker import Interrupted, findings
+    from fretc.terminal.progress import print_activity
     from fretish.printer import sentence as printed
 
     if analysis.verdict is not Verdict.REALIZABLE:
         print_status(f"no controller is written: {analysis.why}")
         return
-    form = Form(emitted)
+    output_format = ControllerFormat(emitted)
     try:
-        found = [*findings(controllers(requirements, chosen, assumed, options, form), at_work)]
-    except Stopped:
+        found = [
+            *findings(
+                controllers(requirements, chosen, assumed, options, output_format), print_activity
+            )
+        ]
+    except Interrupted:
         raise SystemExit(EXIT_INTERRUPTED) from None
     circuits = [each for each in found if isinstance(each, Circuit)]
     machines = [each for each in found if isinstance(each, Mealy)]
     for each in found:
         if isinstance(each, OpenQuestion):
             message = f"no controller can be written: {each.why}"
-            fail(Diagnostic(Code.TOO_LARGE, message, help=_smaller(form)))
-    if form is Form.PYTHON:
+            fail(Diagnostic(Code.TOO_LARGE, message, help=_smaller(output_format)))
+    if output_format is ControllerFormat.PYTHON:
         sentences = {requirement.id: printed(requirement.written) for requirement in requirements}
         promises = {each.id: each.sentence for each in analysis.assumptions}
         artifacts = [controller(circuits, sentences, promises)]
     else:
-        artifacts = [*automata(machines, form)]
+        artifacts = [*automata(machines, output_format)]
     if output == "-":
         write_outputs({Path("-"): "".join(each.text for each in artifacts)})
     else:
         write_outputs({Path(output) / each.path: each.text for each in artifacts})
 
 
-def _smaller(form: str) -> str:
-    if form == "python":
+def _smaller(output_format: str) -> str:
+    if output_format == "python":
         return "select one component with `--component`, or allow more time with `--time`"
     return "try `--emit python`: it lists no states and can write much larger controllers"
 

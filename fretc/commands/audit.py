@@ -14,11 +14,11 @@ import click
 from fretc.commands.audit_logs import selected, time_limits
 from fretc.commands.audit_progress import audit_in_memory, audit_into
 from fretc.commands.notify import notify, words
-from fretc.commands.opening import OF_AUDITS
+from fretc.commands.opening import AUDIT_TABLES
 from fretc.commands.summary import summarize
-from fretc.terminal.group import Grouped
+from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import (
-    OF_LOGS,
+    LOG_EXTRAS,
     PATH,
     bindings_option,
     extras,
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
 
 _AUDIT = {
     "Input": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
-    "Output": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
+    "Output": ("output_format", "verbose", "output", "parquet", "annotate", "annotations"),
     "Selection": ("since", "sample", "seed"),
     "Many logs, performance": (
         "labels",
@@ -81,9 +81,9 @@ _AUDIT = {
 
 
 @click.command(
-    cls=Grouped,
+    cls=CommandWithHeadings,
     headings=_AUDIT,
-    epilog=extras({**OF_LOGS, "fleet": "--engine dask"}),
+    epilog=extras({**LOG_EXTRAS, "fleet": "--engine dask"}),
 )
 @click.argument("paths", nargs=-1, required=True, type=PATH, metavar="LOG...")
 @requirements_option
@@ -212,7 +212,7 @@ def audit(
     output: str | None,
     annotate: bool,
     annotations: str | None,
-    form: str,
+    output_format: str,
     verbose: bool,
     evaluation: str,
     integrity: str,
@@ -248,7 +248,7 @@ def audit(
     Example: fretc audit runs/ --requirements requirements/mission -o build/mission.json
     """
     if summary or query is not None:
-        summarize(paths, query, form)
+        summarize(paths, query, output_format)
     began = time.perf_counter()
     from compiler.project.folder import load
     from compiler.project.paths import companions, requirement_files, sibling_path
@@ -272,7 +272,9 @@ def audit(
         fail(files)
     inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
     protect([target.path, *([Path(parquet)] if parquet else [])], inputs)
-    project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
+    project = load(
+        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
+    )
     print_project_diagnostics(project.diagnostics, requirements)
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
@@ -315,12 +317,12 @@ def audit(
             Places(requirements, bindings, str(target.path)),
             time.perf_counter() - began,
         )
-        if form == "text":
+        if output_format == "text":
             from fretc.terminal.screen import screen
 
             click.echo(painted(lines(subject, screen(), every=verbose)), nl=False)
         else:
-            click.echo(outputs.text(result, project, refusals, form), nl=False)
+            click.echo(outputs.text(result, project, refusals, output_format), nl=False)
         notice = summary_of(subject, status) if hook is not None else {}
     if hook is not None:  # The store is closed first, because the command may read it.
         notify(hook, notice)

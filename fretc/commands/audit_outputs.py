@@ -153,19 +153,21 @@ def annotation_files(outcome: Outcome, project: Project, folder: str | None) -> 
     }
 
 
-def text(outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], form: str) -> str:
+def text(
+    outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], output_format: str
+) -> str:
     """The results in a format for programs."""
     from fretc.audit.outputs.junit import github, junit
     from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
 
-    if form == "json":
+    if output_format == "json":
         return _json(outcome)
     found = bare(outcome.source, project)
-    if form == "junit":
+    if output_format == "junit":
         return junit(found, outcome.estimates, project.requirements)
-    if form == "github":
+    if output_format == "github":
         return github(found, project.requirements, outcome.estimates)
-    assert form == "sarif", "a choice of --format"
+    assert output_format == "sarif", "a choice of --format"
     diagnostics = (*project.diagnostics, *refusals, *outcome.diagnostics)
     together = [AllRuns.of(one) for one in outcome.estimates]
     each = [OneRun.of(one) for one in found]

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import OF_AUDITS, list_mistaken
+from fretc.commands.opening import AUDIT_TABLES, print_requirements_with_errors
 from fretc.terminal.options import (
-    OF_LOGS,
+    LOG_EXTRAS,
     PATH,
     bindings_option,
     extras,
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    epilog=extras(OF_LOGS),
+    epilog=extras(LOG_EXTRAS),
 )
 @click.argument("paths", nargs=-1, type=PATH, metavar="[LOG...]")
 @path_option("--from", "source", metavar="LOG", help="Draft bindings from this log.")
@@ -58,7 +58,7 @@ def bind(
     bindings: str | None,
     output: str,
     force: bool,
-    form: str,
+    output_format: str,
     jobs: int,
 ) -> None:
     """Draft bindings from a log, or check bindings against logs.
@@ -88,7 +88,7 @@ def bind(
         fail(Diagnostic(Code.NOTHING_TO_DO, "no log was given to check", help="name the logs"))
     else:
         project = _project(requirements, bindings)
-        _check(paths, project, requirements, form, jobs)
+        _check(paths, project, requirements, output_format, jobs)
 
 
 def _project(requirements: str, bindings: str | None, replaced: str | None = None) -> Project:
@@ -110,7 +110,9 @@ def _project(requirements: str, bindings: str | None, replaced: str | None = Non
         if is_given("requirements"):
             fail(files)
         files = []
-    project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
+    project = load(
+        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
+    )
     relevant = [d for d in project.diagnostics if replaced is None or not _is_in(d, replaced)]
     if has_errors(relevant):
         fail_at_end()
@@ -181,7 +183,7 @@ def _second_log(path: str) -> Diagnostic:
 
 
 def _check(
-    paths: tuple[str, ...], project: Project, requirements: str, form: str, jobs: int
+    paths: tuple[str, ...], project: Project, requirements: str, output_format: str, jobs: int
 ) -> None:
     from fretc.audit.bindings.coverage import coverage
     from fretc.audit.log_paths import logs as logs_of
@@ -201,8 +203,8 @@ def _check(
     unbound = [each for each in _unbound(project) if each not in project.diagnostics]
     diagnostics = [*unbound, *project.diagnostics, *project.answered(result.diagnostics)]
     print_project_diagnostics(diagnostics, requirements)
-    list_mistaken(project)
-    click.echo(result.as_json if form == "json" else coloured(result.text), nl=False)
+    print_requirements_with_errors(project)
+    click.echo(result.as_json if output_format == "json" else coloured(result.text), nl=False)
     raise SystemExit(
         EXIT_USAGE if has_errors(diagnostics) else EXIT_OK if result.shown else EXIT_INCONCLUSIVE
     )

@@ -67,7 +67,7 @@ def check(
     analysis: str | None,
     analyze: bool,
     fix: bool,
-    form: str,
+    output_format: str,
 ) -> None:
     """Report errors and warnings of a project, before any run.
 
@@ -139,7 +139,7 @@ def check(
     if analyze:
         diagnostics.extend(_together(project.sound, analyzed))
     diagnostics.extend(warnings(project, standings, lock, results))
-    _finish(tuple(dict.fromkeys(diagnostics)), len(project.requirements), form)
+    _finish(tuple(dict.fromkeys(diagnostics)), len(project.requirements), output_format)
 
 
 def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnostic]:
@@ -181,14 +181,14 @@ def _fix(folder: str) -> None:
         print_status("")
 
 
-def _finish(diagnostics: tuple[Diagnostic, ...], count: int, form: str) -> None:
+def _finish(diagnostics: tuple[Diagnostic, ...], count: int, output_format: str) -> None:
     """Print the diagnostics and exit with the matching status."""
     from compiler.files.templating import to_json
 
     accepted = [d for d in diagnostics if d.accepted]
     errors = sum(d.is_error for d in diagnostics)
     warnings = sum(d.is_open for d in diagnostics)
-    if form == "json":
+    if output_format == "json":
         counts = {
             "requirements": count,
             "mistakes": errors,

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import OF_AUDITS, plan_of
+from fretc.commands.opening import AUDIT_TABLES, plan_of
 from fretc.terminal.options import (
-    OF_LOGS,
+    LOG_EXTRAS,
     PATH,
     bindings_option,
     evidence_option,
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    epilog=extras(OF_LOGS),
+    epilog=extras(LOG_EXTRAS),
 )
 @click.argument("paths", nargs=-1, type=PATH, metavar="[LOG]...")
 @requirements_option
@@ -64,7 +64,7 @@ def coverage(
     requirements: str,
     bindings: str | None,
     evidence: str,
-    form: str,
+    output_format: str,
     verbose: bool,
     tests: str | None,
     jobs: int,
@@ -99,7 +99,7 @@ def coverage(
         source, titles, is_bad = _recorded(evidence), {}, False
     covered = found_in(source)
     known = _directions(covered, tests)
-    if form == "json":
+    if output_format == "json":
         click.echo(record.text(covered, known), nl=False)
     else:
         found = text_output.lines(covered, titles, known, every=verbose)
@@ -183,5 +183,7 @@ def planned_project(requirements: str, bindings: str | None) -> tuple[Project, P
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         fail(files)
-    project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
+    project = load(
+        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
+    )
     return project, plan_of(project, requirements)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import list_refused
+from fretc.commands.opening import print_excluded
 from fretc.terminal.group import is_sentence
 from fretc.terminal.options import (
     PATH,
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 @format_option()
 @path_option("--svg", "picture", help="Write the timing diagram to this file. `-` prints it.")
 def explain(
-    what: str, requirements: str, bindings: str | None, form: str, picture: str | None
+    what: str, requirements: str, bindings: str | None, output_format: str, picture: str | None
 ) -> None:
     """Explain a requirement, or the code of a message.
 
@@ -66,7 +66,7 @@ def explain(
                     help="remove `--svg`",
                 )
             )
-        _explain_code(code, form)
+        _explain_code(code, output_format)
         return
     if is_sentence(what):
         formalized = _typed(what, requirements, bindings)
@@ -75,7 +75,7 @@ def explain(
     if picture is not None and len(formalized) > 1:
         fix = f"name one of them: `fretc explain {quote(formalized[0].id)}`"
         fail(Diagnostic(Code.BAD_USAGE, f"`{what}` contains several requirements", help=fix))
-    _explain_rules(formalized, form, picture)
+    _explain_rules(formalized, output_format, picture)
 
 
 def _is_path(what: str) -> bool:
@@ -87,11 +87,11 @@ def _code(what: str) -> Code | None:
     return next((code for code in Code if code.number == what.upper()), None)
 
 
-def _explain_code(code: Code, form: str) -> None:
+def _explain_code(code: Code, output_format: str) -> None:
     from compiler.files.templating import to_json
     from fretish.diagnostics import explanations
 
-    if form == "json":
+    if output_format == "json":
         click.echo(to_json(explanations.as_record(code)))
     else:
         click.echo(explanations.text(code), nl=False)
@@ -111,7 +111,7 @@ def _too_long(requirement: FormalizedRequirement) -> Diagnostic:
 
 
 def _explain_rules(
-    requirements: Sequence[FormalizedRequirement], form: str, picture: str | None
+    requirements: Sequence[FormalizedRequirement], output_format: str, picture: str | None
 ) -> None:
     from compiler.explanation import explain as explanation
     from compiler.explanation.drawing import svg
@@ -122,7 +122,7 @@ def _explain_rules(
             fail(_too_long(requirement))
     explained = [explanation.explanation(requirement) for requirement in requirements]
     if picture != "-":
-        if form == "json":
+        if output_format == "json":
             click.echo(to_json([explanation.as_record(each) for each in explained]))
         else:
             click.echo("\n".join(map(explanation.text, explained)), nl=False)
@@ -181,7 +181,7 @@ def _rules(
             EXIT_INCONCLUSIVE
         )  # Free text has status 3; an error has status 2 and wins.
     refused = {r.requirement.id: r.why for r in project.refused if r.requirement.id in matches}
-    list_refused(refused, len(subjects))
+    print_excluded(refused, len(subjects))
     return requirements
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from compiler.emit import TARGETS
-from fretc.commands.opening import sound_part
+from fretc.commands.opening import usable_part
 from fretc.terminal.group import DEFAULT, Compile
 from fretc.terminal.options import PATH, format_option, output_option, path_option
 from fretc.terminal.output import (
@@ -71,7 +71,7 @@ def compile_(
     kinds: tuple[str, ...],
     output: str,
     bindings: str | None,
-    form: str,
+    output_format: str,
     notation: str,
     simplify: bool,
     one_file: bool,
@@ -104,12 +104,12 @@ def compile_(
     project = load(paths, bindings, reads=("interceptor", "assume") if of_loop else ())
     undecided = _undecided(project.sound.formalized)
     print_diagnostics([*project.diagnostics, *project.answered(undecided)])
-    if form == "json" and set(kinds) <= {"ltl"} and not has_errors(project.general):
+    if output_format == "json" and set(kinds) <= {"ltl"} and not has_errors(project.general):
         if has_errors(project.diagnostics):
             fail_at_end()
         _deliver_formulas(project, output if kinds else "-")
         return
-    project = sound_part(project, others=any(TARGETS[kind].of_bindings for kind in kinds))
+    project = usable_part(project, others=any(TARGETS[kind].of_bindings for kind in kinds))
     from compiler.targets.target import Options
 
     free_texts = tuple(f.requirement for f in project.failed if not f.diagnostic.is_error)

@@ -8,7 +8,7 @@ from shlex import quote
 
 import click
 
-from fretc.terminal.options import OF_LOGS, PATH, extras, path_option
+from fretc.terminal.options import LOG_EXTRAS, PATH, extras, path_option
 from fretc.terminal.output import (
     REQUIREMENTS_FOLDER,
     fail,
@@ -21,7 +21,7 @@ from fretish.diagnostics.rendering import visible
 
 
 @click.command(
-    epilog=extras(OF_LOGS),
+    epilog=extras(LOG_EXTRAS),
 )
 @click.argument("folder", default=".", type=PATH, metavar="[FOLDER]")
 @path_option(

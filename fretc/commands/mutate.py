@@ -8,7 +8,7 @@ from __future__ import annotations
 import click
 
 from fretc.terminal.options import (
-    OF_LOGS,
+    LOG_EXTRAS,
     PATH,
     bindings_option,
     extras,
@@ -30,7 +30,7 @@ from fretc.terminal.output import (
 
 
 @click.command(
-    epilog=extras(OF_LOGS),
+    epilog=extras(LOG_EXTRAS),
 )
 @click.argument("folder", required=False, type=PATH, metavar="[FOLDER]")
 @click.option(
@@ -55,7 +55,7 @@ def mutate(
     paths: tuple[str, ...],
     requirements: str,
     bindings: str | None,
-    form: str,
+    output_format: str,
     verbose: bool,
     tests: str | None,
     jobs: int,
@@ -94,7 +94,7 @@ def mutate(
     suite = suite_of(tests, {each.id: each.fingerprint for each in found.suspects})
     if suite is not None:
         found = found.with_proofs(suite)
-    if form == "json":
+    if output_format == "json":
         click.echo(mutation_record.text(found), nl=False)
     else:
         titles = {each.id: each.name for each in project.requirements}

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fretc.audit.plan import Plan
 
 
-OF_AUDITS = ("map", "run")
+AUDIT_TABLES = ("map", "run")
 """Shared tables of the bindings that commands which evaluate logs read."""
 
 
@@ -51,10 +51,10 @@ def project_of(
         fail(paths)
     project = load(paths, bindings, reads=reads)
     print_project_diagnostics(project.diagnostics, first)
-    return sound_part(project), first
+    return usable_part(project), first
 
 
-def sound_part(project: Project, *, others: bool = False) -> Project:
+def usable_part(project: Project, *, others: bool = False) -> Project:
     """The part of a project that no error affects; lists the excluded requirements.
 
     Exits if nothing is left, unless the bindings alone are enough. The errors have already been
@@ -69,7 +69,7 @@ def sound_part(project: Project, *, others: bool = False) -> Project:
     sound = project.sound
     if project.refused and not sound.formalized and not (others and project.declarations):
         raise SystemExit(EXIT_USAGE)
-    list_mistaken(project)
+    print_requirements_with_errors(project)
     return sound
 
 
@@ -93,17 +93,17 @@ def plan_of(project: Project, requirements: str) -> Plan:
     print_diagnostics_below(
         [each for each in plan.refusals if each not in project.diagnostics], project.diagnostics
     )
-    list_refused({each.id: each.why for each in plan.refused}, len(plan.named))
+    print_excluded({each.id: each.why for each in plan.refused}, len(plan.named))
     return plan
 
 
-def list_mistaken(project: Project) -> None:
+def print_requirements_with_errors(project: Project) -> None:
     """Print which active requirements have errors."""
     refused = {each.requirement.id: each.why for each in project.refused if each.is_in_force}
-    list_refused(refused, len(project.requirements))
+    print_excluded(refused, len(project.requirements))
 
 
-def list_refused(refused: Mapping[str, Sequence[Diagnostic]], count: int) -> None:
+def print_excluded(refused: Mapping[str, Sequence[Diagnostic]], count: int) -> None:
     """Print which requirements are left out, the most frequent error first.
 
     Args:

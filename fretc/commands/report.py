@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from fretc.report.forms.forms import FORMS, Form, Subject
-from fretc.terminal.group import Grouped
+from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import (
     analysis_option,
     bindings_option,
@@ -54,7 +54,7 @@ _HEADINGS = {
         "signers",
     ),
     "Output: one format with --format and -o, or one file for each format": (
-        "form",
+        "output_format",
         "output",
         *FORMS,
     ),
@@ -63,23 +63,26 @@ _HEADINGS = {
 
 def _forms(command: Callable[..., None]) -> Callable[..., None]:
     """Output option of each format."""
-    for form in FORMS.values():
-        shown = form.default is not None
+    for report_format in FORMS.values():
+        shown = report_format.default is not None
         option = path_option(
-            f"--{form.name}", default=form.default, show_default=shown, help=form.help
+            f"--{report_format.name}",
+            default=report_format.default,
+            show_default=shown,
+            help=report_format.help,
         )
         command = option(command)
     return command
 
 
 @click.command(
-    cls=Grouped,
+    cls=CommandWithHeadings,
     headings=_HEADINGS,
     epilog=extras({"reqif": "--reqif", "sign": "what is signed"}),
 )
 @click.option(
     "--format",
-    "form",
+    "output_format",
     type=click.Choice([*FORMS]),
     help="Format that is printed, or written to the file of `-o`; html if only `-o` is given.",
 )
@@ -126,7 +129,7 @@ def report(
     signers: str | None,
     play: bool,
     strict: bool,
-    form: str | None,
+    output_format: str | None,
     output: str | None,
     **places: str | None,
 ) -> None:
@@ -146,7 +149,7 @@ def report(
     from fretc.verification.ajpf_results import default_paths as results
     from fretc.verification.reader import default_path
 
-    outputs = _outputs(form, output, places)
+    outputs = _outputs(output_format, output, places)
     for kind, _ in outputs:
         absent = kind.missing()
         if absent is not None:
@@ -222,14 +225,14 @@ def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | No
 
 
 def _outputs(
-    form: str | None, output: str | None, places: Mapping[str, str | None]
+    output_format: str | None, output: str | None, places: Mapping[str, str | None]
 ) -> list[tuple[Form, str]]:
     """Each requested format and its path; the default path if none is requested."""
     named = [(kind, path) for name, kind in FORMS.items() if (path := places[name]) is not None]
-    if form is None and output is None:
+    if output_format is None and output is None:
         return named
     chosen = [(kind, path) for kind, path in named if is_given(kind.name)]
-    return [(FORMS[form or "html"], output or "-"), *chosen]
+    return [(FORMS[output_format or "html"], output or "-"), *chosen]
 
 
 def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequence[str]) -> None:
@@ -237,10 +240,10 @@ def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequ
     from fretc.terminal.output import not_written
 
     paths: dict[Path, str | Iterable[str]] = {}
-    for form, path in outputs:
+    for report_format, path in outputs:
         if Path(path) in paths:
             fail(not_written(path, "two outputs would go there"))
-        paths[Path(path)] = form.text(subject)
+        paths[Path(path)] = report_format.text(subject)
     write_outputs(paths, inputs)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import list_refused
+from fretc.commands.opening import print_excluded
 from fretc.terminal.options import (
     PATH,
     analysis_option,
@@ -82,7 +82,7 @@ def lock(
     path: str | None,
     key: str | None,
     accept_violations: bool,
-    form: str,
+    output_format: str,
 ) -> None:
     """Record your review of requirements in fretc.lock.
 
@@ -139,7 +139,7 @@ def lock(
     signatures = _signatures(where, reviews, subjects, key) if key is not None else {}
     write_outputs({Path(where): text(Lock(reviews)), **signatures})
     counts = Acceptance.of(subjects, refuted)
-    if form == "json":
+    if output_format == "json":
         click.echo(to_json({**counts.as_record, "left_out": sorted(removals, key=natural)}))
         return
     for chain in subjects:
@@ -175,7 +175,7 @@ def diff(
     evidence: str,
     verification: str | None,
     analysis: str | None,
-    form: str,
+    output_format: str,
 ) -> None:
     """Show what has changed since a review, verdicts included.
 
@@ -198,7 +198,7 @@ def diff(
     if refused and not sound:
         raise SystemExit(EXIT_USAGE)
     changes = differences(standings(sound, base), base, project)
-    if form == "json":
+    if output_format == "json":
         click.echo(to_json([as_record(difference) for difference in changes]))
     else:
         for line in text(changes):
@@ -216,7 +216,7 @@ def _refused(project: Project) -> Mapping[str, Sequence[Diagnostic]]:
     reached = unreviewable(project)
     refused = {r.id: reached[id(r)] for r in project.requirements if id(r) in reached}
     if len(refused) < len({requirement.id for requirement in project.requirements}):
-        list_refused(refused, len(project.requirements))
+        print_excluded(refused, len(project.requirements))
     return refused
 
 

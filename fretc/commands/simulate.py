@@ -84,7 +84,7 @@ def simulate(
     gif: str | None,
     campaign: int | None,
     jobs: int,
-    form: str,
+    output_format: str,
     listing: bool,
 ) -> None:
     """Simulate a robot's mission and record it as a log.
@@ -100,13 +100,20 @@ def simulate(
         for name in names():
             click.echo(f"{name:<16} {load(name).title}")
         return
-    demand_simulation()
+    require_simulation()
     if campaign is not None:
         if png or gif or duration is not None or encoding != "ros2":
             raise click.UsageError(
                 "--campaign cannot be combined with --png, --gif, --duration or --encoding"
             )
-        _count([_scenario(n) for n in scenarios or names()], seed, campaign, jobs, output, form)
+        _count(
+            [_scenario(n) for n in scenarios or names()],
+            seed,
+            campaign,
+            jobs,
+            output,
+            output_format,
+        )
     if len(scenarios) > 1:
         raise click.UsageError("several scenarios need --campaign")
     if output is None:
@@ -115,7 +122,7 @@ def simulate(
     _record(scenario, output, seed, duration, encoding, {"png": png, "gif": gif})
 
 
-def demand_simulation() -> None:
+def require_simulation() -> None:
     """Exit if the packages for the simulation are not installed."""
     from simulation import missing
 
@@ -223,7 +230,7 @@ def _record(
     from simulation.recording import Encoding
 
     path = _file(out)
-    images = {form: _file(name) for form, name in pictures.items() if name is not None}
+    images = {kind: _file(name) for kind, name in pictures.items() if name is not None}
     if len({path, *images.values()}) <= len(images):
         fail(not_written(out, "two outputs would go there"))
     limit = scenario.duration if duration is None else duration
@@ -250,7 +257,7 @@ def _record(
         from simulation.picture import animate, draw
 
         painters = {"png": draw, "gif": animate}
-        write_outputs({Path(str(pictures[form])): painters[form](mission) for form in images})
+        write_outputs({Path(str(pictures[kind])): painters[kind](mission) for kind in images})
     click.echo(
         f"{scenario.name}, seed {mission.seed}: {mission.duration:.1f} s, "
         f"{mission.goals_reached} of {mission.goals_total} goals, {len(mission.stops)} stops, "
@@ -260,7 +267,12 @@ def _record(
 
 
 def _count(
-    scenarios: Sequence[Scenario], seed: int, count: int, jobs: int, out: str | None, form: str
+    scenarios: Sequence[Scenario],
+    seed: int,
+    count: int,
+    jobs: int,
+    out: str | None,
+    output_format: str,
 ) -> None:
     """Run the campaign and exit."""
     from fretc.campaigns.campaign import campaign, table
@@ -283,7 +295,7 @@ def _count(
             )
         except OSError as error:
             fail(not_written(out or "a folder for temporary files", error.strerror or str(error)))
-    if form == "json":
+    if output_format == "json":
         click.echo(json.dumps([asdict(run) for run in runs], indent=2))
     else:
         click.echo(table(runs), nl=False)

@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from fretc.audit.outputs.summary import Answer, Summary
 
 
-def summarize(paths: Sequence[str], query: str | None, form: str) -> NoReturn:
+def summarize(paths: Sequence[str], query: str | None, output_format: str) -> NoReturn:
     """Print a summary of evidence, or the result of a query; exit with the status of the audit."""
     from fretc.audit.outputs.summary import answered, summarized
     from fretc.audit.outputs.table import read
 
-    if form not in ("text", "json"):
-        fail(_no_form(form))
+    if output_format not in ("text", "json"):
+        fail(_no_form(output_format))
     table = read(paths)
     if isinstance(table, Diagnostic):
         fail(table)
@@ -37,20 +37,20 @@ def summarize(paths: Sequence[str], query: str | None, form: str) -> NoReturn:
         answer = answered(table, query)
         if isinstance(answer, Diagnostic):
             fail(answer)
-        click.echo(_json(answer.records) if form == "json" else _listed(answer), nl=False)
+        click.echo(_json(answer.records) if output_format == "json" else _listed(answer), nl=False)
         raise SystemExit(EXIT_OK)
     summary = summarized(table)
     print_diagnostics(summary.remarks)
-    click.echo(_json(summary.as_record) if form == "json" else _text(summary), nl=False)
+    click.echo(_json(summary.as_record) if output_format == "json" else _text(summary), nl=False)
     raise SystemExit(
         EXIT_VIOLATION if summary.violated else EXIT_OK if summary.shown else EXIT_INCONCLUSIVE
     )
 
 
-def _no_form(form: str) -> Diagnostic:
+def _no_form(output_format: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
-        f"a summary has no output format `{form}`",
+        f"a summary has no output format `{output_format}`",
         help="use `text` or `json`",
     )
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import OF_AUDITS, project_of
+from fretc.commands.opening import AUDIT_TABLES, project_of
 from fretc.terminal.options import (
     PATH,
     SECONDS,
@@ -118,7 +118,7 @@ def test(
     line_time: float,
     requirements: str,
     bindings: str | None,
-    form: str,
+    output_format: str,
     output: str | None,
 ) -> None:
     """Generate tests from requirements: short traces, each with its expected verdict.
@@ -144,7 +144,7 @@ def test(
     from fretc.commands import test_against, test_staging
     from fretc.commands.analyze import active_requirements
 
-    project, first = project_of(files, requirements, bindings, ("environment", *OF_AUDITS))
+    project, first = project_of(files, requirements, bindings, ("environment", *AUDIT_TABLES))
     formalized = active_requirements(project, component)
     if show is not None:
         _check_shown(show, [requirement.id for requirement in formalized])
@@ -163,7 +163,7 @@ def test(
             fail(Diagnostic(Code.BAD_USAGE, clash, help="remove one of them"))
         place = output or "build/tests/conformance.json"
         test_against.against(
-            against, formalized, assumed, seconds, line_time, form, place, protected
+            against, formalized, assumed, seconds, line_time, output_format, place, protected
         )
     output = output or "build/tests/suite.json"
     on_stage = emitted if emitted in test_staging.FORMS else None
@@ -177,7 +177,7 @@ def test(
     text = f"{to_json(plain(suite))}\n"
     if emitted is not None and emit_to == "-":
         pass  # Standard output then holds the tests.
-    elif output == "-" or form == "json":
+    elif output == "-" or output_format == "json":
         click.echo(text, nl=False)
     else:
         found = _lines(suite, formalized, show, of_file=saved is not None)
@@ -190,7 +190,7 @@ def test(
     if stopped:
         raise SystemExit(EXIT_INTERRUPTED)
     if on_stage is not None:
-        status = test_staging.staged(project, suite, on_stage, emit_to, runs, jobs)
+        status = test_staging.write_simulated_tests(project, suite, on_stage, emit_to, runs, jobs)
         if status != EXIT_OK:
             raise SystemExit(status)
     raise SystemExit(EXIT_OK if saved or suite.is_complete else EXIT_INCONCLUSIVE)
@@ -232,16 +232,16 @@ def _made(
     seconds: float,
 ) -> tuple[Suite, bool]:
     """The test suite, and whether Ctrl-C has stopped the search."""
-    from fretc.analysis.worker import Stopped, findings
-    from fretc.terminal.progress import at_work
+    from fretc.analysis.worker import Interrupted, findings
+    from fretc.terminal.progress import print_activity
     from fretc.testing.assembly import jobs, suite
 
     found = []
     stopped = False
     try:
-        for each in findings(jobs(requirements, assumed, seconds), at_work):
+        for each in findings(jobs(requirements, assumed, seconds), print_activity):
             found.append(each)
-    except Stopped:
+    except Interrupted:
         stopped = True
     return suite(requirements, assumed, found), stopped
 
@@ -254,11 +254,11 @@ def _files(
     languages: Sequence[str],
 ) -> dict[Path, str]:
     """The files of the tests; tests without a file are reported."""
-    from fretc.testing.exports.files import Form, files
+    from fretc.testing.exports.files import SuiteFormat, files
     from fretc.testing.exports.pytest_file import Language
 
     chosen = [each for each in Language if each in languages] or [Language.PYTHON]
-    artifacts, left = files(suite, requirements, Form(emitted), chosen)
+    artifacts, left = files(suite, requirements, SuiteFormat(emitted), chosen)
     for why in dict.fromkeys(left.values()):
         names = [name for name in left if left[name] == why]
         more = f" and {len(names) - 1} more" if len(names) > 1 else ""
@@ -271,7 +271,7 @@ def _files(
 def _lines(
     suite: Suite, requirements: Sequence[FormalizedRequirement], show: str | None, *, of_file: bool
 ) -> Iterator[Line]:
-    from fretc.testing.bench import demands
+    from fretc.testing.requirement_model import demands
     from fretc.testing.text_output import lines, lines_of_file, shown
     from fretish.bindings.declarations import Role
 

@@ -36,7 +36,7 @@ def against(
     assumed: Sequence[FormalizedRequirement],
     seconds: float,
     line_time: float,
-    form: str,
+    output_format: str,
     output: str,
     protected: Iterable[str],
 ) -> NoReturn:
@@ -48,7 +48,7 @@ def against(
         assumed: the assumptions about the environment.
         seconds: CPU seconds for the strategy towards each situation.
         line_time: time limit for each line of the program, in seconds.
-        form: text or json.
+        output_format: text or json.
         output: path of the result; `-` prints it.
         protected: input files, which no output may replace.
     """
@@ -57,7 +57,7 @@ def against(
     from fretc.analysis.arena.budget import OutOfTimeError
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.arena.variables import UnsupportedError
-    from fretc.terminal.progress import at_work
+    from fretc.terminal.progress import print_activity
     from fretc.testing.conformance.conformance_run import ConformanceRun
     from fretc.testing.conformance.program import Program, ProgramError
     from fretc.testing.conformance.text_output import lines
@@ -72,7 +72,9 @@ def against(
         campaign = ConformanceRun(requirements, assumed, chosen, seconds)
         oracle = campaign.oracle
         try:
-            campaign.run(lambda: Program(words, oracle.inputs, oracle.outputs, line_time), at_work)
+            campaign.run(
+                lambda: Program(words, oracle.inputs, oracle.outputs, line_time), print_activity
+            )
         except ProgramError as error:
             wrong = error.diagnostic
         except KeyboardInterrupt:
@@ -85,7 +87,7 @@ def against(
         )
     found = campaign.findings(words)
     evidence = f"{to_json(plain(found))}\n"
-    if output == "-" or form == "json":
+    if output == "-" or output_format == "json":
         click.echo(evidence, nl=False)
     else:
         click.echo(coloured([*lines(found, chosen)]), nl=False)

@@ -23,7 +23,7 @@ from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from compiler.project.folder import Project
-    from fretc.testing.log_synthesis.logs import StagedTest
+    from fretc.testing.log_synthesis.logs import LogTestResult
     from fretc.testing.log_synthesis.scenarios import Aim, Found
     from fretc.testing.suite import Suite
 
@@ -33,15 +33,17 @@ FORMS = ("mcap", "scenario")
 
 def check(emitted: str, emit_to: str) -> None:
     """Exit if the files cannot be written: without the packages, or to standard output."""
-    from fretc.commands.simulate import demand_simulation
+    from fretc.commands.simulate import require_simulation
 
     if emit_to == "-":
         message = f"`--emit {emitted}` writes several files, which cannot be printed with `-`"
         fail(Diagnostic(Code.BAD_USAGE, message, help="name a folder"))
-    demand_simulation()
+    require_simulation()
 
 
-def staged(project: Project, suite: Suite, emitted: str, emit_to: str, runs: int, jobs: int) -> int:
+def write_simulated_tests(
+    project: Project, suite: Suite, emitted: str, emit_to: str, runs: int, jobs: int
+) -> int:
     """Write a suite as logs or scenarios and print the result; returns the exit status."""
     folder = Path(emit_to) / emitted
     try:
@@ -59,7 +61,7 @@ def staged(project: Project, suite: Suite, emitted: str, emit_to: str, runs: int
 def _logs(project: Project, suite: Suite, folder: Path) -> int:
     from fretc.testing.log_synthesis.logs import logs
 
-    done: list[StagedTest] = []
+    done: list[LogTestResult] = []
     interrupted = False
     try:
         with progress(len(suite.tests), "logs") as tell:
@@ -99,9 +101,9 @@ def _listed(what: str, reasons: Iterable[tuple[str, str]]) -> None:
 
 
 def _scenarios(project: Project, suite: Suite, folder: Path, runs: int, jobs: int) -> int:
-    from fretc.testing.log_synthesis.scenarios import Found, search, stageable
+    from fretc.testing.log_synthesis.scenarios import Found, realizable_goals, search
 
-    aims, why = stageable(suite, project)
+    aims, why = realizable_goals(suite, project)
     found, interrupted = Found(), False
     try:
         with progress(runs, "missions") as tell:

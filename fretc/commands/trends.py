@@ -39,7 +39,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 @format_option()
 @path_option("--html", metavar="FILE", help="Also write an HTML page with charts.")
 def trends(
-    evidence: tuple[str, ...], by: str | None, level: float, form: str, html: str | None
+    evidence: tuple[str, ...], by: str | None, level: float, output_format: str, html: str | None
 ) -> None:
     """Compare audits: what is newly violated, fixed, flaky or worse.
 
@@ -75,7 +75,7 @@ def trends(
         from fretc.trends.page import html as page
 
         write_outputs({Path(html): page(known)}, evidence)
-    if form == "json":
+    if output_format == "json":
         from fretc.trends.json_form import text
 
         click.echo(text(known), nl=False)

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import click
 
 from compiler.logic.claims import PROVERS, Layer
-from fretc.commands.opening import list_refused, project_of
-from fretc.terminal.group import Grouped
+from fretc.commands.opening import print_excluded, project_of
+from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import (
     PATH,
     extras,
@@ -58,7 +58,7 @@ _HEADINGS = {
         "percepts",
         "ajpf",
     ),
-    "Output": ("form", "every_claim", "output", "traces"),
+    "Output": ("output_format", "every_claim", "output", "traces"),
 }
 """Names of the parameters of `verify`, under the headings of its help."""
 _HELP = f"""Prove that monitors, interceptors and agents do what the requirements say.
@@ -75,7 +75,7 @@ Example: fretc verify requirements/r1.fret --monitor
 
 
 @click.command(
-    cls=Grouped,
+    cls=CommandWithHeadings,
     headings=_HEADINGS,
     help=_HELP,
     epilog=extras({"crosshair": "--with crosshair"}),
@@ -145,14 +145,14 @@ def verify(
     requirements: str,
     bindings: str | None,
     limit: int,
-    form: str,
+    output_format: str,
     output: str,
     every_claim: bool,
     traces: str | None,
 ) -> None:
     """The command; its help is `_HELP`."""
     from compiler.project.paths import companions
-    from fretc.terminal.progress import at_work
+    from fretc.terminal.progress import print_activity
     from fretc.verification.ajpf_results import default_paths
     from fretc.verification.engines.sandbox import Limits
     from fretc.verification.layers.request import Request
@@ -179,7 +179,7 @@ def verify(
         percepts=percepts,
         provers=provers,
         ajpf=_ajpf_proofs(project, results),
-        progress=at_work,
+        progress=print_activity,
     )
     absent = missing_prover(request)
     if absent is not None:
@@ -191,12 +191,12 @@ def verify(
     proofs = _proofs(project, request)
     if refused and not proofs:
         raise SystemExit(EXIT_USAGE)
-    list_refused({id: (why,) for id, why in refused.items()}, len(project.formalized))
+    print_excluded({id: (why,) for id, why in refused.items()}, len(project.formalized))
     own = header.name if header else None
     options = (monitor_file, own, interceptor, agent, properties, bindings, *results)
     sources = [requirement.wording.source.name for requirement in project.requirements]
     inputs = [*sources, *companions(sources), *(name for name in options if name is not None)]
-    texts = [*lines(proofs, every_claim=every_claim)] if form == "text" else None
+    texts = [*lines(proofs, every_claim=every_claim)] if output_format == "text" else None
     _print_and_write(proofs, texts, output, traces, inputs)
     raise SystemExit(_status(proofs))
 

@@ -11,11 +11,11 @@ import click
 from fretc.commands.opening import plan_of
 from fretc.commands.sign import installed, require
 from fretc.terminal.options import (
-    OF_LOGS,
+    LOG_EXTRAS,
     PATH,
     analysis_option,
     bindings_option,
-    evidence_place,
+    evidence_path,
     extras,
     format_option,
     jobs_option,
@@ -62,7 +62,7 @@ if TYPE_CHECKING:
 
 @click.command(
     "verify-evidence",
-    epilog=extras({**OF_LOGS, "sign": "what is signed"}),
+    epilog=extras({**LOG_EXTRAS, "sign": "what is signed"}),
 )
 @click.argument("file", type=PATH, required=False, metavar="[FILE]")
 @requirements_option
@@ -131,7 +131,7 @@ def verify_evidence(
     labels: tuple[str, ...],
     limit: int,
     jobs: int,
-    form: str,
+    output_format: str,
 ) -> None:
     """Recompute evidence and compare it with what is written.
 
@@ -149,7 +149,7 @@ def verify_evidence(
     from fretc.audit.store.anywhere import required
     from fretc.verification.reader import default_path
 
-    file = evidence_place(file)
+    file = evidence_path(file)
     evidence = required(file)
     if isinstance(evidence, Diagnostic):
         fail(evidence)
@@ -175,7 +175,7 @@ def verify_evidence(
     sources = (file, verification, analysis, requirements)
     same = _report(project, report, *sources) if report is not None else None
     against = _against(scope, requirements, manifest)
-    if form == "json":
+    if output_format == "json":
         _print_json(results, same, scope, against)
     else:
         _print(results, same, against)
@@ -376,7 +376,7 @@ def _reproved(
 ) -> Sequence[Recheck]:
     from fretc.reproduction.outcome import PROOFS, unknown
     from fretc.reproduction.proofs import prove_again, unproved_plans
-    from fretc.terminal.progress import at_work
+    from fretc.terminal.progress import print_activity
     from fretc.verification.engines.sandbox import Limits
 
     missing = tuple(unproved_plans(project, proofs.proofs if proofs else (), scope.claimed))
@@ -384,7 +384,7 @@ def _reproved(
         return missing
     if skip:
         return (unknown(PROOFS, "", "the proofs were not repeated: `--no-proofs`"), *missing)
-    results = prove_again(project, proofs, Limits(seconds=limit), scope.claimed, at_work)
+    results = prove_again(project, proofs, Limits(seconds=limit), scope.claimed, print_activity)
     if isinstance(results, Diagnostic):
         fail(results)
     return (*results, *missing)

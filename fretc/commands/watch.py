@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import OF_AUDITS, plan_of
-from fretc.terminal.group import Grouped
+from fretc.commands.opening import AUDIT_TABLES, plan_of
+from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import PATH, bindings_option, extras, path_option, requirements_option
 from fretc.terminal.output import (
     EXIT_INCONCLUSIVE,
@@ -35,13 +35,13 @@ if TYPE_CHECKING:
 
 _WATCH = {
     "Input": ("requirements", "bindings", "follow"),
-    "Output": ("form", "record", "evidence"),
+    "Output": ("output_format", "record", "evidence"),
     "Actions": ("publish", "command"),
 }
 
 
 @click.command(
-    cls=Grouped,
+    cls=CommandWithHeadings,
     headings=_WATCH,
     epilog=extras({"live": "dds, foxglove and --publish"}),
 )
@@ -51,7 +51,7 @@ _WATCH = {
 @click.option("--follow", is_flag=True, help="Wait for more data at the end of the MCAP file.")
 @click.option(
     "--format",
-    "form",
+    "output_format",
     type=click.Choice(("text", "jsonl")),
     default="text",
     show_default=True,
@@ -82,7 +82,7 @@ def watch(
     requirements: str,
     bindings: str | None,
     follow: bool,
-    form: str,
+    output_format: str,
     record: str | None,
     evidence: str | None,
     publish: tuple[str, ...],
@@ -132,7 +132,7 @@ def watch(
     except OSError as error:
         fail(not_written(str(record), error.strerror or str(error)))
     titles = {requirement.id: requirement.entry.title for requirement in project.formalized}
-    shown = outputs_of(form, titles)
+    shown = outputs_of(output_format, titles)
     with until_stopped() as stopped:
         watched(run, source, shown, reaction, Publishing(publishers), stopped)
     status = EXIT_USAGE if run.failed else _status(run.runs)
@@ -163,7 +163,9 @@ def _planned(requirements: str, bindings: str | None) -> tuple[Project, Plan, Se
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         fail(files)
-    project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
+    project = load(
+        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
+    )
     plan = plan_of(project, requirements)
     if plan.declarations.clock.patience is None:
         fail(_needs_lateness(plan))

@@ -120,9 +120,9 @@ class Board:
             self._height = 0
 
 
-def outputs_of(form: str, titles: Mapping[str, str]) -> Output:
+def outputs_of(output_format: str, titles: Mapping[str, str]) -> Output:
     """The outputs of a watch."""
-    if form == "jsonl":
+    if output_format == "jsonl":
         return JsonLines()
     return Board(titles) if sys.stdout.isatty() else Lines()
 

@@ -24,7 +24,7 @@ from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.traces import Trace, trace
 from fretc.logs.storage.log_names import STDIN, name_of
-from fretc.testing.suite import Fate, Suite
+from fretc.testing.suite import MutantStatus, Suite
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors import kernel
@@ -248,7 +248,7 @@ class MutationResult:
         proved = {
             (each.requirement, each.key)
             for each in suite.mutants
-            if each.outcome is Fate.EQUIVALENT and each.requirement in current
+            if each.outcome is MutantStatus.EQUIVALENT and each.requirement in current
         }
         return replace(self, equivalent=frozenset(proved & keys - self.noticed.keys()))
 

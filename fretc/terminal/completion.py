@@ -23,7 +23,7 @@ def script(command: click.Command, shell: str) -> str:
     return ShellComplete.source(kind(command, {}, _NAME, _VARIABLE))
 
 
-def answered(command: click.Command) -> bool:
+def answer_query(command: click.Command) -> bool:
     """Whether this run is a completion query; if so, the completions are printed."""
     question = os.environ.get(_VARIABLE)
     if question is None:

@@ -99,7 +99,7 @@ class Compile(click.Command):
         formatter.write_usage("fretc", "FILE... [OPTIONS]")
 
 
-class Grouped(click.Command):
+class CommandWithHeadings(click.Command):
     """Command with many options: its help shows them under headings."""
 
     def __init__(self, *, headings: Mapping[str, Sequence[str]], **attributes: Any) -> None:

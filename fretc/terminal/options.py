@@ -14,7 +14,7 @@ from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE, fail
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 Command = Callable[..., Any]
-OF_LOGS = {
+LOG_EXTRAS = {
     "bags": "bags (.bag, .db3) and messages defined in IDL",
     "protobuf": "messages in Protobuf",
     "remote": "URLs",
@@ -83,7 +83,7 @@ def format_option(*others: str, text: str = "Output format.") -> Callable[[Comma
     """`--format`: text, JSON, and perhaps other formats."""
     return click.option(
         "--format",
-        "form",
+        "output_format",
         type=click.Choice(("text", "json", *others)),
         default="text",
         show_default=True,
@@ -105,7 +105,7 @@ hazards_option = path_option(
 )
 
 
-def evidence_place(named: str | None) -> str:
+def evidence_path(named: str | None) -> str:
     """Path of the evidence: the user's, or else the existing default file or store."""
     if named is not None:
         return named
@@ -123,7 +123,7 @@ def evidence_place(named: str | None) -> str:
 
 evidence_option = path_option(
     "--evidence",
-    callback=lambda _context, _option, named: evidence_place(named),
+    callback=lambda _context, _option, named: evidence_path(named),
     help=f"Evidence, as `fretc audit` writes it.  [default: {EVIDENCE} or {STORE}]",
 )
 verification_option = path_option(

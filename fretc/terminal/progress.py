@@ -29,7 +29,7 @@ def progress(length: int, label: str) -> Iterator[Callable[[int, str], None]]:
         yield lambda done, words: bar.update(done - bar.pos, words)
 
 
-def at_work(words: str) -> None:
+def print_activity(words: str) -> None:
     """Print the current activity."""
     if sys.stderr.isatty():
         click.echo(words, err=True)

@@ -12,10 +12,19 @@ from compiler.situations.mutants import Mutant, mutants
 from compiler.situations.situations import Situation, situations
 from compiler.targets.python import monitor as emitted
 from fretc.analysis.arena.variables import UnsupportedError
-from fretc.testing.bench import Ids
 from fretc.testing.cover import cover
+from fretc.testing.requirement_model import Ids
 from fretc.testing.runs import Absence, Answer, Need, Run, Runs
-from fretc.testing.suite import Fate, Met, Mutated, Obligation, Polarity, Test, Tested, unused
+from fretc.testing.suite import (
+    GoalResult,
+    GoalStatus,
+    MutantResult,
+    MutantStatus,
+    Polarity,
+    Test,
+    Tested,
+    unused,
+)
 from fretc.testing.words import Expected, expected, undecided
 from fretish.printer import sentence as printed
 from fretish.reading.recursion import with_recursion_limit
@@ -29,8 +38,8 @@ class Batch:
 
     tested: Tested
     tests: tuple[Test, ...]
-    obligations: tuple[Obligation, ...]
-    mutants: tuple[Mutated, ...]
+    obligations: tuple[GoalResult, ...]
+    mutants: tuple[MutantResult, ...]
 
 
 @with_recursion_limit
@@ -57,12 +66,13 @@ def lost(requirement: FormalizedRequirement, why: str) -> Batch:
         _tested(requirement, (), ""),
         (),
         tuple(
-            _obligation(requirement, each, polarity, Met.NOT_SEARCHED, why=why)
+            _obligation(requirement, each, polarity, GoalStatus.NOT_SEARCHED, why=why)
             for each in situations(requirement)
             for polarity in _polarities(each)
         ),
         tuple(
-            _mutated(requirement, each, Fate.NOT_SEARCHED, why=why) for each in mutants(requirement)
+            _mutated(requirement, each, MutantStatus.NOT_SEARCHED, why=why)
+            for each in mutants(requirement)
         ),
     )
 
@@ -77,13 +87,13 @@ def _obligation(
     requirement: FormalizedRequirement,
     situation: Situation,
     polarity: Polarity,
-    outcome: Met,
+    outcome: GoalStatus,
     *,
     tests: Ids = (),
     by: Ids = (),
     why: str = "",
-) -> Obligation:
-    return Obligation(
+) -> GoalResult:
+    return GoalResult(
         requirement.id, situation.key, situation.words, polarity, outcome, tests, by, why
     )
 
@@ -91,13 +101,13 @@ def _obligation(
 def _mutated(
     requirement: FormalizedRequirement,
     mutant: Mutant,
-    outcome: Fate,
+    outcome: MutantStatus,
     *,
     tests: Ids = (),
     by: Ids = (),
     why: str = "",
-) -> Mutated:
-    return Mutated(
+) -> MutantResult:
+    return MutantResult(
         requirement.id,
         mutant.key,
         mutant.words,
@@ -230,30 +240,36 @@ class _Generation:
 
     def _obligations(
         self, met: Mapping[Need, Answer], made: Mapping[Run, Test]
-    ) -> Iterator[Obligation]:
+    ) -> Iterator[GoalResult]:
         for each in self._situations:
             for polarity in _polarities(each):
                 found = met[each.key, polarity]
                 if isinstance(found, Run):
                     runs = [run for run in made if run.polarity is polarity]
                     tests = _names(made, [run for run in runs if each.key in run.situations])
-                    yield _obligation(self._rule, each, polarity, Met.MET, tests=tests)
+                    yield _obligation(self._rule, each, polarity, GoalStatus.MET, tests=tests)
                 else:
-                    outcome = found.outcome(Met.IMPOSSIBLE, Met.EXCLUDED, Met.NOT_SEARCHED)
+                    outcome = found.outcome(
+                        GoalStatus.IMPOSSIBLE, GoalStatus.EXCLUDED, GoalStatus.NOT_SEARCHED
+                    )
                     yield _obligation(
                         self._rule, each, polarity, outcome, by=found.by, why=found.why
                     )
 
-    def _mutants(self, told: Mapping[str, Answer], made: Mapping[Run, Test]) -> Iterator[Mutated]:
+    def _mutants(
+        self, told: Mapping[str, Answer], made: Mapping[Run, Test]
+    ) -> Iterator[MutantResult]:
         for each in self._wrong:
             found = told.get(each.key)
             if isinstance(found, Absence):
-                outcome = found.outcome(Fate.EQUIVALENT, Fate.EXCLUDED, Fate.NOT_SEARCHED)
+                outcome = found.outcome(
+                    MutantStatus.EQUIVALENT, MutantStatus.EXCLUDED, MutantStatus.NOT_SEARCHED
+                )
                 yield _mutated(self._rule, each, outcome, by=found.by, why=found.why)
             else:
                 tests = _names(made, [run for run in made if each.key in run.kills])
                 assert tests
-                yield _mutated(self._rule, each, Fate.KILLED, tests=tests)
+                yield _mutated(self._rule, each, MutantStatus.KILLED, tests=tests)
 
     def _telling(self, chosen: Iterable[Run]) -> dict[str, Answer]:
         """Of each mutant that no chosen run kills: a shortest run that does, one for several."""

@@ -17,8 +17,8 @@ from compiler.situations.situations import Situation, situations
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.games.cores import minimal
-from fretc.testing.bench import Bench, Ids, demands
 from fretc.testing.places import Places
+from fretc.testing.requirement_model import Ids, RequirementModel, demands
 from fretc.testing.search import Letter
 from fretc.testing.suite import Polarity
 from fretc.testing.words import Naming, Word, blotted, is_killed, judged, word
@@ -93,13 +93,13 @@ class Runs:
                 self._formulas[each.key] = Absence(why=str(error))
         more = [*(each.requirement for each in self.mutants), *places.carriers]
         budget = Budget(seconds)
-        self.bench = Bench(requirement, others, more, budget)
+        self.bench = RequirementModel(requirement, others, more, budget)
         every = [requirement, *others]
         signals = {name: read for name, read in _read(every).items() if name not in read}
         self._naming = Naming(_atoms([*every, *more]), _atoms(every), signals, places.pinned)
         self._goals = {key: self._goal(formula) for key, formula in self._formulas.items()}
         if (requirement.ticks or 0) >= _LONG:
-            self.bench = Bench(requirement, others, more, budget, self.bench.order())
+            self.bench = RequirementModel(requirement, others, more, budget, self.bench.order())
             self._goals = {key: self._goal(formula) for key, formula in self._formulas.items()}
         self._found: dict[tuple[int, ...], Run] = {}
 
@@ -240,7 +240,7 @@ def difference(
     """
     both = [requirement, other]
     try:
-        bench = Bench(requirement, (), [other], Budget(seconds))
+        bench = RequirementModel(requirement, (), [other], Budget(seconds))
         letters = bench.difference(other, ())
     except (UnsupportedError, OutOfTimeError) as error:
         return Absence(why=str(error))

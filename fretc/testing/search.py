@@ -71,7 +71,7 @@ class Endings:
             return
         else:
             self._ways.append(self._words.moved(layers.fresh[-1]))
-        layers.add(self._words.preceding(self._ways[-1]))
+        layers.add(self._words.pre_image(self._ways[-1]))
 
 
 class Words:
@@ -100,7 +100,7 @@ class Words:
         self._start = bdd.point(transition.start)
         self._moves = {bdd.true(): bdd.true(), bdd.false(): bdd.false()}
 
-    def preceding(self, ticks: Function) -> Function:
+    def pre_image(self, ticks: Function) -> Function:
         """The states from which one of these ticks can come."""
         self._budget.check()
         return bdd.some_of_both(self._safe, ticks, self._cube)
@@ -138,7 +138,7 @@ class Words:
             if layers.is_complete and endings.is_over(length):
                 return None
             onward = self.moved(layers.fresh[-1])
-            layers.add(self.preceding(onward | (goal & endings.way(length))))
+            layers.add(self.pre_image(onward | (goal & endings.way(length))))
         return tuple(self._descent(layers, goal, endings))
 
     def _begins(self, states: Function) -> bool:

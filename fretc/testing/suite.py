@@ -68,7 +68,7 @@ class Test(Record, frozen=True):
         return sum(row.count for row in self.rows)
 
 
-class Met(StrEnum):
+class GoalStatus(StrEnum):
     """What came of an obligation: a situation that a test is to show."""
 
     MET = "met"
@@ -79,7 +79,7 @@ class Met(StrEnum):
     NOT_SEARCHED = "not searched"
 
 
-class Obligation(Record, frozen=True):
+class GoalResult(Record, frozen=True):
     """A situation that tests show, on a run that keeps the requirement or on one that breaks it.
 
     One in which something is unknown is shown on a run that may do either.
@@ -89,7 +89,7 @@ class Obligation(Record, frozen=True):
     situation: Name
     words: str
     polarity: Polarity
-    outcome: Met
+    outcome: GoalStatus
     tests: Annotated[
         tuple[Name, ...], about("the tests that cover the situation, shortest first")
     ] = ()
@@ -97,7 +97,7 @@ class Obligation(Record, frozen=True):
     why: Annotated[str, about("why no test was searched; empty: it was searched")] = ""
 
 
-class Fate(StrEnum):
+class MutantStatus(StrEnum):
     """What became of a mutant."""
 
     KILLED = "killed"
@@ -108,14 +108,14 @@ class Fate(StrEnum):
     NOT_SEARCHED = "not searched"
 
 
-class Mutated(Record, frozen=True):
+class MutantResult(Record, frozen=True):
     """A sentence that somebody might have written in place of the requirement."""
 
     requirement: Name
     key: Name
     words: str
     sentence: str
-    outcome: Fate
+    outcome: MutantStatus
     tests: Annotated[tuple[Name, ...], about("the tests that kill the mutant")] = ()
     by: Annotated[Ids, about("a minimal set of requirements that hide the difference")] = ()
     why: Annotated[str, about("why no test was searched; empty: it was searched")] = ""
@@ -145,14 +145,14 @@ class Suite(Record, frozen=True):
         dict[str, str], about("the role of each variable with a declared role: input or output")
     ]
     tests: tuple[Test, ...]
-    obligations: tuple[Obligation, ...]
-    mutants: tuple[Mutated, ...]
+    obligations: tuple[GoalResult, ...]
+    mutants: tuple[MutantResult, ...]
 
     @property
     def is_complete(self) -> bool:
         """Whether everything was searched."""
-        met = all(each.outcome is not Met.NOT_SEARCHED for each in self.obligations)
-        return met and all(each.outcome is not Fate.NOT_SEARCHED for each in self.mutants)
+        met = all(each.outcome is not GoalStatus.NOT_SEARCHED for each in self.obligations)
+        return met and all(each.outcome is not MutantStatus.NOT_SEARCHED for each in self.mutants)
 
 
 def unused(name: str, names: set[str]) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from fretc.analysis.reasons import listed
 from fretc.analysis.text_output import Line, drawn
-from fretc.testing.suite import Fate, Met, Mutated, Obligation, Suite, Test
+from fretc.testing.suite import GoalResult, GoalStatus, MutantResult, MutantStatus, Suite, Test
 from fretish.bindings.declarations import Role
 from fretish.diagnostics import signs
 from monitors.kernel.verdicts import Verdict
@@ -73,8 +73,8 @@ def _table(suite: Suite, columns: int = len(_HEAD)) -> Iterator[str]:
                 each.id,
                 str(len(own)),
                 str(sum(test.ticks for test in own)),
-                _counts([one.outcome for one in obligations], Met),
-                _counts([one.outcome for one in mutants], Fate),
+                _counts([one.outcome for one in obligations], GoalStatus),
+                _counts([one.outcome for one in mutants], MutantStatus),
             )
         )
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
@@ -89,7 +89,7 @@ def _table(suite: Suite, columns: int = len(_HEAD)) -> Iterator[str]:
         yield f"  {'  '.join(cells[:columns])}".rstrip()
 
 
-def _counts(outcomes: Sequence[str], kinds: type[Met] | type[Fate]) -> str:
+def _counts(outcomes: Sequence[str], kinds: type[GoalStatus] | type[MutantStatus]) -> str:
     """`14 met, 2 impossible`."""
     found = ((sum(each == kind for each in outcomes), kind) for kind in kinds)
     return ", ".join(f"{count} {kind}" for count, kind in found if count)
@@ -129,20 +129,20 @@ def _doubts(suite: Suite) -> Iterator[Line]:
         yield f"{signs.SUSPECT.glyph} {text}", signs.SUSPECT.colour
 
 
-def _by_situation(suite: Suite) -> list[list[Obligation]]:
-    found: dict[tuple[str, str], list[Obligation]] = {}
+def _by_situation(suite: Suite) -> list[list[GoalResult]]:
+    found: dict[tuple[str, str], list[GoalResult]] = {}
     for each in suite.obligations:
         found.setdefault((each.requirement, each.situation), []).append(each)
     return [*found.values()]
 
 
-def _unmet(obligations: Sequence[Obligation]) -> Iterator[Line]:
+def _unmet(obligations: Sequence[GoalResult]) -> Iterator[Line]:
     """Of one situation, on runs that keep the requirement and on runs that break it."""
     first = obligations[0]
     for outcome, sign, how in (
-        (Met.IMPOSSIBLE, signs.UNUSED, "no run shows this"),
-        (Met.EXCLUDED, signs.UNUSED, f"not with {listed(first.by)}"),
-        (Met.NOT_SEARCHED, signs.UNKNOWN, f"not searched: {first.why}"),
+        (GoalStatus.IMPOSSIBLE, signs.UNUSED, "no run shows this"),
+        (GoalStatus.EXCLUDED, signs.UNUSED, f"not with {listed(first.by)}"),
+        (GoalStatus.NOT_SEARCHED, signs.UNKNOWN, f"not searched: {first.why}"),
     ):
         if all(
             (each.outcome, each.by, each.why) == (outcome, first.by, first.why)
@@ -152,26 +152,26 @@ def _unmet(obligations: Sequence[Obligation]) -> Iterator[Line]:
             return
     for each in obligations:
         head = f"{each.requirement} {each.polarity}"
-        if each.outcome is Met.EXCLUDED:
+        if each.outcome is GoalStatus.EXCLUDED:
             text = f"{head}: not with {listed(each.by)}: {each.words}"
             yield f"{signs.UNUSED.glyph} {text}", signs.UNUSED.colour
-        elif each.outcome is Met.NOT_SEARCHED:
+        elif each.outcome is GoalStatus.NOT_SEARCHED:
             text = f"{head}: not searched: {each.why}: {each.words}"
             yield f"{signs.UNKNOWN.glyph} {text}", signs.UNKNOWN.colour
 
 
-def _surviving(mutant: Mutated) -> Iterator[Line]:
+def _surviving(mutant: MutantResult) -> Iterator[Line]:
     head = f"{mutant.requirement}: {mutant.words}"
     match mutant.outcome:
-        case Fate.KILLED:
+        case MutantStatus.KILLED:
             return
-        case Fate.EQUIVALENT:
+        case MutantStatus.EQUIVALENT:
             yield f"{signs.EMPTY.glyph} {head} is equivalent", signs.EMPTY.colour
-        case Fate.EXCLUDED:
+        case MutantStatus.EXCLUDED:
             text = f"{head} is equivalent as long as {listed(mutant.by)}"
             verb = "is" if len(mutant.by) == 1 else "are"
             yield f"{signs.EMPTY.glyph} {text} {verb} satisfied", signs.EMPTY.colour
-        case Fate.NOT_SEARCHED:
+        case MutantStatus.NOT_SEARCHED:
             yield f"{signs.UNKNOWN.glyph} {head}: not searched: {mutant.why}", signs.UNKNOWN.colour
 
 

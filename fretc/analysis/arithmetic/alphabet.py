@@ -17,8 +17,8 @@ from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretc.analysis.arithmetic.atoms import Atoms
-from fretc.analysis.arithmetic.course import NumberCourse
-from fretc.analysis.arithmetic.durations import Duration, Held, held
+from fretc.analysis.arithmetic.course import SolvedNumericTrace
+from fretc.analysis.arithmetic.durations import Duration, DurationValue, held
 from fretc.analysis.arithmetic.groups import Group, choice, linked, owners
 from fretc.analysis.arithmetic.past import Remembered, remembered
 from fretc.analysis.arithmetic.projection import Limit
@@ -60,7 +60,7 @@ class Cells:
         self._kept = Memory(fresh, {})
         self._groups: list[Group] = []
         self._of: dict[str, Group] = {}
-        self._lasted: dict[Duration, Held] = {}
+        self._lasted: dict[Duration, DurationValue] = {}
         self._asked: dict[str, Function] = {}
         self._free: list[int] = []
         """Bits of the favoured player: whether a duration has lasted since before the run."""
@@ -114,7 +114,7 @@ class Cells:
             found = found | term
         return found
 
-    def _lasted_so(self, duration: Duration) -> Held:
+    def _lasted_so(self, duration: Duration) -> DurationValue:
         if duration not in self._lasted:
             throughout, at_last = self.atom(duration.throughout), self.atom(duration.at_last)
             self._free.append(next(self._fresh))
@@ -250,11 +250,11 @@ class Cells:
             agrees = agrees & bdd.choice(begun, -(was ^ now), first)
         return agrees
 
-    def course(self, budget: Budget) -> NumberCourse | None:
+    def course(self, budget: Budget) -> SolvedNumericTrace | None:
         """A run before its first tick; None: no valuation depends on earlier numbers."""
         if not self._atoms.before or self._favoured is not Role.OUTPUT:
             return None
-        return NumberCourse([*self._used], self._atoms, budget)
+        return SolvedNumericTrace([*self._used], self._atoms, budget)
 
     def values(self, letter: Mapping[int, bool]) -> Tick:
         """Truth values of propositions, and numbers that satisfy the comparisons' truth values."""

@@ -12,7 +12,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Before, NoTermError, Term, Terms, read_by
 from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.variables import UnsupportedError
-from fretc.analysis.arithmetic.durations import Lasting, parted
+from fretc.analysis.arithmetic.durations import DurationProposition, parted
 from fretc.analysis.arithmetic.readings import Reading, readings
 from fretc.analysis.arithmetic.steps import AtomOfTick, Moment, Steps, linked, tick, unknown
 
@@ -49,7 +49,7 @@ class Atoms:
         self.found: dict[str, Atom] = {}
         self.refused: dict[str, str] = {}
         """Comparison → why it has no formula here."""
-        self.lasting: dict[str, Lasting] = {}
+        self.lasting: dict[str, DurationProposition] = {}
         """Atom that depends on earlier ticks → its parts."""
         self._of: dict[str, str] = {}
         """Variable of another step → its signal."""

@@ -15,7 +15,7 @@ from fretc.analysis.arithmetic.groups import Group
 from fretc.analysis.arithmetic.projection import Limit
 
 
-class NumberCourse:
+class SolvedNumericTrace:
     """Implementation of `NumericTrace`."""
 
     def __init__(self, groups: Sequence[Group], atoms: Atoms, budget: Budget) -> None:

@@ -44,7 +44,7 @@ class Duration:
 
 
 @dataclass(frozen=True, slots=True)
-class Lasting:
+class DurationProposition:
     """A proposition with durations."""
 
     durations: tuple[Duration, ...]
@@ -59,7 +59,7 @@ class Lasting:
         yield from self.cases.values()
 
 
-def parted(name: str, reading: Reading) -> tuple[Mapping[str, Reading], Lasting | None]:
+def parted(name: str, reading: Reading) -> tuple[Mapping[str, Reading], DurationProposition | None]:
     """A reading as readings of single ticks, and their combination; None: it is a single one.
 
     Raises:
@@ -91,7 +91,7 @@ def parted(name: str, reading: Reading) -> tuple[Mapping[str, Reading], Lasting 
         expression = _put(reading.expression, dict(zip(spans, values, strict=True)))
         cases[values] = f"{name} where {values}"
         found[cases[values]] = replace(reading, expression=expression)
-    return found, Lasting(tuple(durations), cases)
+    return found, DurationProposition(tuple(durations), cases)
 
 
 def _durations(part: e.Expression) -> Iterator[e.Persistence]:
@@ -110,7 +110,7 @@ def _put(part: e.Expression, values: Mapping[e.Persistence, bool]) -> e.Expressi
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class DurationValue:
     """Truth of a duration, over a valuation and stored bits."""
 
     is_so: Function
@@ -120,7 +120,7 @@ class Held:
 
 def held(
     memory: Memory, ticks: int, throughout: Function, at_last: Function, open_: Function
-) -> Held:
+) -> DurationValue:
     """Whether something has lasted for a number of ticks.
 
     Args:
@@ -138,4 +138,4 @@ def held(
     was = bdd.variable(broken.now)
     memory.steps[broken] = was | -throughout
     is_open = throughout - was - is_enough
-    return Held((throughout & is_enough) | (is_open & open_), is_open)
+    return DurationValue((throughout & is_enough) | (is_open & open_), is_open)

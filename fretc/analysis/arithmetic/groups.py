@@ -31,7 +31,7 @@ from fretish.bindings.declarations import Role
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class GroupContent:
     """Content of a group; equal contents are equal values."""
 
     text: str
@@ -62,7 +62,7 @@ class Group:
     """Comparisons that share variables; bits are created when the first of them is asked for."""
 
     def __init__(
-        self, choice: Choice, atoms: Atoms, fresh: Numbers, favoured: Role, limit: Limit
+        self, choice: GroupContent, atoms: Atoms, fresh: Numbers, favoured: Role, limit: Limit
     ) -> None:
         """A group of comparisons.
 
@@ -293,7 +293,7 @@ def owners(names: Sequence[str], atoms: Atoms, roles: Roles, past: Role) -> Mapp
     return found
 
 
-def choice(names: Sequence[str], atoms: Atoms, owners: Mapping[str, Role]) -> Choice:
+def choice(names: Sequence[str], atoms: Atoms, owners: Mapping[str, Role]) -> GroupContent:
     """Content of a group.
 
     Raises:
@@ -324,7 +324,7 @@ def choice(names: Sequence[str], atoms: Atoms, owners: Mapping[str, Role]) -> Ch
     terms = [*formulas, *domains.values(), *flags, *carried]
     sorts = [f"{each}: {each.sort()}, {role}" for role in players for each in variables[role]]
     text = "\n".join([*(term.sexpr() for term in terms), *sorts])
-    return Choice(text, tuple(formulas), of, variables, domains, flags, carried)
+    return GroupContent(text, tuple(formulas), of, variables, domains, flags, carried)
 
 
 def _carried(
@@ -361,7 +361,7 @@ Timeouts of a question are not cached."""
 _MOST_SORTED = 64
 
 
-def _sorted_out(choice: Choice, limit: Limit) -> _Sorted:
+def _sorted_out(choice: GroupContent, limit: Limit) -> _Sorted:
     """The patterns of a group, and its cells if both players choose.
 
     Raises:
@@ -381,7 +381,7 @@ def _sorted_out(choice: Choice, limit: Limit) -> _Sorted:
     return found
 
 
-def _found(choice: Choice, limit: Limit) -> _Sorted:
+def _found(choice: GroupContent, limit: Limit) -> _Sorted:
     domain = z3.And(list(choice.domains.values()))
     certain = z3.And(domain, *(z3.Not(flag) for flag in choice.flags))
     known = patterns(choice.formulas, certain, limit)

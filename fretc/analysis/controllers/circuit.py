@@ -16,7 +16,7 @@ MOST_NODES = 20_000
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class Ite:
     """A name for `high if variable else low`."""
 
     name: str
@@ -52,11 +52,11 @@ class Circuit:
     outputs: Mapping[str, str]
     """Name → proposition that the machine sets."""
     bits: tuple[str, ...]
-    replies: tuple[Choice, ...]
+    replies: tuple[Ite, ...]
     """Choices that are computed before the outputs."""
     values: tuple[str, ...]
     """Value of each output, in the order of `outputs`."""
-    steps: tuple[Choice, ...]
+    steps: tuple[Ite, ...]
     """Choices that are computed after the outputs."""
     following: tuple[str, ...]
     """Value of each bit after the tick, in order."""
@@ -100,7 +100,7 @@ def _choices(
     names: Mapping[int, str],
     known: dict[bdd.Function, str],
     number: int,
-) -> Iterator[Choice]:
+) -> Iterator[Ite]:
     """Choices that the roots need and that are not yet in `known`, which is extended."""
     for part in bdd.parts(roots):
         if part not in known:
@@ -109,4 +109,4 @@ def _choices(
                 known[part] = names[variable]
             else:
                 known[part] = f"c{number}_{len(known) - 2}"
-                yield Choice(known[part], names[variable], known[high], known[low])
+                yield Ite(known[part], names[variable], known[high], known[low])

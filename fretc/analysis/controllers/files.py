@@ -14,7 +14,7 @@ from fretc.analysis.controllers.circuit import Circuit
 from fretc.analysis.controllers.moves import Mealy, Move, Term
 
 
-class Form(StrEnum):
+class ControllerFormat(StrEnum):
     """Form of a controller; the values are those of `--emit`."""
 
     PYTHON = "python"
@@ -45,7 +45,7 @@ def controller(
     return Artifact(PurePosixPath("controller.py"), text)
 
 
-def automata(machines: Sequence[Mealy], form: Form) -> tuple[Artifact, ...]:
+def automata(machines: Sequence[Mealy], form: ControllerFormat) -> tuple[Artifact, ...]:
     """`controller.hoa` or `controller.dot`; with a number for several components."""
     return tuple(
         Artifact(
@@ -56,14 +56,14 @@ def automata(machines: Sequence[Mealy], form: Form) -> tuple[Artifact, ...]:
     )
 
 
-def _automaton(machine: Mealy, form: Form) -> str:
+def _automaton(machine: Mealy, form: ControllerFormat) -> str:
     title = f"a controller that satisfies {', '.join(machine.requirements)}"
     match form:
-        case Form.HOA:
+        case ControllerFormat.HOA:
             return _hoa(machine, title)
-        case Form.DOT:
+        case ControllerFormat.DOT:
             return _dot(machine, title)
-        case Form.PYTHON:
+        case ControllerFormat.PYTHON:
             raise AssertionError("a program is made of circuits")
         case _:
             assert_never(form)

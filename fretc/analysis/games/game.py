@@ -81,7 +81,7 @@ def upheld(alphabet: Alphabet, assumptions: Sequence[Counter], budget: Budget) -
     if not assumptions:
         return bdd.true()
     runs = Runs(alphabet, assumptions, budget)
-    return runs.going_on(runs.lasting())
+    return runs.safe_transitions(runs.lasting())
 
 
 class Game:

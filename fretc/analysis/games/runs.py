@@ -47,7 +47,7 @@ class Runs:
             self.safe = self.safe & counter.safe
         self._fair = [each.fair for each in kept if each.fair is not None]
 
-    def going_on(self, states: Function) -> Function:
+    def safe_transitions(self, states: Function) -> Function:
         """Ticks without a violation that lead to one of the states."""
         return self.safe & self.transition.moved(states)
 
@@ -56,7 +56,7 @@ class Runs:
         steps = self.transition.relation(self.safe & through, self._letters, bdd.true())
         return Relation(self.transition.bits, steps, self._budget)
 
-    def preceding(self, states: Function) -> Function:
+    def pre_image(self, states: Function) -> Function:
         """States with a tick without a violation that leads to one of these."""
         return bdd.some_of_both(self.safe, self.transition.moved(states), self._letters)
 
@@ -72,14 +72,14 @@ class Runs:
             if leaps.is_due():
                 with leaps.trial():
                     states = states & self._paths(states).lasting()
-            left = states & self.preceding(states)
+            left = states & self.pre_image(states)
             for fair in self._fair:
-                left = left & self._leading(fair & left, left)
+                left = left & self._eu_fixpoint(fair & left, left)
             if left == states:
                 return states
             states = left
 
-    def _leading(self, target: Function, through: Function) -> Function:
+    def _eu_fixpoint(self, target: Function, through: Function) -> Function:
         """States with a run to the target that stays in `through` before it."""
         found, leaps = bdd.false(), IterativeSquaring(self._counters)
         while True:
@@ -87,7 +87,7 @@ class Runs:
             if leaps.is_due():
                 with leaps.trial():
                     found = found | (through & self._paths(through).reaching(found))
-            more = found | (through & self.preceding(target | found))
+            more = found | (through & self.pre_image(target | found))
             if more == found:
                 return found
             found = more
@@ -118,7 +118,7 @@ class Runs:
                     found = self._paths(bdd.true()).reaching(found)
             if (initial & found) != bdd.false():
                 return True
-            more = found | self.preceding(
+            more = found | self.pre_image(
                 found
             )  # States before such a state are also on an endless run.
             if more == found:
@@ -149,7 +149,7 @@ class Runs:
         levels = [goal]
         while (self.transition.initial & levels[-1]) == bdd.false():
             self._budget.check()
-            more = levels[-1] | (through & self.preceding(levels[-1]))
+            more = levels[-1] | (through & self.pre_image(levels[-1]))
             if more == levels[-1]:
                 return None
             levels.append(more)

@@ -29,7 +29,7 @@ from fretc.analysis.arena.transition import State, Transition
 from fretc.analysis.arena.variables import UnsupportedError, numbers
 from fretc.analysis.games.game import upheld
 from fretc.analysis.realizability_problem import alphabet_of
-from fretc.testing.bench import demands
+from fretc.testing.requirement_model import demands
 from fretc.testing.search import Letter, nearest
 from fretc.testing.suite import Polarity
 from fretish.bindings.declarations import Role

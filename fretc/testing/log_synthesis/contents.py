@@ -29,7 +29,7 @@ _FARTHEST = 99.0
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class FieldContent:
     """A content of a signal's field."""
 
     content: Content | None
@@ -42,7 +42,7 @@ class Choice:
 
 def choices(
     signal: Signal, field: Field, read_by: Iterable[e.Expression], wished: Iterable[object]
-) -> tuple[Choice, ...]:
+) -> tuple[FieldContent, ...]:
     """What is tried for a signal, in this order: what is wished for, numbers of comparisons, none.
 
     Args:
@@ -98,12 +98,12 @@ def _sums(numbers: Sequence[Fraction]) -> Iterator[Fraction]:
         yield from (rest, rest + first, rest - first)
 
 
-def _made(signal: Signal, field: Field, nominal: Fraction | str) -> Iterator[Choice]:
+def _made(signal: Signal, field: Field, nominal: Fraction | str) -> Iterator[FieldContent]:
     for content in _contents(signal, field, nominal):
         if isinstance(content, str) or _fits(content, field):
             value = read(signal, field, content)
             if value is not None:
-                yield Choice(content, value, nominal)
+                yield FieldContent(content, value, nominal)
 
 
 def _contents(signal: Signal, field: Field, nominal: Fraction | str) -> Iterator[Content]:
@@ -150,15 +150,15 @@ def _beams(signal: Signal, gap: float) -> tuple[float, ...]:
     return (*first, float(high), float(low))
 
 
-def _unknown(signal: Signal, field: Field) -> Iterator[Choice]:
+def _unknown(signal: Signal, field: Field) -> Iterator[FieldContent]:
     """How the signal is made unknown: by NaN, or by no message."""
     if field.has_nan:
         content: Content = [math.nan] if signal.path.each else math.nan
         value = read(signal, field, content)
         if value is not None and math.isnan(value):
-            yield Choice(content, value, None)
+            yield FieldContent(content, value, None)
             return
-    yield Choice(None, math.nan, None)
+    yield FieldContent(None, math.nan, None)
 
 
 def read(signal: Signal, field: Field, content: Content) -> float | None:

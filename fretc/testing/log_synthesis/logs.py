@@ -14,8 +14,8 @@ from compiler.project.folder import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.many_logs import audited
 from fretc.audit.plan import Plan, planned
-from fretc.testing.log_synthesis.messages import NoStageError
-from fretc.testing.log_synthesis.synthetic_log import EPOCH, SyntheticLog, staged
+from fretc.testing.log_synthesis.messages import NotRecordableError
+from fretc.testing.log_synthesis.synthetic_log import EPOCH, SyntheticLog, synthesize
 from fretc.testing.suite import Test
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel import Monitor
@@ -27,7 +27,7 @@ Outcome = Literal["confirmed", "cannot be recorded", "not confirmed"]
 
 
 @dataclass(frozen=True, slots=True)
-class StagedTest:
+class LogTestResult:
     """What became of a test."""
 
     test: Test
@@ -40,7 +40,7 @@ class StagedTest:
 
 def logs(
     project: Project, tests: Sequence[Test], folder: Path, tell: Callable[[int], None]
-) -> Iterator[StagedTest]:
+) -> Iterator[LogTestResult]:
     """A log for each test that can be staged, `folder/NAME.mcap`.
 
     A log is there once its audit has given the verdict that the test expects.
@@ -62,10 +62,10 @@ def logs(
         for done, test in enumerate(tests, start=1):
             try:
                 if declarations is None or not isinstance(plan, Plan):
-                    raise NoStageError(_first(plan))
+                    raise NotRecordableError(_first(plan))
                 yield _log(plan, test, monitor(test.requirement), Path(temporary), folder)
-            except NoStageError as error:
-                yield StagedTest(test, "cannot be recorded", str(error))
+            except NotRecordableError as error:
+                yield LogTestResult(test, "cannot be recorded", str(error))
             tell(done)
 
 
@@ -74,22 +74,22 @@ def _first(plan: Plan | tuple[Diagnostic, ...]) -> str:
     return plan[0].message
 
 
-def _log(plan: Plan, test: Test, monitor: Monitor, temporary: Path, folder: Path) -> StagedTest:
+def _log(plan: Plan, test: Test, monitor: Monitor, temporary: Path, folder: Path) -> LogTestResult:
     claim = next((each for each in plan.claims if each.id == test.requirement), None)
     if claim is None:
-        raise NoStageError(f"{test.requirement} is not audited")
+        raise NotRecordableError(f"{test.requirement} is not audited")
     if claim.chance is not None:
-        raise NoStageError("one run decides nothing of a requirement with a probability")
-    stage = staged(test, plan.declarations, monitor)
+        raise NotRecordableError("one run decides nothing of a requirement with a probability")
+    stage = synthesize(test, plan.declarations, monitor)
     path = temporary / f"{test.name}.mcap"
     _write(stage, test, path)
     verdicts = {each.requirement: each.verdict for each in audited(plan, str(path)).results}
     expected, actual = _expected(test, plan), verdicts[test.requirement]
     if actual != expected:
         why = f"the audit of it says {actual}, not {expected}"
-        return StagedTest(test, "not confirmed", why, stage.lead)
+        return LogTestResult(test, "not confirmed", why, stage.lead)
     shutil.move(path, folder / path.name)
-    return StagedTest(test, "confirmed", "", stage.lead)
+    return LogTestResult(test, "confirmed", "", stage.lead)
 
 
 def _expected(test: Test, plan: Plan) -> str:

@@ -26,7 +26,7 @@ _USUAL: Mapping[str, Any] = {
 All others hold nothing."""
 
 
-class NoStageError(ValueError):
+class NotRecordableError(ValueError):
     """It cannot be recorded; the text says why, in lower case and without a full stop."""
 
 
@@ -53,22 +53,26 @@ def field(signal: Signal) -> Field:
         NoStageError: its bindings do not say so, or nothing is known of that type.
     """
     if signal.type is None:
-        raise NoStageError(f"the binding of `{signal.name}` names no message type")
+        raise NotRecordableError(f"the binding of `{signal.name}` names no message type")
     package, _, own = short_type(signal.type).partition("/")
     name = f"{package}/msg/{own}"
     if name not in TYPES.fielddefs:
-        raise NoStageError(f"`{signal.type}`, which `{signal.name}` is read from, is not known")
+        raise NotRecordableError(
+            f"`{signal.type}`, which `{signal.name}` is read from, is not known"
+        )
     node: Any = (Nodetype.NAME, name)
     for part in signal.path.fields:
         fields = dict(TYPES.fielddefs[node[1]][1]) if node[0] == Nodetype.NAME else {}
         if part not in fields:
-            raise NoStageError(f"`{signal.type}` has no field `{'.'.join(signal.path.fields)}`")
+            raise NotRecordableError(
+                f"`{signal.type}` has no field `{'.'.join(signal.path.fields)}`"
+            )
         node = fields[part]
     array = node[0] in (Nodetype.ARRAY, Nodetype.SEQUENCE)
     if array:
         node = node[1][0]
     if node[0] != Nodetype.BASE:
-        raise NoStageError(f"`{signal.path}` is neither a number nor a text")
+        raise NotRecordableError(f"`{signal.path}` is neither a number nor a text")
     return Field(name, str(node[1][0]), array)
 
 

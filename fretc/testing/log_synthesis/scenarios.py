@@ -29,7 +29,7 @@ from fretc.audit.plan import Plan, monitored_requirements, planned
 from fretc.audit.pool import WorkerDied, each
 from fretc.campaigns.campaign import recorded
 from fretc.testing.log_synthesis.variation import varied
-from fretc.testing.suite import Met, Obligation, Polarity, Suite
+from fretc.testing.suite import GoalResult, GoalStatus, Polarity, Suite
 from simulation.recording import TOPICS
 from simulation.world.scenario import Expectations, Scenario, load, names
 
@@ -66,7 +66,7 @@ class Found:
         return tuple(aim for aim, name in self.shown.items() if name == scenario)
 
 
-def stageable(suite: Suite, project: Project) -> tuple[tuple[Aim, ...], Mapping[str, str]]:
+def realizable_goals(suite: Suite, project: Project) -> tuple[tuple[Aim, ...], Mapping[str, str]]:
     """What is looked for, and why nothing of other requirements can be staged."""
     there = {topic.name for topic in TOPICS}
     declarations, why = project.declarations, {}
@@ -79,11 +79,11 @@ def stageable(suite: Suite, project: Project) -> tuple[tuple[Aim, ...], Mapping[
             why[requirement.id] = f"`{free[0]}` has no binding"
         elif absent:
             why[requirement.id] = f"the simulated robot has no topic `{absent[0]}`"
-    aims = tuple(_aim(one) for one in suite.obligations if one.outcome is Met.MET)
+    aims = tuple(_aim(one) for one in suite.obligations if one.outcome is GoalStatus.MET)
     return tuple(aim for aim in aims if aim[0] not in why), why
 
 
-def _aim(one: Obligation) -> Aim:
+def _aim(one: GoalResult) -> Aim:
     return one.requirement, one.situation, one.polarity
 
 
@@ -99,7 +99,7 @@ def search(
 
     Args:
         project: whose requirements are audited.
-        aims: of `stageable`.
+        aims: of `realizable_goals`.
         runs: how many missions at most.
         jobs: processes.
         found: takes what is found, mission by mission: what interrupts the search loses nothing.

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from fretc.testing.log_synthesis.messages import NoStageError
+from fretc.testing.log_synthesis.messages import NotRecordableError
 from fretc.testing.suite import Test
 from fretish import expressions as e
 from fretish.bindings.declarations import Proposition
@@ -35,7 +35,7 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class TickPlan:
     """The ticks of a log."""
 
     lead: int
@@ -59,13 +59,13 @@ def part(proposition: Proposition, period: int) -> Part:
         back = -(-expression.duration // period)
         expression = expression.arg
     if any(isinstance(each, e.Persistence) for each in e.parts(expression)):
-        raise NoStageError(f"`for` stands within the expression of `{proposition.name}`")
+        raise NotRecordableError(f"`for` stands within the expression of `{proposition.name}`")
     if ticks_back(expression):
-        raise NoStageError(f"`{proposition.name}` reads numbers of the tick before")
+        raise NotRecordableError(f"`{proposition.name}` reads numbers of the tick before")
     return Part(proposition, expression, back)
 
 
-def course(test: Test, parts: Sequence[Part], monitor: Monitor) -> Course:
+def tick_plan(test: Test, parts: Sequence[Part], monitor: Monitor) -> TickPlan:
     """The ticks of a test, with others before them where they need some.
 
     Args:
@@ -87,8 +87,8 @@ def course(test: Test, parts: Sequence[Part], monitor: Monitor) -> Course:
                 seen[name] = _seen(wanted[name], one)
             same = all(seen[name][lead:] == columns[name] for name in columns)
             if same and (lead == 0 or _unchanged(test, lead, seen, monitor)):
-                return Course(lead, wanted)
-    raise NoStageError(_impossible(parts))
+                return TickPlan(lead, wanted)
+    raise NotRecordableError(_impossible(parts))
 
 
 def _impossible(parts: Sequence[Part]) -> str:
@@ -102,7 +102,7 @@ def _column(test: Test, name: str) -> list[Truth]:
     column: list[Truth] = []
     for row in test.rows:
         if name not in row.values:
-            raise NoStageError(f"the test has no value for `{name}`")
+            raise NotRecordableError(f"the test has no value for `{name}`")
         value = row.values[name]
         assert value is None or isinstance(value, bool), (test.name, name)
         column += [value] * row.count

@@ -9,8 +9,8 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import not_checked
 from compiler.targets.c.driver import ENTRY, driver
-from fretc.verification.c.form import without_comments
 from fretc.verification.c.language import base, checked
+from fretc.verification.c.layout import without_comments
 from fretc.verification.compiled.plan import ParsedSource, SourceText
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.verifying import RequirementOutcome

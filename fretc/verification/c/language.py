@@ -10,7 +10,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.c.monitor import TARGET
 from compiler.targets.target import Options
 from fretc.verification.c.build import built, compiler, layout
-from fretc.verification.c.form import LEXIS, formed
+from fretc.verification.c.layout import LEXIS, check_layout
 from fretc.verification.compiled.library import saved
 from fretc.verification.compiled.plan import BuiltLibrary, ParsedSource, SourceText, implemented
 from fretc.verification.compiled.text import UnexpectedLayoutError, same
@@ -37,7 +37,7 @@ def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) ->
     prefix = base(given)
     cells = _members(own_header, f"{prefix}_rail")
     inputs = _members(own_header, f"{prefix}_inputs")
-    form = formed(given.text, own, prefix, cells, inputs)
+    form = check_layout(given.text, own, prefix, cells, inputs)
     outcomes = tuple(name for name, _ in _OUTCOMES.findall(own_header))
     is_original = LEXIS.tokens(given.text) == LEXIS.tokens(own)
     return ParsedSource(own_rules, outcomes, form, cells, inputs, is_original)

@@ -16,7 +16,7 @@ _JOINS = ("&", "|")
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class Dependencies:
     """Dependencies of the readings of one requirement."""
 
     cells: frozenset[str]
@@ -26,7 +26,7 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True)
-class Form:
+class CheckedLayout:
     """A checked text in the layout of fretc."""
 
     sources: Mapping[str, frozenset[str]]
@@ -35,7 +35,7 @@ class Form:
     literals: Mapping[str, int]
     """Each literal with the index of its proposition."""
 
-    def part(self, outcome: str) -> Part:
+    def part(self, outcome: str) -> Dependencies:
         """Dependencies of the requirement with this outcome name."""
         reached = {f"&{outcome}"}
         waiting = [*reached]
@@ -44,7 +44,7 @@ class Form:
                 reached.add(name)
                 waiting.append(name)
         inputs = (place for literal, place in self.literals.items() if literal in reached)
-        return Part(frozenset(reached), frozenset(inputs))
+        return Dependencies(frozenset(reached), frozenset(inputs))
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from typing import Protocol
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of
 from fretc.verification.compiled.delays import Delayed
-from fretc.verification.compiled.flow import Form
+from fretc.verification.compiled.flow import CheckedLayout
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.monitor.equivalence import Machine
 from fretc.verification.monitor.rails import Letter, Stepping
@@ -59,7 +59,7 @@ class ParsedSource:
     """Requirements in the order of their outcomes."""
     outcomes: tuple[str, ...]
     """Names of the outcomes in the text."""
-    form: Form
+    form: CheckedLayout
     cells: tuple[str, ...]
     """All cells of a rail."""
     inputs: tuple[str, ...]

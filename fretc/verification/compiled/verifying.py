@@ -36,7 +36,7 @@ from fretc.verification.compiled.plan import (
 from fretc.verification.compiled.readings import NAMES, PythonJudging, PythonRail
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.tools import ToolError
-from fretc.verification.engines.sandbox import Limits, Session, Stopped
+from fretc.verification.engines.sandbox import Limits, NoResult, Session
 from fretc.verification.monitor import rails
 from fretc.verification.monitor.equivalence import Difference
 from fretc.verification.monitor.verifying import MOST_STATES, judged_wrongly, lock_step, noted
@@ -98,7 +98,7 @@ def _confined(
     except UnexpectedLayoutError as error:
         return not_checked(str(error))
     outcome = session.call(explored, requirement, executable, plan, MOST_STATES)
-    if isinstance(outcome, Stopped):
+    if isinstance(outcome, NoResult):
         return not_checked(f"{outcome.reason}; the text may contain code that does not terminate")
     return outcome
 

@@ -53,7 +53,7 @@ objects, and frequent garbage collection would take a third of its time."""
 
 
 @dataclass(frozen=True, slots=True)
-class Stopped:
+class NoResult:
     """The call has no result, for this reason."""
 
     reason: str
@@ -61,7 +61,7 @@ class Stopped:
 
 def confined(
     limits: Limits, function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs
-) -> R | Stopped:
+) -> R | NoResult:
     """The result of one call in a separate process, as by `Session.call`."""
     with Session(limits) as session:
         return session.call(function, *args, **kwargs)
@@ -92,7 +92,7 @@ class Session:
         """End the process."""
         self._end()
 
-    def call(self, function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> R | Stopped:
+    def call(self, function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> R | NoResult:
         """The result of the function, or why there is none.
 
         Args:
@@ -109,8 +109,8 @@ class Session:
             connection, process = self._begun()
             with suppress(BrokenPipeError):  # Then the process has ended without a result.
                 connection.send((function, args, kwargs))
-            answer: R | Stopped = _answer(connection, process, self._limits)
-            complete = not isinstance(answer, Stopped)
+            answer: R | NoResult = _answer(connection, process, self._limits)
+            complete = not isinstance(answer, NoResult)
             return answer
         finally:
             if not complete:
@@ -150,16 +150,16 @@ def _without_main() -> Iterator[None]:
 
 def _answer(connection: Connection, process: SpawnProcess, limits: Limits) -> Any:
     if not connection.poll(limits.wall):
-        return Stopped(f"out of time: no answer within {limits.wall:g} s")
+        return NoResult(f"out of time: no answer within {limits.wall:g} s")
     try:
         complete, result = connection.recv()
     except (EOFError, OSError):
         process.join()
-        return Stopped(_ended(process.exitcode or 0, limits))
+        return NoResult(_ended(process.exitcode or 0, limits))
     if complete:
         return result
     if isinstance(result, MemoryError):
-        return Stopped(_out_of_memory(limits))
+        return NoResult(_out_of_memory(limits))
     raise result
 
 

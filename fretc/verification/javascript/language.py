@@ -14,7 +14,7 @@ from compiler.program.program import Program, Requirement, Window
 from compiler.targets.javascript.monitor import text
 from fretc.verification.compiled.plan import BuiltLibrary, ParsedSource, SourceText, implemented
 from fretc.verification.compiled.tools import version
-from fretc.verification.javascript.form import formed
+from fretc.verification.javascript.layout import check_layout
 from fretc.verification.javascript.node import FLAGS, Module, placed
 
 _IDS = re.compile(r'^[ \t]*\{ id: ("(?:[^"\\]|\\.)*"), sentence: ', re.MULTILINE)
@@ -34,7 +34,7 @@ def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) ->
     own_rules = implemented([json.loads(id) for id in _IDS.findall(given.text)], requirements)
     made = _program(own_rules)
     cells, ids = tuple(cell.name for cell in made.cells), tuple(each.id for each in own_rules)
-    form = formed(given.text, text(*own_rules), cells, _windows(made), ids)
+    form = check_layout(given.text, text(*own_rules), cells, _windows(made), ids)
     return ParsedSource(own_rules, ids, form, cells, ())
 
 

@@ -15,7 +15,7 @@ from compiler.project.folder import Project
 from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
 from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, Stopped
+from fretc.verification.engines.sandbox import Limits, NoResult
 from fretc.verification.layers.request import Request, named_text, unexamined, unknown
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.printer import timing as printing_of
@@ -39,7 +39,7 @@ def prove(
             for proof in _bundle(requirement, request.limits)
         )
     proofs = processes.confined(request.limits, checked, agent, properties, request.percepts)
-    if isinstance(proofs, Stopped):
+    if isinstance(proofs, NoResult):
         return (unknown("agent", Layer.AGENT, CLAIM, proofs.reason, named_text(agent)),)
     return proofs
 
@@ -53,7 +53,7 @@ def _bundle(requirement: FormalizedRequirement, limits: Limits) -> tuple[Proof, 
     )
     if isinstance(agent, Diagnostic):
         return (_without_agent(requirement, agent.message),)
-    if isinstance(agent, Stopped):
+    if isinstance(agent, NoResult):
         return (unknown(requirement.id, Layer.AGENT, CLAIM, agent.reason),)
     remark = ajpf.remark(requirement)
     refuted = any(line.result is Result.COUNTEREXAMPLE for line in agent.evidence)

@@ -11,7 +11,7 @@ from compiler.logic.claims import Layer, Proof, not_applicable
 from compiler.project.folder import Project
 from compiler.targets.interceptor_options import options
 from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, Stopped
+from fretc.verification.engines.sandbox import Limits, NoResult
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import otherwise
 from fretc.verification.layers.request import Request, interceptor_of, unexamined, unknown
@@ -39,12 +39,12 @@ def prove(
 def _contracts(file: NamedText, declared: Interception, limits: Limits) -> Iterator[Proof]:
     """Contracts of the deployed module: any core, within the node that fretc writes."""
     deviation = otherwise(file.text, declared)
-    proofs: Stopped | tuple[Proof, ...]
+    proofs: NoResult | tuple[Proof, ...]
     if deviation is not None:
-        proofs = Stopped(deviation)
+        proofs = NoResult(deviation)
     else:
         proofs = processes.confined(limits, contracts, file.text, options(declared))
-    if isinstance(proofs, Stopped):
+    if isinstance(proofs, NoResult):
         yield unknown("interceptor", Layer.INTERCEPTOR, CLAIM, proofs.reason, file)
     else:
         artefacts = {file.name: sha256(file.text)}

@@ -9,7 +9,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof, not_checked, proof
 from compiler.project.folder import Project
 from fretc.verification.compiled.plan import SourceText
-from fretc.verification.engines.sandbox import Session, Stopped
+from fretc.verification.engines.sandbox import NoResult, Session
 from fretc.verification.layers.languages import Row, language_of
 from fretc.verification.layers.request import Request, named_text, setup_of
 from fretc.verification.monitor.verifying import verified_beside, written
@@ -55,7 +55,7 @@ def _of_python(
             request.progress(f"{requirement.id}: monitor")
             beside = file.text if given is None else whole if isinstance(whole, str) else None
             outcome = session.call(verified_beside, requirement, file.text, beside)
-            if isinstance(outcome, Stopped):
+            if isinstance(outcome, NoResult):
                 outcome = not_checked(outcome.reason)
             artefacts = {file.name: sha256(file.text)}
             yield proof(requirement.id, Layer.MONITOR, CLAIM, outcome, ENGINE, (), artefacts)

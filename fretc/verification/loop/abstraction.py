@@ -22,7 +22,7 @@ NONE, ARRIVED = -1, -2
 """In place of the age of a request: none is in flight; one has arrived."""
 
 
-class Numbers(NamedTuple):
+class TwinState(NamedTuple):
     """The twin at the end of a tick; whole numbers, or terms of a solver."""
 
     open: Any
@@ -39,7 +39,7 @@ class Numbers(NamedTuple):
     """Ticks from the last message to the next tick."""
 
 
-class Choice(NamedTuple):
+class StepChoice(NamedTuple):
     """The free choices of a step."""
 
     stands: Any
@@ -90,18 +90,20 @@ class Plain:
         return not part
 
 
-INITIAL = Numbers(-1, NONE, 0, None, 0, 0)
+INITIAL = TwinState(-1, NONE, 0, None, 0, 0)
 """`still` is left out: it is `braking + 1`, for the robot stands."""
 
 
-def begins(now: Numbers, times: Times, logic: Logic) -> Any:
+def begins(now: TwinState, times: Times, logic: Logic) -> Any:
     """Before the first tick."""
     standing = now.still == times.braking + 1
     quiet = logic.both(now.losses == 0, now.requested == 0, now.silent == 0)
     return logic.both(now.open == -1, now.age == NONE, standing, quiet)
 
 
-def relation(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
+def relation(
+    now: TwinState, then: TwinState, choice: StepChoice, times: Times, logic: Logic
+) -> Any:
     """Whether the twin can go from one end of a tick to the next, by that choice."""
     both, either, no = logic.both, logic.either, logic.no
     sampled = both(
@@ -126,7 +128,9 @@ def relation(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: L
     return both(sampled, message, ranges, either(released, request))
 
 
-def _message(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
+def _message(
+    now: TwinState, then: TwinState, choice: StepChoice, times: Times, logic: Logic
+) -> Any:
     """The fate of the message: each change has one, and silence has an end."""
     both, either, no = logic.both, logic.either, logic.no
     quiet = both(
@@ -140,7 +144,9 @@ def _message(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: L
     )
 
 
-def _requested(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
+def _requested(
+    now: TwinState, then: TwinState, choice: StepChoice, times: Times, logic: Logic
+) -> Any:
     """The fate of the request in a tick in which a stop is requested."""
     both, either, no = logic.both, logic.either, logic.no
     none = either(now.requested == 0, now.age == NONE)
@@ -158,7 +164,7 @@ def _requested(now: Numbers, then: Numbers, choice: Choice, times: Times, logic:
     )
 
 
-def _arrival(age: Any, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
+def _arrival(age: Any, then: TwinState, choice: StepChoice, times: Times, logic: Logic) -> Any:
     """A request of that age arrives in the chosen cell; from then on zero is published."""
     both, either = logic.both, logic.either
     k = times.cells
@@ -180,7 +186,7 @@ class Coverage:
     steps: int
     longest: int
     """The most ticks for which a demand is open; -1: there is never one."""
-    uncovered: tuple[Numbers, Numbers] | None
+    uncovered: tuple[TwinState, TwinState] | None
     """A step that the loop takes and the twin cannot; None: there is no such step."""
 
 
@@ -200,8 +206,8 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
     times = times_of(channel)
     begin = INITIAL._replace(still=channel.stands)
     visited: set[tuple[Node, int, int]] = {(loop.initial, begin.open, begin.age)}
-    allowed: dict[tuple[Numbers, Numbers], bool] = {}
-    ended: dict[tuple[Numbers, Node, bool, bool | None], int] = {}
+    allowed: dict[tuple[TwinState, TwinState], bool] = {}
+    ended: dict[tuple[TwinState, Node, bool, bool | None], int] = {}
     waiting, steps, most = list(visited), 0, -1
     for node, open_, age in waiting:
         now = _numbers(open_, age, node)
@@ -213,7 +219,7 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
                 steps += ended[case]
                 continue
             before = steps
-            follow: dict[tuple[int, Queue], Numbers] = {}
+            follow: dict[tuple[int, Queue], TwinState] = {}
             for after in loop.ends(begun):
                 steps += 1
                 wheels = after.wheels.still, after.wheels.queue
@@ -235,7 +241,7 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
     return Coverage(steps, most, None)
 
 
-def _followed(now: Numbers, tick: Tick, after: Node, channel: Channel) -> Numbers:
+def _followed(now: TwinState, tick: Tick, after: Node, channel: Channel) -> TwinState:
     """The numbers of the twin after a step of the loop."""
     if not tick.requested:
         return _numbers(-1, NONE, after)
@@ -249,8 +255,8 @@ def _followed(now: Numbers, tick: Tick, after: Node, channel: Channel) -> Number
     return _numbers(now.open + 1 if tick.owed else -1, age, after)
 
 
-def _numbers(open_: int, age: int, node: Node) -> Numbers:
-    return Numbers(open_, age, node.losses, node.wheels.still, int(node.requested), node.silent)
+def _numbers(open_: int, age: int, node: Node) -> TwinState:
+    return TwinState(open_, age, node.losses, node.wheels.still, int(node.requested), node.silent)
 
 
 def times_of(channel: Channel) -> Times:
@@ -259,11 +265,11 @@ def times_of(channel: Channel) -> Times:
     return Times(channel.cells, beat, channel.latency, channel.lost, channel.braking)
 
 
-def _is_step(now: Numbers, then: Numbers, times: Times) -> bool:
+def _is_step(now: TwinState, then: TwinState, times: Times) -> bool:
     return any(relation(now, then, choice, times, Plain()) for choice in _choices(times))
 
 
-def _choices(times: Times) -> Iterator[Choice]:
+def _choices(times: Times) -> Iterator[StepChoice]:
     fates = ((False, False), (True, False), (True, True))
     for stands, (sent, lost), cell in product((False, True), fates, range(-1, times.cells)):
-        yield Choice(stands, sent, lost, cell)
+        yield StepChoice(stands, sent, lost, cell)

@@ -31,15 +31,15 @@ from compiler.logic.claims import (
 from compiler.logic.kripke import TooManyStatesError
 from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, Stopped
+from fretc.verification.engines.sandbox import Limits, NoResult
 from fretc.verification.interceptor.file import is_original
 from fretc.verification.interceptor.machine import NotAnInterceptorError
 from fretc.verification.loop.abstraction import (
     ARRIVED,
     NONE,
-    Choice,
-    Numbers,
+    StepChoice,
     Times,
+    TwinState,
     begins,
     covered,
     relation,
@@ -101,14 +101,14 @@ def bounds_proofs(
     """Both claims: an answer comes in time, whatever the times are; and the bound is enough."""
     reason = _inapplicable(requirement, setup)
     query = reason or question(requirement, setup)
-    answer: Answer | Stopped
+    answer: Answer | NoResult
     if reason is not None:
         answer = Answer(not_applicable(reason), not_applicable(reason))
     elif isinstance(query, str):
-        answer = Stopped(query)
+        answer = NoResult(query)
     else:
         answer = processes.confined(limits, search, query)
-    if isinstance(answer, Stopped):
+    if isinstance(answer, NoResult):
         answer = Answer(not_checked(answer.reason), not_checked(answer.reason))
     at_declared, at_any = (
         ()
@@ -360,9 +360,9 @@ def _proved(declared: Times) -> tuple[str | None, str]:
     cells, beat = declared.cells, declared.heartbeat
     times = Times(cells, beat, *z3.Ints("latency lost braking"))
     bound, some = z3.Ints("D n")
-    now, then = (Numbers(*z3.Ints(f"e{i} a{i} w{i} z{i} r{i} s{i}")) for i in (0, 1))
+    now, then = (TwinState(*z3.Ints(f"e{i} a{i} w{i} z{i} r{i} s{i}")) for i in (0, 1))
     stands, sent, lost = z3.Bools("stands is_sent is_lost")
-    choice = Choice(stands, sent, lost, z3.Int("cell"))
+    choice = StepChoice(stands, sent, lost, z3.Int("cell"))
     enough = cells * bound >= cells * beat * times.lost + times.latency + times.braking
     premises = z3.And(
         times.latency >= 0, times.lost >= 0, times.braking >= 0, bound > beat * times.lost, enough
@@ -386,7 +386,7 @@ def _proved(declared: Times) -> tuple[str | None, str]:
     return None, z3.get_version_string()
 
 
-def _invariant(at: Numbers, times: Times, bound: Any, logic: Any) -> Any:
+def _invariant(at: TwinState, times: Times, bound: Any, logic: Any) -> Any:
     """The invariant at the end of each tick: why an answer comes in time.
 
     At most `lost` requests of a stop are lost in a row; the first other one is in flight for less

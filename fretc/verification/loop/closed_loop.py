@@ -21,7 +21,7 @@ from compiler.targets.interceptor_options import ASSUMED, options, ticks
 from compiler.targets.interceptor_options import assumed as hash_of_assumed
 from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, Stopped
+from fretc.verification.engines.sandbox import Limits, NoResult
 from fretc.verification.interceptor.file import otherwise
 from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.search import Case, Results, search
@@ -59,14 +59,14 @@ def loop_proofs(
     """The proofs of both claims: the requirement is kept, and the stop is released."""
     reason = inapplicable(requirement, setup)
     problem = reason or case(requirement, setup)
-    results: Results | Stopped
+    results: Results | NoResult
     if reason is not None:
         results = Results(not_applicable(reason), not_applicable(reason))
     elif isinstance(problem, str):
-        results = Stopped(problem)
+        results = NoResult(problem)
     else:
         results = processes.confined(limits, search, problem)
-    if isinstance(results, Stopped):
+    if isinstance(results, NoResult):
         results = Results(not_checked(results.reason), not_checked(results.reason))
     premises = () if isinstance(problem, str) else tuple(assumptions(requirement, setup, problem))
     return (

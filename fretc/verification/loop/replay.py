@@ -31,7 +31,7 @@ class Moment(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Watched:
+class LoadedMonitor:
     """A monitor's text and the place of the requirement in it."""
 
     text: str
@@ -53,8 +53,8 @@ def moments(loop: Loop, start: Node, run: Sequence[tuple[Tick, Node]]) -> tuple[
 
 def replayed(
     run: Sequence[Moment],
-    safety: Watched,
-    observer: Watched,
+    safety: LoadedMonitor,
+    observer: LoadedMonitor,
     loop: Loop,
     cycle: int | None = None,
 ) -> tuple[Trace, bool]:
@@ -63,17 +63,17 @@ def replayed(
     Raises:
         AssertionError: the texts do not do what the model says.
     """
-    again = _Again(safety, observer, loop)
+    again = _Replay(safety, observer, loop)
     rows = tuple(again.row(moment) for moment in run)
     names = (*loop.environment.atoms, *EXTRA)
     actions = tuple(map(_in_words, run))
     return Trace(names, rows, actions, cycle), again.violated
 
 
-class _Again:
+class _Replay:
     """The texts, from their beginning."""
 
-    def __init__(self, safety: Watched, observer: Watched, loop: Loop) -> None:
+    def __init__(self, safety: LoadedMonitor, observer: LoadedMonitor, loop: Loop) -> None:
         self._safety, self._observer = safety.fresh(), observer.fresh()
         self._places = safety.place, observer.place
         self._interceptor: InterceptorMachine = loop.interceptor

@@ -18,7 +18,7 @@ from compiler.logic.orders import Exclusion
 from fretc.verification.interceptor.machine import InterceptorMachine, NotAnInterceptorError
 from fretc.verification.loop.actuation_model import ActuationModel, Channel
 from fretc.verification.loop.model import Environment, Loop, Node, Tick
-from fretc.verification.loop.replay import Watched, moments, replayed
+from fretc.verification.loop.replay import LoadedMonitor, moments, replayed
 from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.text_check import strange
 from monitors.interceptor import Options
@@ -92,8 +92,8 @@ class Parts:
     """The texts, loaded."""
 
     loop: Loop
-    safety: Watched
-    observer: Watched
+    safety: LoadedMonitor
+    observer: LoadedMonitor
 
     @classmethod
     def of(cls, case: Case, drive: ActuationModel | None = None) -> Parts:
@@ -136,7 +136,7 @@ def new_drive(case: Case) -> ActuationModel:
 
 
 @lru_cache(maxsize=8)
-def watched(text: str, requirement: str) -> Watched:
+def watched(text: str, requirement: str) -> LoadedMonitor:
     """A monitor of the requirement; only a text in the layout of fretc is executed.
 
     A question is asked of several channels, with the same texts.
@@ -148,14 +148,14 @@ def watched(text: str, requirement: str) -> Watched:
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == requirement]
     if not places:
         raise NotALoopError("the monitor is for other requirements")
-    return Watched(text, places[0])
+    return LoadedMonitor(text, places[0])
 
 
 # Finite runs ----------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
-class Reached:
+class Exploration:
     """The result of an exploration: its size, and a shortest run to a violation, if any."""
 
     states: int
@@ -166,7 +166,7 @@ class Reached:
     """Whether the robot can be sampled while it does not stand."""
 
 
-def reach(loop: Loop, limit: int) -> Reached:
+def reach(loop: Loop, limit: int) -> Exploration:
     """Every state, breadth first, up to the first violation.
 
     Raises:
@@ -182,7 +182,7 @@ def reach(loop: Loop, limit: int) -> Reached:
             moved |= not tick.letter[place]
             if tick.violated:
                 run = (*_way(came, node), (tick, next(loop.ends(begun))))
-                return Reached(len(came), steps, run, triggered, moved)
+                return Exploration(len(came), steps, run, triggered, moved)
             if begun in visited:
                 continue
             visited.add(begun)
@@ -193,7 +193,7 @@ def reach(loop: Loop, limit: int) -> Reached:
                         raise TooManyStatesError(limit)
                     came[after] = node, tick
                     waiting.append(after)
-    return Reached(len(came), steps, None, triggered, moved)
+    return Exploration(len(came), steps, None, triggered, moved)
 
 
 def _way(came: dict[Node, tuple[Node, Tick] | None], node: Node) -> tuple[tuple[Tick, Node], ...]:
@@ -205,7 +205,7 @@ def _way(came: dict[Node, tuple[Node, Tick] | None], node: Node) -> tuple[tuple[
     return tuple(reversed(way))
 
 
-def _requirement_result(case: Case, parts: Parts, reached: Reached, runs: Runs) -> Outcome:
+def _requirement_result(case: Case, parts: Parts, reached: Exploration, runs: Runs) -> Outcome:
     if reached.violation is not None:
         trace, violated = as_table(parts, reached.violation)
         assert violated, "the code does not violate what the model violates"

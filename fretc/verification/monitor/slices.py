@@ -30,7 +30,7 @@ class Slice:
 
 
 @dataclass(frozen=True, slots=True)
-class Alone:
+class SlicedMonitor:
     """A monitor of several requirements, stepped by the propositions of one."""
 
     machine: Stepped

@@ -36,7 +36,7 @@ from fretc.verification.monitor.equivalence import (
     compare,
 )
 from fretc.verification.monitor.machine import Stepped
-from fretc.verification.monitor.slices import Alone, slice_of
+from fretc.verification.monitor.slices import SlicedMonitor, slice_of
 from fretc.verification.monitor.statements import UnexpectedCodeError
 from fretc.verification.monitor.text_check import own, strange
 from monitors.kernel import Monitor
@@ -131,7 +131,7 @@ def _compared(
     place = places[0]
     atoms = tuple(dict.fromkeys((*atoms_of(requirement.sentence), *monitor.PROPOSITIONS)))
     needed, cells = _needed(requirement, text, monitor, atoms)
-    machine = Alone(Stepped(monitor, place, atoms, cells), len(atoms) - len(needed))
+    machine = SlicedMonitor(Stepped(monitor, place, atoms, cells), len(atoms) - len(needed))
     result = lock_step(requirement, machine, needed, limit)
     if isinstance(result, str):
         return not_checked(result)

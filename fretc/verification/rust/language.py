@@ -12,7 +12,7 @@ from compiler.targets.target import Options
 from fretc.verification.compiled.library import saved
 from fretc.verification.compiled.plan import BuiltLibrary, ParsedSource, SourceText, implemented
 from fretc.verification.rust.build import BASE, built, compiler
-from fretc.verification.rust.form import LEXIS, formed
+from fretc.verification.rust.layout import LEXIS, check_layout
 
 _OUTCOMES = re.compile(r"^[ \t]+/// (.*)\n[ \t]+pub (\w+): Outcome,$", re.MULTILINE)
 """The fields of that struct, and the ids above them."""
@@ -31,7 +31,7 @@ def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) ->
     own = next(file.text for file in files if file.path.name == "lib.rs")
     cells, inputs = _fields(own, "struct Rail"), _fields(own, "pub struct Inputs")
     outcomes = tuple(name for _, name in _OUTCOMES.findall(own))
-    form = formed(given.text, own, cells, inputs, outcomes)
+    form = check_layout(given.text, own, cells, inputs, outcomes)
     is_original = LEXIS.tokens(given.text) == LEXIS.tokens(own)
     return ParsedSource(own_rules, outcomes, form, cells, inputs, is_original)
 

@@ -9,7 +9,7 @@ import pytest
 from compiler.project.folder import Project, load
 from fretc.analysis.assumptions import assumptions
 from fretc.testing.assembly import jobs, suite
-from fretc.testing.log_synthesis.logs import StagedTest, logs
+from fretc.testing.log_synthesis.logs import LogTestResult, logs
 from tests.effort import some
 
 BINDINGS = """
@@ -70,7 +70,7 @@ expr = "nameless > 1"
 """
 
 
-def staged(sentence: str, folder: Path) -> list[StagedTest]:
+def staged(sentence: str, folder: Path) -> list[LogTestResult]:
     """What becomes of the tests of a sentence."""
     project = read(sentence, folder)
     assumed, _ = assumptions(project.formalized, project.declarations)

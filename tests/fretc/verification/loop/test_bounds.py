@@ -7,7 +7,7 @@ import pytest
 from compiler.logic.claims import Result, not_checked, proved
 from fretc.verification.loop import abstraction as looptwin
 from fretc.verification.loop import bounds
-from fretc.verification.loop.abstraction import Numbers, Plain, Times, covered
+from fretc.verification.loop.abstraction import Plain, Times, TwinState, covered
 from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.bounds import Answer, Question, search
 from fretc.verification.loop.model import Loop
@@ -137,7 +137,7 @@ def test_a_twin_whose_heart_beats_too_fast_is_found() -> None:
 
 @pytest.mark.slow
 def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
-    def too_strong(at: Numbers, times: Times, bound: object, logic: Plain) -> object:
+    def too_strong(at: TwinState, times: Times, bound: object, logic: Plain) -> object:
         return logic.both(real(at, times, bound, logic), at.open <= 0)
 
     real = bounds._invariant

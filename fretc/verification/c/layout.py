@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise, zip_longest
 
-from fretc.verification.compiled.flow import Flow, Form, Grammar
+from fretc.verification.compiled.flow import CheckedLayout, Flow, Grammar
 from fretc.verification.compiled.text import (
     NAME,
     Lexis,
@@ -53,7 +53,9 @@ _SUM = re.compile(r"(?:^|(?<=[?:] ))(?P<open>\( )?(?!\d+ . \d)\w+ [+-] \w+(?(ope
 _NEGATIVE = re.compile(r"(?:^|(?<=[?:=(] ))- \d+\b")
 
 
-def formed(text: str, written: str, base: str, cells: Sequence[str], inputs: Sequence[str]) -> Form:
+def check_layout(
+    text: str, written: str, base: str, cells: Sequence[str], inputs: Sequence[str]
+) -> CheckedLayout:
     """The parsed layout of a C file.
 
     Args:
@@ -78,7 +80,7 @@ def formed(text: str, written: str, base: str, cells: Sequence[str], inputs: Seq
     step = _Step(known, cells, literals)
     for statement in _statements(stepped):
         step.read(statement)
-    return Form(step.sources, literals)
+    return CheckedLayout(step.sources, literals)
 
 
 def without_comments(text: str) -> str:

@@ -47,7 +47,7 @@ class Judgement:
     """A demand is open, if none is broken."""
 
 
-class Bench:
+class RequirementModel:
     """One requirement, and those whose variables hang together with its own."""
 
     def __init__(

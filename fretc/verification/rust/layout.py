@@ -12,7 +12,7 @@ import re
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
-from fretc.verification.compiled.flow import Flow, Form, Grammar
+from fretc.verification.compiled.flow import CheckedLayout, Flow, Grammar
 from fretc.verification.compiled.text import (
     NAME,
     Lexis,
@@ -44,13 +44,13 @@ _DEADLINE = (("u32 :: try_from (", "("), (") . ok ( )", ")"), ("None", "0"))
 """What only the ticks to a deadline have, and expressions that depend on the same."""
 
 
-def formed(
+def check_layout(
     text: str,
     written: str,
     cells: Sequence[str],
     inputs: Sequence[str],
     outcomes: Sequence[str],
-) -> Form:
+) -> CheckedLayout:
     """The form of a text of a library.
 
     Args:
@@ -77,7 +77,7 @@ def formed(
         step.read(statement)
     head = ("Reading", "{")
     step.tell(outcomes, records(last, head), records(readings, head), _of_deadline)
-    return Form(step.sources, literals)
+    return CheckedLayout(step.sources, literals)
 
 
 def _statements(body: Tokens) -> list[Tokens]:

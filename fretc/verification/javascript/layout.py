@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 
-from fretc.verification.compiled.flow import Flow, Form, Grammar
+from fretc.verification.compiled.flow import CheckedLayout, Flow, Grammar
 from fretc.verification.compiled.text import (
     NAME,
     Lexis,
@@ -43,13 +43,13 @@ _FREE: tuple[Tokens, ...] = (("function", "rail"), ("function", "advance"))
 _READ = re.compile(r"const (\w+) = truths \[ (\d+) \] === null")
 
 
-def formed(
+def check_layout(
     text: str,
     written: str,
     cells: Sequence[str],
     windows: Collection[str],
     outcomes: Sequence[str],
-) -> Form:
+) -> CheckedLayout:
     """The parsed layout of a module.
 
     Args:
@@ -78,7 +78,7 @@ def formed(
     told, own_told = statements[place][4:], own_statements[own_place][4:]
     step.tell(outcomes, records(told, ("{",)), records(own_told, ("{",)))
     same(_joined(statements[place + 1 :]), _joined(own_statements[own_place + 1 :]))
-    return Form(step.sources, literals)
+    return CheckedLayout(step.sources, literals)
 
 
 def _signals_at(statements: Sequence[Tokens]) -> int:
