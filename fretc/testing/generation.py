@@ -1,4 +1,4 @@
-"""The tests of one requirement: each situation met by a shortest run, each mutant told apart."""
+"""Test generation for one requirement: a shortest run for each situation and each mutant."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from monitors.loading import load
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """What was made of one requirement."""
+    """Tests, situations and mutants of one requirement."""
 
     tested: Tested
     tests: tuple[Test, ...]
@@ -50,9 +50,9 @@ def batch(
 
     Args:
         requirement: the requirement.
-        others: requirements and assumptions whose variables hang together with its own; its tests
-            keep them.
-        seconds: of a processor.
+        others: requirements and assumptions that share variables with it, directly or indirectly;
+            its tests satisfy them.
+        seconds: CPU seconds.
     """
     try:
         return _Generation(Runs(requirement, others, seconds)).batch()
@@ -61,7 +61,7 @@ def batch(
 
 
 def lost(requirement: FormalizedRequirement, why: str) -> Batch:
-    """What stands there where nothing could be searched, for a reason."""
+    """The batch of a requirement without a search, with the reason."""
     return Batch(
         _tested(requirement, (), ""),
         (),
@@ -120,7 +120,7 @@ def _mutated(
 
 
 def _polarities(situation: Situation) -> tuple[Polarity, ...]:
-    """How a situation is to be shown."""
+    """Polarities of the tests of a situation."""
     if situation.unknown is not None:
         return (Polarity.UNKNOWN,)
     return Polarity.KEPT, Polarity.BROKEN
@@ -131,14 +131,14 @@ def _polarities(situation: Situation) -> tuple[Polarity, ...]:
 
 @dataclass(frozen=True, slots=True)
 class _Purpose:
-    """What a run was chosen for."""
+    """Goal for which a run was selected."""
 
     key: str
     words: str
 
 
 class _Generation:
-    """What is made of the runs of one requirement."""
+    """Generation of a batch from the runs of one requirement."""
 
     def __init__(self, runs: Runs) -> None:
         self._runs, self._rule = runs, runs.requirement
@@ -146,7 +146,7 @@ class _Generation:
         self._monitor = load(f"{self._rule.id}.py", emitted.text(self._rule))
 
     def batch(self) -> Batch:
-        """All of it."""
+        """The whole batch."""
         met = {
             (each.key, polarity): self._runs.meeting(each, polarity)
             for each in self._situations
@@ -167,7 +167,7 @@ class _Generation:
     # Choices
 
     def _meeting_all(self, met: Mapping[Need, Answer]) -> dict[Run, _Purpose]:
-        """Runs as short as those that were found, one for several needs; and what each is for."""
+        """Runs as short as the found ones, one for several goals; each with its goals."""
         found = {need: run for need, run in met.items() if isinstance(run, Run)}
         shown = {
             run: [need for need, shortest in found.items() if _serves(run, need, shortest)]
@@ -185,7 +185,7 @@ class _Generation:
     def _telling_apart(
         self, told: Mapping[str, Answer], runs: Collection[Run]
     ) -> dict[Run, _Purpose]:
-        """Runs for the mutants that those do not kill."""
+        """Runs for the mutants that the given runs do not kill."""
         alive = {each.key for each in self._wrong}.difference(*(run.kills for run in runs))
         shown = {
             run: [each.key for each in self._wrong if each.key in run.kills & alive]
@@ -222,7 +222,7 @@ class _Generation:
         )
 
     def _outcome(self, polarity: Polarity, verdict: Verdict) -> Iterator[str]:
-        """What the run makes of the requirement; nothing broken where only its end says no."""
+        """Verdict and violation of a run; no violation if only its end is wrong."""
         if polarity is Polarity.BROKEN and verdict == Verdict.INCONCLUSIVE:
             yield f"the run ends while {self._rule.id} is not met"
         elif polarity is not Polarity.UNKNOWN:
@@ -272,7 +272,7 @@ class _Generation:
                 yield _mutated(self._rule, each, MutantStatus.KILLED, tests=tests)
 
     def _telling(self, chosen: Iterable[Run]) -> dict[str, Answer]:
-        """Of each mutant that no chosen run kills: a shortest run that does, one for several."""
+        """A shortest run for each mutant that no selected run kills, one for several mutants."""
         found: dict[str, Answer] = {}
         runs = list(chosen)
         for each in self._wrong:
@@ -284,7 +284,7 @@ class _Generation:
 
 
 def _serves(run: Run, need: Need, shortest: Run) -> bool:
-    """Whether a run meets a need as well as the one that was found for it."""
+    """Whether a run serves a goal as well as the run that was found for it."""
     key, polarity = need
     met = run.early if key in shortest.early else run.situations
     same = run.polarity is polarity and run.word.ticks == shortest.word.ticks
@@ -292,5 +292,5 @@ def _serves(run: Run, need: Need, shortest: Run) -> bool:
 
 
 def _names(made: Mapping[Run, Test], runs: Iterable[Run]) -> Ids:
-    """Of the tests of some runs, the shortest first."""
+    """Names of the tests of some runs, the shortest first."""
     return tuple(made[run].name for run in sorted(runs, key=lambda run: run.rank))

@@ -1,4 +1,4 @@
-"""A suite of tests as it is written and read back: runs with their verdicts, and what they show."""
+"""Test suite as it is written and read back: runs with their verdicts, and what they cover."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from monitors.kernel.verdicts import Verdict
 
 SCHEMA: Final = "fretc-tests-1"
 LONGEST_NAME: Final = 100
-"""Characters of the name of a test, which also names its files."""
+"""Maximum length of the name of a test, which is also a file name."""
 Ids = tuple[Name, ...]
 
 
 class Repeat(Record, frozen=True):
-    """Equal ticks, one after the other."""
+    """Equal adjacent ticks."""
 
     count: Annotated[Ordinal, about("how many ticks")]
     values: Annotated[
@@ -29,18 +29,18 @@ class Repeat(Record, frozen=True):
 
 
 class Polarity(StrEnum):
-    """Whether the run of a test keeps the requirement that it tests."""
+    """Whether the run of a test satisfies its requirement."""
 
     KEPT = "kept"
     BROKEN = "broken"
     UNKNOWN = "unknown"
-    """What is unknown in the run decides."""
+    """The verdict depends on an unknown value."""
 
 
 class Test(Record, frozen=True):
-    """One run, and what a monitor of the requirement says of it."""
+    """One run, with the results of the requirement's monitor."""
 
-    __test__: ClassVar[bool] = False  # or pytest takes the class for a test
+    __test__: ClassVar[bool] = False  # Otherwise pytest collects the class.
 
     name: Annotated[Name, about("unique in the suite")]
     requirement: Name
@@ -64,25 +64,25 @@ class Test(Record, frozen=True):
 
     @property
     def ticks(self) -> int:
-        """How long it is."""
+        """Number of ticks."""
         return sum(row.count for row in self.rows)
 
 
 class GoalStatus(StrEnum):
-    """What came of an obligation: a situation that a test is to show."""
+    """Result for a situation that a test should cover."""
 
     MET = "met"
     IMPOSSIBLE = "impossible"
-    """No run of the requirement comes by it so: proved."""
+    """Proved: no run of the requirement covers it with this polarity."""
     EXCLUDED = "excluded"
-    """No run that keeps the others does: proved."""
+    """Proved: no run that satisfies the other requirements covers it."""
     NOT_SEARCHED = "not searched"
 
 
 class GoalResult(Record, frozen=True):
-    """A situation that tests show, on a run that keeps the requirement or on one that breaks it.
+    """A situation that tests cover, on a run that satisfies or violates the requirement.
 
-    One in which something is unknown is shown on a run that may do either.
+    A situation with unknown values may be covered by either run.
     """
 
     requirement: Name
@@ -98,18 +98,18 @@ class GoalResult(Record, frozen=True):
 
 
 class MutantStatus(StrEnum):
-    """What became of a mutant."""
+    """Result for a mutant."""
 
     KILLED = "killed"
     EQUIVALENT = "equivalent"
-    """It judges every finite run as the requirement does: proved."""
+    """Proved: it gives every finite run the verdict of the requirement."""
     EXCLUDED = "excluded"
-    """It judges every finite run so that keeps the others: proved."""
+    """Proved: the same verdict for every finite run that satisfies the other requirements."""
     NOT_SEARCHED = "not searched"
 
 
 class MutantResult(Record, frozen=True):
-    """A sentence that somebody might have written in place of the requirement."""
+    """A mutant of a requirement's sentence, with its result."""
 
     requirement: Name
     key: Name
@@ -122,7 +122,7 @@ class MutantResult(Record, frozen=True):
 
 
 class Tested(Record, frozen=True):
-    """A requirement of a suite, exactly."""
+    """A requirement of a suite, with its fingerprint."""
 
     id: Name
     sentence: Name
@@ -150,13 +150,13 @@ class Suite(Record, frozen=True):
 
     @property
     def is_complete(self) -> bool:
-        """Whether everything was searched."""
+        """Whether no search is missing."""
         met = all(each.outcome is not GoalStatus.NOT_SEARCHED for each in self.obligations)
         return met and all(each.outcome is not MutantStatus.NOT_SEARCHED for each in self.mutants)
 
 
 def unused(name: str, names: set[str]) -> str:
-    """The name, shortened to `LONGEST_NAME`, with a number where it is taken; it is taken then."""
+    """An unused name, shortened and numbered if needed; it is added to `names`."""
     ends = chain([""], (f"-{number}" for number in count(2)))
     candidates = (name[: LONGEST_NAME - len(end)].rstrip("-") + end for end in ends)
     found = next(each for each in candidates if each not in names)

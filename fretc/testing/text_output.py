@@ -1,4 +1,4 @@
-"""What `fretc test` prints: a row for each requirement, what no test shows, or tests as lanes."""
+"""Text output of `fretc test`: a row for each requirement, missing goals, or tests as tables."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def lines(suite: Suite) -> Iterator[Line]:
 
 
 def lines_of_file(suite: Suite) -> Iterator[Line]:
-    """The summary of tests that somebody else has made: what they show was not looked into."""
+    """Summary of tests from a file; the goals that they cover are not examined."""
     yield (
         f"{signs.GOOD.glyph} {_size(suite)}; the monitors give the expected results",
         signs.GOOD.colour,
@@ -112,7 +112,7 @@ def _remarks(suite: Suite) -> Iterator[Line]:
 
 
 def _lost(suite: Suite) -> Iterator[tuple[str, str]]:
-    """Requirements of which nothing was searched, all for one reason; and that."""
+    """Requirements without a search for the same reason, and the reason."""
     for each in suite.requirements:
         reasons = {one.why for one in suite.obligations if one.requirement == each.id}
         reasons |= {one.why for one in suite.mutants if one.requirement == each.id}
@@ -121,7 +121,7 @@ def _lost(suite: Suite) -> Iterator[tuple[str, str]]:
 
 
 def _doubts(suite: Suite) -> Iterator[Line]:
-    """Values that nobody may be able to bring about; one reason is enough here."""
+    """Tests with possibly impossible values, with one of the reasons."""
     doubted = [each for each in suite.requirements if each.doubt]
     if doubted:
         ids = listed([each.id for each in doubted])
@@ -137,7 +137,7 @@ def _by_situation(suite: Suite) -> list[list[GoalResult]]:
 
 
 def _unmet(obligations: Sequence[GoalResult]) -> Iterator[Line]:
-    """Of one situation, on runs that keep the requirement and on runs that break it."""
+    """Results of one situation, on satisfying runs and on violating runs."""
     first = obligations[0]
     for outcome, sign, how in (
         (GoalStatus.IMPOSSIBLE, signs.UNUSED, "no run shows this"),
@@ -189,10 +189,10 @@ def shown(
 
     Args:
         suite: all tests.
-        id: the requirement.
-        names: its atoms and variables: the lanes.
-        roles: of those that have one.
-        wordings: of atoms that are shown in other words than by their names.
+        id: id of the requirement.
+        names: its atoms and variables, which are the rows.
+        roles: roles of those that have one.
+        wordings: atoms with another label than their name.
     """
     tested = next(each for each in suite.requirements if each.id == id)
     yield f"{id}  {tested.sentence}", None

@@ -1,4 +1,4 @@
-"""What came of a program under test."""
+"""Results of a conformance test, as they are written and printed."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ SCHEMA: Final = "fretc-conformance-1"
 
 
 class Outcome(StrEnum):
-    """What came of an aim."""
+    """Result of the runs towards a goal."""
 
     REACHED = "reached"
     UP_TO_PROGRAM = "up to the program"
-    """No inputs force it, and the program did not bring it about."""
+    """No inputs force the situation, and the program did not cause it."""
     NOT_REACHED = "not reached"
-    """Inputs can force it, and yet it did not come."""
+    """Inputs can force the situation, but it did not occur."""
     NOT_SEARCHED = "not searched"
 
 
 class Situated(Record, frozen=True):
-    """A situation that the program was led to, or was to be led to."""
+    """A situation that was a goal of runs."""
 
     requirement: Name
     situation: Name
@@ -48,7 +48,7 @@ class Failure(Record, frozen=True):
 
 
 class Conformance(Record, frozen=True):
-    """All that was seen of a program."""
+    """All results about a program."""
 
     schema: Literal["fretc-conformance-1"]
     fretc: Annotated[str, about("the version of fretc")]
@@ -66,14 +66,14 @@ class Conformance(Record, frozen=True):
 
     @property
     def is_complete(self) -> bool:
-        """Whether all was searched, all was reached that can be forced, and all was asked for."""
+        """Whether the search is complete and every situation that can be forced was reached."""
         left = (Outcome.NOT_REACHED, Outcome.NOT_SEARCHED)
         reached = all(each.outcome not in left for each in self.situations)
         return self.whole and reached and not self.untried and not self.not_judged
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema of what was seen."""
+    """The JSON Schema of the results."""
     return json_schema(
         Conformance,
         SCHEMA,

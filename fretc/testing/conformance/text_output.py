@@ -1,4 +1,4 @@
-"""What `fretc test --against` prints: a row for each requirement, and each failure as lanes."""
+"""Text output of `fretc test --against`: a row for each requirement, and each failing run."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from fretish.diagnostics import signs
 
 
 def lines(found: Conformance, roles: Mapping[str, Role]) -> Iterator[Line]:
-    """All that was seen.
+    """All lines of the output.
 
     Args:
-        found: of a program.
-        roles: of its columns.
+        found: results of a program.
+        roles: roles of its columns.
     """
     sign = signs.BAD if found.failures else signs.GOOD if found.is_complete else signs.UNKNOWN
     yield f"{sign.glyph} {_headline(found)}", sign.colour
@@ -83,7 +83,7 @@ def _failure(failure: Failure, roles: Mapping[str, Role]) -> Iterator[Line]:
 
 
 def _rest(found: Conformance) -> Iterator[Line]:
-    """What was not reached, in words; of what is up to the program the keys."""
+    """Situations that were not reached."""
     for id in found.requirements:
         own = [each for each in found.situations if each.requirement == id]
         free = [each.situation for each in own if each.outcome is Outcome.UP_TO_PROGRAM]

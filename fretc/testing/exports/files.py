@@ -1,4 +1,4 @@
-"""The files of `fretc test --emit`."""
+"""Files of `fretc test --emit`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from fretc.testing.suite import Suite, Test
 
 
 class SuiteFormat(StrEnum):
-    """What tests are written as; the values are the words of `--emit`."""
+    """File format of tests; the values are those of `--emit`."""
 
     PYTEST = "pytest"
     CSV = "csv"
@@ -30,9 +30,9 @@ class SuiteFormat(StrEnum):
 
 
 INDEX = "tests.csv"
-"""The table of all tests, beside their files."""
+"""Name of the table of all tests, beside their files."""
 Left = Mapping[str, str]
-"""Why a test is in no file, by its name."""
+"""Name of a test without a file → the reason."""
 
 
 def files(
@@ -44,10 +44,10 @@ def files(
     """All files of a suite, and the tests that are in none of them.
 
     Args:
-        suite: made of the requirements.
+        suite: tests of the requirements.
         requirements: the requirements.
-        form: of the files.
-        languages: of the monitors that tests for pytest step.
+        form: file format.
+        languages: languages of the monitors in pytest files.
     """
     by_id = {requirement.id: requirement for requirement in requirements}
     reasons = {
@@ -78,7 +78,7 @@ def files(
 
 
 def _apart(file: Artifact, taken: Set[PurePosixPath]) -> Artifact:
-    """Where its name is that of a monitor: `x_monitor` is tested beside the monitor of `test_x`."""
+    """Whether its name is that of a monitor, as for requirements `x` and `x_monitor`."""
     path = file.path
     while path in taken:
         path = path.with_stem(f"{path.stem}_")
@@ -88,7 +88,7 @@ def _apart(file: Artifact, taken: Set[PurePosixPath]) -> Artifact:
 def _refusal(
     requirement: FormalizedRequirement, test: Test, form: SuiteFormat, languages: Sequence[Language]
 ) -> str | None:
-    """Why a test cannot be written so, as where there is no monitor; None: it can."""
+    """Why a test cannot be written in the format, for example without a monitor; None: it can."""
     match form:
         case SuiteFormat.FRET:
             return simulator.refusal(requirement, test)
@@ -115,7 +115,7 @@ _COLUMNS = ("file", "requirement", "ticks", "verdict", "finite", "decided", "fir
 
 
 def _index(tests: Sequence[Test], tables: Mapping[str, Table]) -> Artifact:
-    """What is expected of each table, and the option with which a monitor reads it."""
+    """Expected results of each table, and the option with which a monitor reads it."""
     rows = (
         (
             f"{test.name}.csv",

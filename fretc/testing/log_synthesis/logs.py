@@ -1,4 +1,4 @@
-"""Logs of tests: written, audited at once, and kept where the audit says what the test expects."""
+"""Logs of tests: written, audited, and kept if the audit gives the expected verdict."""
 
 from __future__ import annotations
 
@@ -28,28 +28,28 @@ Outcome = Literal["confirmed", "cannot be recorded", "not confirmed"]
 
 @dataclass(frozen=True, slots=True)
 class LogTestResult:
-    """What became of a test."""
+    """Result of writing a test as a log."""
 
     test: Test
     outcome: Outcome
     why: str = ""
     """Why there is no log; empty: there is one."""
     lead: int = 0
-    """Ticks of the log before those of the test."""
+    """Number of ticks of the log before those of the test."""
 
 
 def logs(
     project: Project, tests: Sequence[Test], folder: Path, tell: Callable[[int], None]
 ) -> Iterator[LogTestResult]:
-    """A log for each test that can be staged, `folder/NAME.mcap`.
+    """A log `folder/NAME.mcap` for each test that can be recorded.
 
-    A log is there once its audit has given the verdict that the test expects.
+    A log is kept if its audit gives the verdict that the test expects.
 
     Args:
-        project: whose requirements the tests are of.
-        tests: of its suite.
-        folder: that exists.
-        tell: is called with the number of tests that are done.
+        project: project of the requirements.
+        tests: tests of its suite.
+        folder: an existing folder.
+        tell: called with the number of finished tests.
 
     Raises:
         OSError: a log cannot be written.
@@ -93,7 +93,7 @@ def _log(plan: Plan, test: Test, monitor: Monitor, temporary: Path, folder: Path
 
 
 def _expected(test: Test, plan: Plan) -> str:
-    """The verdict of the audit: the clock says what is open at the end."""
+    """Expected verdict of the audit; the clock decides about obligations open at the end."""
     end = Verdict(plan.declarations.clock.end)
     return str(end if test.verdict == INCONCLUSIVE else test.verdict)
 

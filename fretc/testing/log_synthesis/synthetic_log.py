@@ -1,4 +1,4 @@
-"""A test as messages: for each tick contents of the fields with which the audit sees that tick."""
+"""Messages for a test: field contents with which the audit reads the values of each tick."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from fretish.bindings.declarations import Declarations, Path, Signal
 from monitors.kernel import Monitor
 
 EPOCH = 1_700_000_000 * 10**9
-"""Nanoseconds; when each log begins."""
+"""Start of each log in nanoseconds."""
 _MOST_COMBINED = 500_000
-"""Contents of all signals together that are tried for a tick."""
+"""Maximum number of combinations of contents that are tried for a tick."""
 _STATES = {False: FALSE, None: UNKNOWN, True: TRUE}
 
 
@@ -38,10 +38,10 @@ class SyntheticMessage:
 
 @dataclass(frozen=True, slots=True)
 class SyntheticLog:
-    """All messages of a log, by their times."""
+    """All messages of a log in the order of time."""
 
     lead: int
-    """Ticks before those of the test."""
+    """Number of ticks before those of the test."""
     messages: tuple[SyntheticMessage, ...]
 
 
@@ -49,12 +49,12 @@ def synthesize(test: Test, declarations: Declarations, monitor: Monitor) -> Synt
     """The messages of a test.
 
     Args:
-        test: of the suite.
-        declarations: the bindings of its propositions.
-        monitor: of its requirement.
+        test: a test of the suite.
+        declarations: bindings of its propositions.
+        monitor: monitor of its requirement.
 
     Raises:
-        NoStageError: what it asks for cannot be brought about by messages, or nothing says how.
+        NotRecordableError: no messages have the required values, or bindings are missing.
     """
     clock = declarations.clock
     if clock.period is None:
@@ -74,7 +74,7 @@ def synthesize(test: Test, declarations: Declarations, monitor: Monitor) -> Synt
 
 
 class _SignalSearch:
-    """The signals of a requirement, and what they may be."""
+    """The signals of a requirement, and their possible contents."""
 
     def __init__(
         self, parts: Sequence[Part], signals: Sequence[Signal], fields: Mapping[str, Field]
@@ -84,7 +84,7 @@ class _SignalSearch:
         self._known: dict[tuple[object, ...], tuple[FieldContent, ...] | None] = {}
 
     def contents(self, test: Test, found: TickPlan) -> list[tuple[FieldContent, ...]]:
-        """Of each tick the choice for each signal, in the order of the signals."""
+        """Contents of each tick, in the order of the signals."""
         rows = [row for row in test.rows for _ in range(row.count)]
         rows = [rows[0]] * found.lead + rows
         made: list[tuple[FieldContent, ...]] = []
@@ -103,7 +103,7 @@ class _SignalSearch:
     def _chosen(
         self, wanted: Sequence[bool | None], wished: Sequence[object]
     ) -> tuple[FieldContent, ...] | None:
-        """The contents with which all parts are as wanted, most of them as wished."""
+        """Contents that give all parts their required value, most of them preferred ones."""
         every = [
             self._choices(signal, wish) for signal, wish in zip(self.signals, wished, strict=True)
         ]
@@ -125,13 +125,13 @@ class _SignalSearch:
         read_by = [one.expression for one in self._parts if signal.name in one.proposition.signals]
         wishes = [] if isinstance(wish, float) and math.isnan(wish) else [wish]
         found = choices(signal, self.fields[signal.name], read_by, wishes)
-        return tuple(reversed(found)) if wishes == [None] else found  # what is unknown comes first
+        return tuple(reversed(found)) if wishes == [None] else found  # Unknown values come first.
 
     def _as_wished(self, choices: Sequence[FieldContent], wish: object) -> int:
-        """How many of the choices, from the first on, are what is wished for."""
+        """Number of leading choices that are the preferred ones."""
         first = choices[0].nominal
         if isinstance(wish, float) and math.isnan(wish):
-            return len(choices)  # nothing is
+            return len(choices)  # No message.
         return next((i for i, each in enumerate(choices) if each.nominal != first), len(choices))
 
     def _good(
@@ -140,7 +140,7 @@ class _SignalSearch:
         every: Sequence[Sequence[FieldContent]],
         places: Sequence[NDArray[np.intp]],
     ) -> NDArray[np.bool_]:
-        """In which combinations all parts are as wanted, by the code that audits logs."""
+        """For each combination, whether the audit reads the required value of all parts."""
         numbers = {
             signal.name: np.array([each.value for each in some], self._kind(signal))[place]
             for signal, some, place in zip(self.signals, every, places, strict=True)
@@ -184,7 +184,7 @@ def _messages(
     period: int,
     declarations: Declarations,
 ) -> Iterator[SyntheticMessage]:
-    """All topics, tick by tick; what is unknown by silence has none before it for long enough."""
+    """Messages of all topics, tick by tick; a topic without messages stays silent long enough."""
     topics = dict.fromkeys(signal.path.topic for signal in stage.signals)
     ticks = {topic: _message_ticks(stage, topic, contents, period) for topic in topics}
     speaking = set().union(*ticks.values())
@@ -199,10 +199,11 @@ def _messages(
 def _message_ticks(
     stage: _SignalSearch, topic: str, contents: Sequence[Sequence[FieldContent]], period: int
 ) -> set[int]:
-    """The ticks at which a topic has a message.
+    """Ticks at which a topic has a message.
 
     Raises:
-        NoStageError: an older message would count where none is to be known, or the reverse.
+        NotRecordableError: an older message would count where the value must be unknown, or the
+            reverse.
     """
     own = [i for i, signal in enumerate(stage.signals) if signal.path.topic == topic]
     silent = {t for t, chosen in enumerate(contents) if any(chosen[i].content is None for i in own)}
@@ -228,7 +229,7 @@ def _message_ticks(
 def _of_tick(
     stage: _SignalSearch, topic: str, chosen: Sequence[FieldContent], tick: int, period: int
 ) -> Iterator[SyntheticMessage]:
-    """The message of a tick, before it as often as its age asks for."""
+    """Messages of a tick, repeated before it as often as their maximum age requires."""
     own = {
         signal: choice
         for signal, choice in zip(stage.signals, chosen, strict=True)
@@ -247,7 +248,7 @@ def _of_tick(
 
 
 def _pulse(declarations: Declarations, topics: Mapping[str, None], time: int) -> SyntheticMessage:
-    """A message of another topic, so that the log lasts where nothing else is said."""
+    """Message of another topic, which makes the log cover ticks without messages."""
     for signal in declarations.signals.values():
         if signal.path.topic not in topics and signal.type is not None:
             name = field(signal).message

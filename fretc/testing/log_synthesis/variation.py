@@ -1,4 +1,4 @@
-"""Scenarios like another one, by chance: things moved, somebody who walks in, and faults."""
+"""Random variations of a scenario: moved objects, a walking person, and faults."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from simulation.world.scene import STORE, Barrel
 Change = Callable[[Scenario, Random], Scenario]
 _TOPICS = ("/scan", "/odom", "/gwendolen_control", "/cmd_vel_filtered")
 _AWAY = 0.8
-"""Metres that a moved obstacle stays away from where the robot begins."""
+"""Minimum distance in metres between a moved obstacle and the robot's start."""
 
 
 def varied(scenario: Scenario, chance: Random) -> Scenario:
-    """The scenario with one to three changes; what it was to show is no longer known."""
+    """The scenario with one to three changes, and without expected results."""
     for change in chance.sample(CHANGES, chance.randint(1, 3)):
         scenario = change(scenario, chance)
     title = "A variation of a mission"
@@ -51,7 +51,7 @@ def _walked(scenario: Scenario, chance: Random) -> Scenario:
 
 
 def _place(chance: Random) -> tuple[float, float]:
-    """On the way of the robot, or beside it."""
+    """A position on the way of the robot, or beside it."""
     stops = [STORE.start, *STORE.goals]
     at = chance.randrange(len(stops) - 1)
     share = chance.uniform(0.1, 0.9)

@@ -1,10 +1,11 @@
-"""An abstraction of the closed loop, its twin: six whole numbers and one relation between them.
+"""An integer abstraction of the closed loop: six numbers and one relation between them.
 
-It keeps the oldest open demand: its age, the fate of the first request that was not lost since the
-present stop began, and how long the wheels have zero. Requests at every tick count as a heartbeat
-of one tick. The twin may take more steps than the loop, never fewer: `covered` checks that step by
-step where the loop is small. So an inductive invariant of the twin holds of the loop. Times are
-cells, those of `fretc.verification.loop.model`. Solvers and Python share the relation.
+It stores the oldest open obligation: its age, the state of the first request that was not lost
+since the present stop began, and how long the wheels have had zero. Requests at every tick count as
+a heartbeat of one tick. The abstraction may take more steps than the loop, never fewer: `covered`
+checks that step by step for small parameters. So an inductive invariant of the abstraction holds
+for the loop. Times are cells, those of `fretc.verification.loop.model`. Solvers and Python share
+the relation.
 """
 
 from __future__ import annotations
@@ -19,28 +20,28 @@ from fretc.verification.loop.actuation_model import Channel, Queue
 from fretc.verification.loop.model import Loop, Node, Tick
 
 NONE, ARRIVED = -1, -2
-"""In place of the age of a request: none is in flight; one has arrived."""
+"""Values in place of the age of a request: none is in flight; one has arrived."""
 
 
 class TwinState(NamedTuple):
-    """The twin at the end of a tick; whole numbers, or terms of a solver."""
+    """State of the abstraction at the end of a tick; integers, or terms of a solver."""
 
     open: Any
-    """Ticks since the trigger of the oldest open demand; -1: none is open."""
+    """Ticks since the trigger of the oldest open obligation; -1: none is open."""
     age: Any
     """Cells since the sending of the first request of this stop that was not lost."""
     losses: Any
     """Messages lost since the last one that was not."""
     still: Any
-    """Ends of cells since the wheels have zero, at most `braking + 1`; -1: they move."""
+    """Ends of cells since the wheels have had zero, at most `braking + 1`; -1: they move."""
     requested: Any
-    """1: a stop is requested, whether a message says so or not; 0: none is."""
+    """1: a stop is requested, whether a message was sent or not; 0: none is."""
     silent: Any
     """Ticks from the last message to the next tick."""
 
 
 class StepChoice(NamedTuple):
-    """The free choices of a step."""
+    """Free choices of a step."""
 
     stands: Any
     sent: Any
@@ -51,51 +52,51 @@ class StepChoice(NamedTuple):
 
 
 class Times(NamedTuple):
-    """The parameters; `cells` and `heartbeat` are always numbers, the others may be terms."""
+    """Parameters; `cells` and `heartbeat` are always numbers, the others may be terms."""
 
     cells: int
     heartbeat: int
-    """Ticks: after so many without a message the next one is sent, lost or not."""
+    """Maximum silence in ticks, after which the next message is sent, lost or not."""
     latency: Any
     lost: Any
     braking: Any
 
 
 class Logic(Protocol):
-    """And, or: of truth values or of terms."""
+    """Conjunction and disjunction, of truth values or of terms."""
 
     def both(self, *parts: Any) -> Any:
-        """All of them."""
+        """Conjunction."""
 
     def either(self, *parts: Any) -> Any:
-        """At least one of them."""
+        """Disjunction."""
 
     def no(self, part: Any) -> Any:
-        """Not."""
+        """Negation."""
 
 
 class Plain:
-    """Truth values of Python."""
+    """Logic of Python truth values."""
 
     def both(self, *parts: Any) -> bool:
-        """All of them."""
+        """Conjunction."""
         return all(parts)
 
     def either(self, *parts: Any) -> bool:
-        """At least one of them."""
+        """Disjunction."""
         return any(parts)
 
     def no(self, part: Any) -> bool:
-        """Not."""
+        """Negation."""
         return not part
 
 
 INITIAL = TwinState(-1, NONE, 0, None, 0, 0)
-"""`still` is left out: it is `braking + 1`, for the robot stands."""
+"""Initial values; `still` is `braking + 1`, because the robot stands."""
 
 
 def begins(now: TwinState, times: Times, logic: Logic) -> Any:
-    """Before the first tick."""
+    """The state before the first tick."""
     standing = now.still == times.braking + 1
     quiet = logic.both(now.losses == 0, now.requested == 0, now.silent == 0)
     return logic.both(now.open == -1, now.age == NONE, standing, quiet)
@@ -104,7 +105,7 @@ def begins(now: TwinState, times: Times, logic: Logic) -> Any:
 def relation(
     now: TwinState, then: TwinState, choice: StepChoice, times: Times, logic: Logic
 ) -> Any:
-    """Whether the twin can go from one end of a tick to the next, by that choice."""
+    """Whether the choice leads from one state at the end of a tick to the next."""
     both, either, no = logic.both, logic.either, logic.no
     sampled = both(
         either(no(choice.stands), now.still >= 0),
@@ -131,7 +132,7 @@ def relation(
 def _message(
     now: TwinState, then: TwinState, choice: StepChoice, times: Times, logic: Logic
 ) -> Any:
-    """The fate of the message: each change has one, and silence has an end."""
+    """Sending: each change is sent or lost, and a silence ends after the heartbeat."""
     both, either, no = logic.both, logic.either, logic.no
     quiet = both(
         then.requested == now.requested, now.silent < times.heartbeat, then.silent == now.silent + 1
@@ -147,7 +148,7 @@ def _message(
 def _requested(
     now: TwinState, then: TwinState, choice: StepChoice, times: Times, logic: Logic
 ) -> Any:
-    """The fate of the request in a tick in which a stop is requested."""
+    """The request, in a tick in which a stop is requested."""
     both, either, no = logic.both, logic.either, logic.no
     none = either(now.requested == 0, now.age == NONE)
     unsent, sent = either(no(choice.sent), choice.lost), both(choice.sent, no(choice.lost))
@@ -181,22 +182,22 @@ def _arrival(age: Any, then: TwinState, choice: StepChoice, times: Times, logic:
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """The result of following the loop step by step."""
+    """Result of comparing the loop with the abstraction step by step."""
 
     steps: int
     longest: int
-    """The most ticks for which a demand is open; -1: there is never one."""
+    """Maximum number of ticks for which an obligation is open; -1: there is none."""
     uncovered: tuple[TwinState, TwinState] | None
-    """A step that the loop takes and the twin cannot; None: there is no such step."""
+    """A step of the loop that the abstraction cannot take; None: there is none."""
 
 
 def covered(loop: Loop, limit: int, longest: int) -> Coverage:
-    """Whether the twin can take every step of the loop, over all states.
+    """Whether the abstraction can take every step of the loop, over all states.
 
     Args:
-        loop: whose safety function has no deadline, or up to its violation.
-        limit: the most states.
-        longest: ticks; the search stops where a demand is open for longer.
+        loop: a loop without a deadline, or up to its violation.
+        limit: maximum number of states.
+        longest: ticks; the search stops if an obligation is open for longer.
 
     Raises:
         TooManyStatesError: there are more states than the limit.
@@ -215,7 +216,7 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
             if tick.violated:
                 continue
             case = now, begun, tick.owed, tick.sent
-            if case in ended:  # the same steps, of another letter
+            if case in ended:  # The same steps belong to another valuation.
                 steps += ended[case]
                 continue
             before = steps
@@ -224,7 +225,7 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
                 steps += 1
                 wheels = after.wheels.still, after.wheels.queue
                 then = follow.get(wheels)
-                if then is None:  # the interceptor's own state is nothing to the twin
+                if then is None:  # The abstraction ignores the interceptor's own state.
                     then = follow[wheels] = _followed(now, tick, after, channel)
                     most = max(most, then.open)
                     if (now, then) not in allowed:
@@ -242,7 +243,7 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
 
 
 def _followed(now: TwinState, tick: Tick, after: Node, channel: Channel) -> TwinState:
-    """The numbers of the twin after a step of the loop."""
+    """State of the abstraction after a step of the loop."""
     if not tick.requested:
         return _numbers(-1, NONE, after)
     age = now.age if now.requested else NONE
@@ -260,7 +261,7 @@ def _numbers(open_: int, age: int, node: Node) -> TwinState:
 
 
 def times_of(channel: Channel) -> Times:
-    """The times of a channel that repeats its requests: at every tick, or after a silence."""
+    """Times of a channel that repeats its requests: at every tick, or after a silence."""
     beat = channel.heartbeat if channel.edge else 1
     return Times(channel.cells, beat, channel.latency, channel.lost, channel.braking)
 

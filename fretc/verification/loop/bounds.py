@@ -1,10 +1,10 @@
-"""Layer BOUNDS: how long an answer takes at most, for every latency, loss and braking time.
+"""Layer BOUNDS: the maximum response time, for every latency, loss and braking time.
 
-The closed loop has a twin in whole numbers (`fretc.verification.loop.abstraction`). z3 proves an
-inductive invariant of it for all times: a demand is open for less than any D with `D *
-tick >= lost * heartbeat + latency + braking` and `D * tick > lost * heartbeat`, where requests at
-every tick have a heartbeat of a tick. Beside the proof, the twin is compared with the texts at
-small times, and a run of the texts shows that under the declared times a lower bound fails.
+The closed loop has an integer abstraction (`fretc.verification.loop.abstraction`). z3 proves an
+inductive invariant of it for all times: an obligation is open for less than any D with `D * tick >=
+lost * heartbeat + latency + braking` and `D * tick > lost * heartbeat`, where requests at every
+tick have a heartbeat of a tick. In addition, the abstraction is compared with the code at small
+times, and a run of the code shows that a lower bound fails under the declared times.
 
 Source: Manna, Pnueli, Temporal verification of reactive systems: safety, 1995, chapter 1
 (invariance).
@@ -59,21 +59,22 @@ from monitors.interceptor import Options
 _MORE = "the ticks of `latency` and `braking` together, at least one"
 ANSWERED = f"every demand is answered within `lost` ticks and {_MORE}"
 _SMALL = ((1, 0, 0, 0), (1, 1, 1, 1), (2, 1, 1, 2), (1, 2, 2, 0), (3, 4, 1, 2))
-"""Cells to a tick, latency, losses in a row, braking: for comparing the twin with the texts."""
+"""Cells in a tick, latency, losses in a row, and braking, for comparing the abstraction with the
+code."""
 _QUERY = 20_000
 """Milliseconds for each query of z3."""
 
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """The question for another process."""
+    """The proof problem, in a form for another process."""
 
     case: Case
     sentence: s.Sentence
     ticks: int | None
-    """The bound of the sentence; None: it has none."""
+    """Bound of the sentence; None: it has none."""
     tick: int
-    """Nanoseconds."""
+    """Length of a tick in nanoseconds."""
 
     @property
     def unknown(self) -> str | None:
@@ -88,7 +89,7 @@ class Question:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The results of both claims, and the version of z3."""
+    """Results of both claims, and the version of z3."""
 
     answered: Outcome
     enough: Outcome
@@ -98,7 +99,7 @@ class Answer:
 def bounds_proofs(
     requirement: FormalizedRequirement, setup: Setup, limits: Limits
 ) -> tuple[Proof, ...]:
-    """Both claims: an answer comes in time, whatever the times are; and the bound is enough."""
+    """Proofs of both claims: a response comes in time for all times; and the bound is enough."""
     reason = _inapplicable(requirement, setup)
     query = reason or question(requirement, setup)
     answer: Answer | NoResult
@@ -155,7 +156,7 @@ def _ticks(amount: int) -> str:
 
 
 def _inapplicable(requirement: FormalizedRequirement, setup: Setup) -> str | None:
-    """Why there is no bound to ask about; None: there is one."""
+    """Why the requirement has no bound to prove; None: it has one."""
     reason, sentence = inapplicable(requirement, setup), requirement.sentence
     if reason is not None:
         return reason
@@ -167,7 +168,7 @@ def _inapplicable(requirement: FormalizedRequirement, setup: Setup) -> str | Non
 
 
 def question(requirement: FormalizedRequirement, setup: Setup) -> Question | str:
-    """The question to prove, of a requirement that has a bound; or why it cannot be asked."""
+    """The proof problem of a requirement with a bound; or why it cannot be examined."""
     problem = case(requirement, setup)
     if isinstance(problem, str):
         return problem
@@ -189,7 +190,7 @@ def question(requirement: FormalizedRequirement, setup: Setup) -> Question | str
 
 
 def _answers(sentence: s.Sentence, stands: str) -> bool:
-    """Whether the response holds wherever the robot stands."""
+    """Whether the response holds whenever the robot stands."""
     atoms = atoms_of(sentence)
     letters = meanings(sentence, atoms)
     place = atoms.index(stands)
@@ -200,7 +201,7 @@ def _answers(sentence: s.Sentence, stands: str) -> bool:
 
 
 def search(query: Question) -> Answer:
-    """Prove the invariant, compare the twin with the texts, and look for the least bound."""
+    """Prove the invariant, compare abstraction and code, and search for the least bound."""
     try:
         endless = _endless(query)
         parts = Parts.of(endless)
@@ -219,19 +220,19 @@ def search(query: Question) -> Answer:
 
 
 def _covered(query: Question, endless: Case, parts: Parts) -> tuple[int, int, int]:
-    """Compare loops with the twin.
+    """Compare loops with the abstraction.
 
     Args:
-        query: the question.
+        query: the proof problem.
         endless: its case without a bound, so that no run ends at a deadline.
-        parts: those of the endless case.
+        parts: the parts of the endless case.
 
     Returns:
-        For how many ticks a demand of the endless case is open at most, -1 if there is none; how
-        many steps were compared, and of how many loops.
+        Maximum number of ticks for which an obligation of the endless case is open, -1 if there is
+        none; number of compared steps, and of loops.
 
     Raises:
-        NotALoopError: one of the steps is no step of the twin.
+        NotALoopError: a step is not a step of the abstraction.
     """
     small = _short(query.case.settings)
     cases = (
@@ -266,7 +267,7 @@ def _channel(declared: Channel, cells: int, latency: int, lost: int, braking: in
 
 
 def _short(settings: Options) -> Options:
-    """The same settings with short times: the twin does not depend on them."""
+    """The same settings with short times, on which the abstraction does not depend."""
     return replace(
         settings,
         hold=min(settings.hold, 2),
@@ -277,13 +278,13 @@ def _short(settings: Options) -> Options:
 
 
 def _formula(channel: Channel) -> int:
-    """D: ticks after which each demand is answered, as the claim says."""
+    """D: ticks within which each obligation is met, as in the claim."""
     filled = -(-(channel.latency + channel.braking) // channel.cells)
     return channel.lost * times_of(channel).heartbeat + max(1, filled)
 
 
 def _endless(query: Question) -> Case:
-    """The case with `eventually` in place of the bound: no run ends at a deadline."""
+    """The case with `eventually` in place of the bound, so that no run ends at a deadline."""
     return _with(query, s.Eventually())
 
 
@@ -300,9 +301,9 @@ def _least(query: Question, least: int, drive: ActuationModel) -> Outcome:
     """Whether the bound is enough.
 
     Args:
-        query: the question.
-        least: ticks, the least bound that is enough; 0: no demand is ever open.
-        drive: of the case.
+        query: the proof problem.
+        least: least sufficient bound in ticks; 0: no obligation is ever open.
+        drive: actuation model of the case.
     """
     if least == 0:
         return not_checked("no demand is ever open")
@@ -323,7 +324,7 @@ def _bound(ticks: int) -> s.Timing:
 
 
 def _violating(query: Question, drive: ActuationModel) -> Any:
-    """The shortest run that violates the sentence as it is."""
+    """A shortest run that violates the original sentence."""
     assert query.ticks is not None
     parts = Parts.of(_with(query, _bound(query.ticks)), drive)
     violation = reach(parts.loop, query.case.limit).violation
@@ -340,7 +341,7 @@ def _proved(declared: Times) -> tuple[str | None, str]:
     """Why the invariant is not proved, None if it is; and z3's version.
 
     Args:
-        declared: only `cells` and `heartbeat` count; z3 treats the others as unknowns.
+        declared: only `cells` and `heartbeat` count; the others are unknowns for z3.
     """
     import z3
 
@@ -387,10 +388,10 @@ def _proved(declared: Times) -> tuple[str | None, str]:
 
 
 def _invariant(at: TwinState, times: Times, bound: Any, logic: Any) -> Any:
-    """The invariant at the end of each tick: why an answer comes in time.
+    """The invariant at the end of each tick: why a response comes in time.
 
     At most `lost` requests of a stop are lost in a row; the first other one is in flight for less
-    than the latency; from its arrival on, the wheels have zero. An open demand is no older than
+    than the latency; from its arrival on, the wheels have zero. An open obligation is no older than
     its request.
     """
     k, beat, both, either = times.cells, times.heartbeat, logic.both, logic.either

@@ -1,9 +1,8 @@
 """The closed loop of monitor, interceptor and any environment, and its two claims.
 
-The search explores the texts themselves: the monitor as the safety function that requests stops,
-the monitor that fretc makes of the sentence as the observer, and the steps of the interceptor. The
-model between them is `fretc.verification.loop.model`, and its durations are whole cells, rounded
-up.
+The search explores the code itself: the monitor as the safety function that requests stops, the
+generated monitor of the sentence as the observer, and the steps of the interceptor. The model
+between them is `fretc.verification.loop.model`, and its durations are whole cells, rounded up.
 """
 
 from __future__ import annotations
@@ -32,12 +31,12 @@ from fretish.expressions import names
 KEPT = "monitor, interceptor and any environment together satisfy the requirement"
 RELEASED = "the stop is released once no demand begins any more"
 _FINEST = 20
-"""Cells to a tick, where the interceptor has no timer to define a cell."""
+"""Maximum number of cells in a tick if the interceptor has no timer to define a cell."""
 
 
 @dataclass(frozen=True, slots=True)
 class NamedText:
-    """A text under verification, and the name that proofs give it."""
+    """A text to verify, and its name in proofs."""
 
     name: str
     text: str
@@ -45,7 +44,7 @@ class NamedText:
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """The parts of a loop beside the requirement; None: not declared."""
+    """Parts of a loop besides the requirement; None: not declared."""
 
     monitor: NamedText
     interceptor: NamedText | None
@@ -56,7 +55,7 @@ class Setup:
 def loop_proofs(
     requirement: FormalizedRequirement, setup: Setup, limits: Limits
 ) -> tuple[Proof, ...]:
-    """The proofs of both claims: the requirement is kept, and the stop is released."""
+    """Proofs of both claims: the requirement is satisfied, and the stop is released."""
     reason = inapplicable(requirement, setup)
     problem = reason or case(requirement, setup)
     results: Results | NoResult
@@ -94,7 +93,7 @@ def _evidence(
 
 
 def artefacts(requirement: FormalizedRequirement, setup: Setup) -> dict[str, str]:
-    """SHA-256 of each text, and of what the bindings assume."""
+    """SHA-256 of each text, and of the assumptions of the bindings."""
     texts = [setup.monitor, *([setup.interceptor] if setup.interceptor else [])]
     hashes = {text.name: sha256(text.text) for text in texts}
     digest = hash_of_assumed(requirement.declarations) if requirement.declarations else ""
@@ -117,7 +116,7 @@ def inapplicable(requirement: FormalizedRequirement, setup: Setup) -> str | None
 
 
 def case(requirement: FormalizedRequirement, setup: Setup) -> Case | str:
-    """The case to search, of a requirement that a loop decides; or why it cannot be searched."""
+    """The case to search; or why it cannot be searched."""
     interception, assumed = setup.interception, setup.assumed
     assert interception is not None
     assert setup.interceptor is not None
@@ -167,7 +166,7 @@ def channel(
 
 
 def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
-    """Nanoseconds: a period of the timer; without a timer the unit that fits the durations best."""
+    """Length of a cell in nanoseconds: the timer's period, or the best unit for the durations."""
     if interception.form is Form.TIMER:
         return interception.period
     exact = gcd(tick, assumed.latency, assumed.braking)
@@ -180,13 +179,13 @@ def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
 def assumptions(
     requirement: FormalizedRequirement, setup: Setup, problem: Case, *, any_time: bool = False
 ) -> Iterator[str]:
-    """The assumptions of the verdict in words, each with its place of declaration.
+    """Assumptions of the verdict in words, each with the table that declares it.
 
     Args:
         requirement: the requirement.
         setup: the declarations.
         problem: the case of requirement and setup.
-        any_time: the verdict holds whatever latency, losses and braking time are.
+        any_time: whether the verdict holds for all latencies, losses and braking times.
     """
     interception, assumed, channel = setup.interception, setup.assumed, problem.channel
     assert interception is not None
@@ -248,7 +247,7 @@ def _when(assumed: Assumed) -> str:
 def _rounded(
     interception: Interception, assumed: Assumed, tick: int, *, any_time: bool
 ) -> Iterator[str]:
-    """Durations that are no whole number of cells, or of ticks: the proof rounds them up."""
+    """Durations that are not a whole number of cells or ticks, which the proof rounds up."""
     cell = cell_of(tick, interception, assumed)
     cells = "whole cells of the model"
     for name, duration, unit, grid in (

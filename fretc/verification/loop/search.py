@@ -1,7 +1,7 @@
-"""Exploration of the closed loop: a shortest violation, an endless debt, a stop that stays.
+"""Exploration of the closed loop: a shortest violation, an endless one, a stop that stays.
 
 All of it is reachability in a finite graph (`fretc.verification.loop.model`); Spot searches for
-endless runs. The texts replay each run before a result contains it.
+endless runs. The code replays each run before a result contains it.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from monitors.interceptor import Options
 from monitors.loading import load
 
 MOST_ATOMS = 8
-"""Each proposition doubles the letters of a tick."""
+"""Maximum number of propositions, each of which doubles the valuations of a tick."""
 LONGEST = 250
-"""Ticks: Spot expands bounds, so it gets no longer one."""
+"""Maximum bound in ticks for Spot, which expands bounds."""
 
-_HALT, _TRIGGER = f.Atom("_halt_"), f.Atom("_trigger_")  # no names of FRETish
+_HALT, _TRIGGER = f.Atom("_halt_"), f.Atom("_trigger_")  # These are not names of FRETish.
 RELEASE = f.implies(
     f.eventually(f.globally(f.not_(_TRIGGER))), f.eventually(f.globally(f.not_(_HALT)))
 )
@@ -37,23 +37,23 @@ RELEASE = f.implies(
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """Everything that the search depends on: texts and numbers."""
+    """Everything on which the search depends: code and numbers."""
 
     requirement: str
     formula: f.Formula
-    """Future-time, on infinite traces."""
+    """Future-time formula on infinite traces."""
     safety: str
-    """The text of the monitor that requests stops."""
+    """Text of the monitor that requests stops."""
     observer: str
-    """The text of the monitor that detects violations."""
+    """Text of the monitor that detects violations."""
     interceptor: str
     settings: Options
     channel: Channel
     stands: str
     limit: int = 10**6
-    """The most states of the exploration."""
+    """Maximum number of states of the exploration."""
     excluded: tuple[Exclusion, ...] = ()
-    """What the propositions cannot be together."""
+    """Combinations of propositions that cannot occur."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +65,11 @@ class Results:
 
 
 class NotALoopError(Exception):
-    """The case cannot be explored; the text says why."""
+    """The case cannot be explored; the message gives the reason."""
 
 
 def search(case: Case) -> Results:
-    """Look for a violation, then for an endless one, then for a stop that stays."""
+    """Search for a violation, then for an endless one, then for a stop that stays."""
     try:
         parts = Parts.of(case)
         reached = reach(parts.loop, case.limit)
@@ -89,7 +89,7 @@ def search(case: Case) -> Results:
 
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """The texts, loaded."""
+    """The loaded code."""
 
     loop: Loop
     safety: LoadedMonitor
@@ -97,14 +97,15 @@ class Parts:
 
     @classmethod
     def of(cls, case: Case, drive: ActuationModel | None = None) -> Parts:
-        """The parts of a case.
+        """The loaded parts of a case.
 
         Args:
-            case: it.
-            drive: of another case with the same interceptor, settings and channel; None: a new one.
+            case: the case.
+            drive: actuation model of another case with the same interceptor, settings and channel;
+                None: a new one.
 
         Raises:
-            NotALoopError, NotAnInterceptorError: a text is not what it should be.
+            NotALoopError, NotAnInterceptorError: a text cannot be used.
         """
         assert drive is None or drive.channel == case.channel
         same = case.safety == case.observer
@@ -126,10 +127,10 @@ class Parts:
 
 
 def new_drive(case: Case) -> ActuationModel:
-    """The drive of a case.
+    """The actuation model of a case.
 
     Raises:
-        NotAnInterceptorError: the text of its interceptor is not what it should be.
+        NotAnInterceptorError: the text of its interceptor cannot be used.
     """
     machine = InterceptorMachine(case.interceptor, case.settings, case.limit)
     return ActuationModel(machine, case.channel)
@@ -139,7 +140,7 @@ def new_drive(case: Case) -> ActuationModel:
 def watched(text: str, requirement: str) -> LoadedMonitor:
     """A monitor of the requirement; only a text in the layout of fretc is executed.
 
-    A question is asked of several channels, with the same texts.
+    The result is cached, because a requirement is examined with several channels.
     """
     reason = strange(text)
     if reason is not None:
@@ -156,18 +157,18 @@ def watched(text: str, requirement: str) -> LoadedMonitor:
 
 @dataclass(frozen=True, slots=True)
 class Exploration:
-    """The result of an exploration: its size, and a shortest run to a violation, if any."""
+    """Result of an exploration: its size, and a shortest run to a violation, if any."""
 
     states: int
     steps: int
     violation: tuple[tuple[Tick, Node], ...] | None
     triggered: bool
     moved: bool
-    """Whether the robot can be sampled while it does not stand."""
+    """Whether the robot can be sampled while it moves."""
 
 
 def reach(loop: Loop, limit: int) -> Exploration:
-    """Every state, breadth first, up to the first violation.
+    """All states, breadth first, up to the first violation.
 
     Raises:
         TooManyStatesError: there are more states than the limit.
@@ -238,7 +239,7 @@ def _release_result(parts: Parts, runs: Runs) -> Outcome:
 def as_table(
     parts: Parts, run: tuple[tuple[Tick, Node], ...], cycle: int | None = None
 ) -> tuple[Trace, bool]:
-    """The run as a table, replayed by the texts; and whether it violates the requirement."""
+    """The run as a table, replayed by the code; and whether it violates the requirement."""
     visible = moments(parts.loop, parts.loop.initial, run)
     return replayed(visible, parts.safety, parts.observer, parts.loop, cycle)
 
@@ -255,12 +256,12 @@ class Runs:
 
     loop: Loop
     visible: frozenset[str]
-    """The atoms that distinguish states."""
+    """Atoms that distinguish states."""
     explored: Explored[Labelled]
 
     @classmethod
     def of(cls, loop: Loop, visible: frozenset[str], limit: int) -> Runs:
-        """Raises TooManyStatesError where there are more states than the limit."""
+        """The runs; raises TooManyStatesError if there are more states than the limit."""
         ends: dict[tuple[frozenset[str], Node], tuple[Labelled, ...]] = {}
 
         def successors(state: Labelled) -> Iterator[Labelled]:
@@ -302,7 +303,7 @@ def _true(loop: Loop, tick: Tick) -> frozenset[str]:
 
 
 def _labelled(loop: Loop, true: frozenset[str], begun: Node) -> Iterator[Labelled]:
-    """The states at the end of a tick that has begun so, with those atoms."""
+    """States at the end of a tick with this beginning, with these atoms."""
     halted = true | {_HALT.name}
     for after in loop.ends(begun):
         blocks = loop.interceptor.blocks_commands(after.wheels.interceptor)
@@ -310,7 +311,7 @@ def _labelled(loop: Loop, true: frozenset[str], begun: Node) -> Iterator[Labelle
 
 
 def is_safety(formula: f.Formula, positive: bool = True) -> bool:
-    """Whether its form shows that each violation has a finite prefix that shows it.
+    """Whether the syntax shows that each violation has a finite prefix that proves it.
 
     Source: Sistla, Safety, liveness and fairness in temporal logic, FAC 6 (1994), section 3.
     """

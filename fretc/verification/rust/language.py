@@ -15,16 +15,16 @@ from fretc.verification.rust.build import BASE, built, compiler
 from fretc.verification.rust.layout import LEXIS, check_layout
 
 _OUTCOMES = re.compile(r"^[ \t]+/// (.*)\n[ \t]+pub (\w+): Outcome,$", re.MULTILINE)
-"""The fields of that struct, and the ids above them."""
+"""Fields of the struct of outcomes, and the ids in the comments above them."""
 
 tool = compiler
 
 
 def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) -> ParsedSource:
-    """The text in the form that fretc writes.
+    """The parsed layout of the text.
 
     Raises:
-        UnexpectedLayoutError: it has another form.
+        UnexpectedLayoutError: the layout differs from that of fretc.
     """
     own_rules = implemented([id for id, _ in _OUTCOMES.findall(given.text)], requirements)
     files = TARGET.emit(own_rules, Options(one_file=True))
@@ -37,10 +37,10 @@ def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) ->
 
 
 def prepared(program: str, given: SourceText, checked: ParsedSource, folder: Path) -> BuiltLibrary:
-    """The library; nothing of it has run.
+    """The built library; nothing of it has run.
 
     Raises:
-        ToolError: the compiler does not take the text.
+        ToolError: the compiler rejects the text.
     """
     binary = built(program, given.text, checked.cells, checked.inputs, checked.outcomes)
     library, digest = saved(binary, folder, BASE, checked.cells)
