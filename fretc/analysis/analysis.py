@@ -345,7 +345,8 @@ def assembled(
         always=tuple(each.requirement for each in constants if each.always),
         never=tuple(each.requirement for each in constants if not each.always),
         assumptions=tuple(
-            Assumption(each.id, each.entry.text, printed(each.written)) for each in assumptions
+            Assumption(assumption.id, assumption.entry.text, printed(assumption.written))
+            for assumption in assumptions
         ),
         roles={name: roles[name] for name in sorted(roles)},
         terms=tuple(_terms([*requirements, *assumptions], bool(assumptions), options)),
@@ -380,7 +381,7 @@ def _verdict(components: Sequence[Component], missing: Sequence[str]) -> tuple[V
 def _fought(component: Component, conflicts: Sequence[frozenset[str]]) -> Component:
     """The component as unrealizable if it has a conflict, also if its own question timed out."""
     if component.verdict is Verdict.NOT_CHECKED and any(
-        each.issubset(component.requirements) for each in conflicts
+        conflict.issubset(component.requirements) for conflict in conflicts
     ):
         return replace(component, verdict=Verdict.UNREALIZABLE, why="some of them conflict")
     return component

@@ -39,7 +39,7 @@ def by_outputs(
     def of(requirement: FormalizedRequirement) -> Tokens:
         return tokens(requirement, roles, Role.OUTPUT)
 
-    return _groups(requirements, [each for each in assumptions if of(each)], of)
+    return _groups(requirements, [assumption for assumption in assumptions if of(assumption)], of)
 
 
 def by_variables(
@@ -70,7 +70,7 @@ def about(
     while True:
         near = [each for each in rest if reached & tokens(each, roles, *kinds)]
         if not near:
-            return tuple(each for each in assumptions if each in found)
+            return tuple(assumption for assumption in assumptions if assumption in found)
         for each in near:
             rest.remove(each)
             found.append(each)

@@ -240,7 +240,7 @@ def _contradiction(found: Document) -> str:
         for id in each.requirements
     }
     if analysis.conflicts or any(
-        each.verdict is Verdict.UNREALIZABLE for each in analysis.components
+        component.verdict is Verdict.UNREALIZABLE for component in analysis.components
     ):
         follows = Verdict.UNREALIZABLE
     else:

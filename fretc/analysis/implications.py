@@ -125,7 +125,7 @@ def _implying(
     def implied(ids: Sequence[str]) -> bool:
         return _is_implied(setting, counter, setting.counters(ids), budget)
 
-    every = [each.id for each in others]
+    every = [other.id for other in others]
     if not implied(every):
         return None
     single = next((ids for ids in ([], *([id] for id in every)) if implied(ids)), None)
@@ -138,7 +138,7 @@ def _is_implied(
     """Whether runs satisfy the others, and none of these runs violates the counter."""
     setting = setting.close((each.id for each in (counter, *others)), budget)
     (counter,) = setting.counters([counter.id])
-    kept = setting.counters(each.id for each in others)
+    kept = setting.counters(other.id for other in others)
     runs = setting.runs(kept, budget, watched=(counter,))
     lasting = runs.lasting()
     if (runs.transition.initial & lasting) == bdd.false():
@@ -206,9 +206,9 @@ def inconsistencies(
         return
     found: list[frozenset[str]] = []
     try:
-        alone = {each.id: setting.runs((each,), budget).lasting() for each in counters}
+        alone = {counter.id: setting.runs((counter,), budget).lasting() for counter in counters}
         for members in _candidates(setting, counters):
-            ids = frozenset(each.id for each in members)
+            ids = frozenset(member.id for member in members)
             if any(smaller <= ids for smaller in found):
                 continue
             if len(members) > _FEW and found:
@@ -250,11 +250,11 @@ def _inconsistency(
     alone: Mapping[str, Function],
     budget: Budget,
 ) -> Inconsistency | None:
-    ids = sorted(each.id for each in members)
+    ids = sorted(member.id for member in members)
     there = setting.close(ids, budget)
     if there is not setting:
         setting, members = there, there.counters(ids)
-        alone = {each.id: setting.runs((each,), budget).lasting() for each in members}
+        alone = {member.id: setting.runs((member,), budget).lasting() for member in members}
     runs = setting.runs(members, budget)
     each_alone = bdd.true()
     for counter in members:

@@ -70,7 +70,7 @@ class RealizabilityProblem:
         """
         wanted = frozenset(ids)
         members = (*self.counters(wanted), *self.arena.assumptions)
-        long = [each for each in members if each.longest >= _LONG]
+        long = [member for member in members if member.longest >= _LONG]
         remembers = bool(self._memory) or self.arena.alphabet.is_refinable
         if len(members) > _FEW or len(long) < 2 or remembers:
             return self

@@ -59,7 +59,7 @@ def because(
         same = what == wanted and verb in ("demands", "forbids")
         parts.append(f"{id} {verb} {'it' if same else what}{details[id]}")
         wanted = what
-    silent = _asked([each for each in counters if each.id not in now], game, play)
+    silent = _asked([counter for counter in counters if counter.id not in now], game, play)
     before = [each for id, words in silent.items() for each in _before(id, words)]
     return f"at tick {last} {_joined(parts)}{''.join(f'; {each}' for each in before)}"
 

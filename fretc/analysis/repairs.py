@@ -125,7 +125,7 @@ def _changes(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:
 def _promises(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:
     """Repairs that add assumptions."""
     for assumed in islice(_assumptions(setting), MOST_ASSUMPTIONS):
-        sentences = tuple(printed(each.written) for each in assumed)
+        sentences = tuple(printed(assumption.written) for assumption in assumed)
         settles = _fits(setting, setting.whole.requirements, assumed)
         yield Repair(tuple(conflict), None, sentences, settles)
 
@@ -263,7 +263,7 @@ def _first(setting: _Setting, is_enough: Callable[[int], bool], low: int, high: 
             high = middle
         else:
             low = middle + 1
-        marks = [each for each in marks if low <= each < high]
+        marks = [mark for mark in marks if low <= mark < high]
     return low
 
 

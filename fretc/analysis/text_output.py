@@ -60,7 +60,7 @@ def lines(
 
 def _headline(analysis: Analysis, which: str) -> str:
     count = len(analysis.components)
-    bad = sum(each.verdict is Verdict.UNREALIZABLE for each in analysis.components)
+    bad = sum(component.verdict is Verdict.UNREALIZABLE for component in analysis.components)
     match analysis.verdict:
         case Verdict.REALIZABLE:
             how = (
@@ -202,7 +202,7 @@ def remarks(analysis: Analysis) -> Iterator[Line]:
             text = f"{each.requirement} is redundant: {listed(each.by)} {verb} it"
             yield f"{empty.glyph} {text}", empty.colour
     gone = [id for id in analysis.removable if id not in analysis.always]
-    if len([each for each in analysis.redundant if each.by]) > 1 and gone:
+    if len([redundancy for redundancy in analysis.redundant if redundancy.by]) > 1 and gone:
         yield f"  {listed(gone)} can be removed together: the others imply them", None
 
 

@@ -88,7 +88,7 @@ def component(
 def _verdict(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str]:
     """The verdict with its reason."""
     _check_assumptions(setting, budget)
-    if not _is_lost(setting, [each.id for each in setting.arena.counters], budget):
+    if not _is_lost(setting, [counter.id for counter in setting.arena.counters], budget):
         doubt = setting.left_out or setting.of_outputs
         if doubt is None:
             return Verdict.REALIZABLE, "the system has a strategy"
@@ -167,7 +167,7 @@ def _check_assumptions(setting: RealizabilityProblem, budget: Budget) -> None:
         return
     runs = setting.runs((), budget)
     if not runs.is_possible():
-        ids = ", ".join(each.id for each in setting.assumptions)
+        ids = ", ".join(assumption.id for assumption in setting.assumptions)
         raise UnsupportedError(f"no run satisfies the assumptions {ids}")
 
 
@@ -306,7 +306,7 @@ def _hint(setting: RealizabilityProblem, budget: Budget) -> str:
         for some in (setting.requirements, setting.assumptions)
     )
     scaled = stage(requirements, assumptions, setting.roles, as_fret=setting.as_fret)
-    every = [each.id for each in scaled.arena.counters]
+    every = [counter.id for counter in scaled.arena.counters]
 
     def fights(ids: Sequence[str]) -> bool:
         return _is_lost(scaled, ids, budget)

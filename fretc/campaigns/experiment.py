@@ -127,8 +127,8 @@ class SafetyFunction:
         self._monitor: Any = loaded("safety_function", text)
         names = tuple(self._monitor.PROPOSITIONS)
         propositions = [declarations.propositions[name] for name in names]
-        self._inputs = [one for one in propositions if one.role == "input"]
-        self._outputs = [one for one in propositions if one.role != "input"]
+        self._inputs = [proposition for proposition in propositions if proposition.role == "input"]
+        self._outputs = [proposition for proposition in propositions if proposition.role != "input"]
         self._declarations = declarations
         self._demanded = False
         read = dict.fromkeys(name for one in propositions for name in one.signals)
@@ -151,11 +151,14 @@ class SafetyFunction:
     def step(self, time: int) -> bool:
         """Whether the robot must stop now; `time` in nanoseconds."""
         recording = self._recording(time)
-        truths = {one.name: self._truth(one, recording, time, unknown=True) for one in self._inputs}
+        truths = {
+            input_.name: self._truth(input_, recording, time, unknown=True)
+            for input_ in self._inputs
+        }
         awaited = self._demanded or any(truths.values())  # Otherwise no response is pending.
-        for one in self._outputs:
-            stands = awaited and self._truth(one, recording, time, unknown=False)
-            truths[one.name] = stands
+        for output in self._outputs:
+            stands = awaited and self._truth(output, recording, time, unknown=False)
+            truths[output.name] = stands
         self._last = time
         self._monitor.advance([truths])
         (signal,) = self._monitor.must.signals()

@@ -130,7 +130,7 @@ def analyze(
         click.echo(to_json(plain(analysis)))
     else:
         sentences = {requirement.id: printed(requirement.written) for requirement in formalized}
-        left_out = [each.requirement.id for each in project.refused if each.is_in_force]
+        left_out = [refusal.requirement.id for refusal in project.refused if refusal.is_in_force]
         click.echo(coloured([*lines(analysis, sentences, left_out)]), nl=False)
     if output != "-":
         sources = [entry.wording.source.name for entry in project.requirements]
@@ -202,14 +202,14 @@ def _emit(
             fail(Diagnostic(Code.TOO_LARGE, message, help=_smaller(output_format)))
     if output_format is ControllerFormat.PYTHON:
         sentences = {requirement.id: printed(requirement.written) for requirement in requirements}
-        promises = {each.id: each.sentence for each in analysis.assumptions}
+        promises = {assumption.id: assumption.sentence for assumption in analysis.assumptions}
         artifacts = [controller(circuits, sentences, promises)]
     else:
         artifacts = [*automata(machines, output_format)]
     if output == "-":
-        write_outputs({Path("-"): "".join(each.text for each in artifacts)})
+        write_outputs({Path("-"): "".join(artifact.text for artifact in artifacts)})
     else:
-        write_outputs({Path(output) / each.path: each.text for each in artifacts})
+        write_outputs({Path(output) / artifact.path: artifact.text for artifact in artifacts})
 
 
 def _smaller(output_format: str) -> str:

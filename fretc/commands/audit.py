@@ -301,7 +301,7 @@ def audit(
             _deliver(result, target, made, inputs)
         elif os.path.lexists(target.path):
             print_status(visible(f"no log could be read: `{target.path}` is unchanged"))
-        source, not_judged = result.source, {one.id for one in plan.refused}
+        source, not_judged = result.source, {refusal.id for refusal in plan.refused}
         marks = Marks.of((each for _, each in source.briefs()), result.estimates, not_judged)
         is_bad = plan.refused or has_errors((*project.diagnostics, *diagnostics))
         status = EXIT_USAGE if is_bad else _status(marks)

@@ -93,7 +93,7 @@ def lines(subject: Subject, screen: Screen, *, every: bool) -> Iterator[Line]:
         screen: the output screen.
         every: list each result, also where a table would show it.
     """
-    titles = {each.id: each.title for each in subject.project.requirements}
+    titles = {requirement.id: requirement.title for requirement in subject.project.requirements}
     if every or len(subject.marks.names) == 1:
         yield from _listed(subject, titles, screen)
     else:

@@ -81,7 +81,11 @@ def bind(
             fail(_second_log(paths[0]))
         project = _project(requirements, bindings, replaced=output)
         print_diagnostics(
-            [each for each in project.diagnostics if each.is_error and not _is_in(each, output)]
+            [
+                diagnostic
+                for diagnostic in project.diagnostics
+                if diagnostic.is_error and not _is_in(diagnostic, output)
+            ]
         )
         _draft(source, project, output, force=force)
     elif not paths:
@@ -199,7 +203,9 @@ def _check(
     )  # Not an audit plan: bindings can be checked even if no requirement can be audited.
     result = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
     if isinstance(result, Diagnostic):
-        fail(*([each for each in project.diagnostics if each.is_error] or [result]))
+        fail(
+            *([diagnostic for diagnostic in project.diagnostics if diagnostic.is_error] or [result])
+        )
     unbound = [each for each in _unbound(project) if each not in project.diagnostics]
     diagnostics = [*unbound, *project.diagnostics, *project.answered(result.diagnostics)]
     print_project_diagnostics(diagnostics, requirements)

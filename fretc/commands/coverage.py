@@ -113,7 +113,7 @@ def _directions(covered: Coverage, named: str | None) -> Directions:
     """The verdicts with which tests reach situations; tests for other sentences are ignored."""
     from fretc.coverage.directions import directions
 
-    fingerprints = {each.id: each.fingerprint for each in covered.requirements}
+    fingerprints = {requirement.id: requirement.fingerprint for requirement in covered.requirements}
     suite = suite_of(named, fingerprints)
     return {} if suite is None else directions(suite, fingerprints)
 
@@ -132,7 +132,7 @@ def suite_of(named: str | None, fingerprints: Mapping[str, str]) -> Suite | None
     suite = read(named or DEFAULT)
     if isinstance(suite, Diagnostic):
         fail(suite)
-    known = {each.id: each.fingerprint for each in suite.requirements}
+    known = {requirement.id: requirement.fingerprint for requirement in suite.requirements}
     other = [id for id, own in fingerprints.items() if known.get(id, own) != own]
     if other:
         which = ", ".join(other)
@@ -171,7 +171,7 @@ def _audited(
     print_diagnostics_below(diagnostics, project.diagnostics)
     if not audit.read:
         raise SystemExit(EXIT_USAGE)
-    titles = {each.id: each.name for each in project.requirements}
+    titles = {requirement.id: requirement.name for requirement in project.requirements}
     return audit.source, titles, has_errors(diagnostics)
 
 

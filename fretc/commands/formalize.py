@@ -269,7 +269,7 @@ def _emitted(
 
 def _not_of_all(target: Target, refused: Sequence[Refused]) -> Diagnostic:
     """F618: a file that combines all requirements would lack some."""
-    ids = ", ".join(each.requirement.id for each in refused)
+    ids = ", ".join(refusal.requirement.id for refusal in refused)
     return Diagnostic(
         Code.NOT_OF_ALL,
         f"`--emit {target.name}` combines all requirements, but some have errors: {ids}",

@@ -97,7 +97,7 @@ def mutate(
     if output_format == "json":
         click.echo(mutation_record.text(found), nl=False)
     else:
-        titles = {each.id: each.name for each in project.requirements}
+        titles = {requirement.id: requirement.name for requirement in project.requirements}
         all_lines = mutation_output.lines(found, titles, every=verbose)
         click.echo(coloured((visible(text), colour) for text, colour in all_lines), nl=False)
     if plan.refused or found.diagnostics:

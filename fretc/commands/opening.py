@@ -91,15 +91,18 @@ def plan_of(project: Project, requirements: str) -> Plan:
     if plan.refused:
         fail_at_end()
     print_diagnostics_below(
-        [each for each in plan.refusals if each not in project.diagnostics], project.diagnostics
+        [refusal for refusal in plan.refusals if refusal not in project.diagnostics],
+        project.diagnostics,
     )
-    print_excluded({each.id: each.why for each in plan.refused}, len(plan.named))
+    print_excluded({refusal.id: refusal.why for refusal in plan.refused}, len(plan.named))
     return plan
 
 
 def print_requirements_with_errors(project: Project) -> None:
     """Print which active requirements have errors."""
-    refused = {each.requirement.id: each.why for each in project.refused if each.is_in_force}
+    refused = {
+        refusal.requirement.id: refusal.why for refusal in project.refused if refusal.is_in_force
+    }
     print_excluded(refused, len(project.requirements))
 
 

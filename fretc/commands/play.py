@@ -127,7 +127,9 @@ def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
         if (why := refuse(requirement)) is not None
     }
     known = [requirement for requirement in requirements if requirement.id not in refused]
-    mistaken = {each.requirement.id: each.why[0] for each in project.refused if each.is_in_force}
+    mistaken = {
+        refusal.requirement.id: refusal.why[0] for refusal in project.refused if refusal.is_in_force
+    }
     reasons = {id: why.message for id, why in (mistaken | refused).items()}
     return Side(known, reasons, project.declarations), [*refused.values()]
 

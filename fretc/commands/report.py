@@ -202,7 +202,7 @@ def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | No
     from fretc.play.recorded import Recorded, of_evidence
     from fretc.play.starts import of_examples
 
-    refused = {each.requirement.id: each.why[0].message for each in project.refused}
+    refused = {refusal.requirement.id: refusal.why[0].message for refusal in project.refused}
     project = project.sound
     refused |= {
         requirement.id: said.message

@@ -77,11 +77,11 @@ def sign(files: tuple[str, ...], key: str, reviewer: str | None, verification: s
     """
     installed()
     signables = [_signable(path, key, reviewer, verification) for path in dict.fromkeys(files)]
-    for each in signables:
-        for line in each.lines:
+    for signable in signables:
+        for line in signable.lines:
             print_status(visible(line))
     mine = private(key)
-    write_outputs(_merged(signed(each, mine) for each in signables), [*files, key])
+    write_outputs(_merged(signed(signable, mine) for signable in signables), [*files, key])
     print_status(f"signed with {mine.public.text}")
 
 
@@ -344,8 +344,8 @@ def _lock(path: str, key: str, reviewer: str | None) -> Signable:
     lock = read(path)
     if isinstance(lock, Diagnostic):
         fail(_as_error(lock))
-    names = _names(path, [each.reviewer for each in lock.reviews.values()], key, reviewer)
-    mine = [each for each in lock.reviews.values() if each.reviewer in names]
+    names = _names(path, [review.reviewer for review in lock.reviews.values()], key, reviewer)
+    mine = [review for review in lock.reviews.values() if review.reviewer in names]
     return of_reviews(path, mine, lock.reviews.values())
 
 
@@ -371,10 +371,10 @@ def _waivers(path: str, key: str, reviewer: str | None) -> Signable:
     from fretc.report.traceability.waivers import read
 
     waivers, wrong = read(path, None, today())
-    if any(each.is_error for each in wrong):
+    if any(mutant.is_error for mutant in wrong):
         fail(*wrong)
-    names = _names(path, [each.by for each in waivers.values()], key, reviewer)
-    mine = [each for each in waivers.values() if each.by in names]
+    names = _names(path, [waiver.by for waiver in waivers.values()], key, reviewer)
+    mine = [waiver for waiver in waivers.values() if waiver.by in names]
     return Signable(
         path,
         attestation.waivers(mine),
@@ -465,7 +465,7 @@ def require(evidence: EvidenceSource, by: str, others: Mapping[str, str | None])
         if not one.is_good:
             mistakes.append(_unsigned(path, by, one.text))
     print_diagnostics(mistakes)
-    if any(each.is_error for each in mistakes):
+    if any(diagnostic.is_error for diagnostic in mistakes):
         raise SystemExit(EXIT_VIOLATION)
     print_status(visible(f"{evidence.file} is {signature.text}"))
 

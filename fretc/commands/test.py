@@ -264,8 +264,8 @@ def _files(
         more = f" and {len(names) - 1} more" if len(names) > 1 else ""
         print_status(visible(f"not written: {names[0]}{more}: {why}"))
     if output == "-":
-        return {Path("-"): "".join(each.text for each in artifacts)}
-    return {Path(output) / emitted / each.path: each.text for each in artifacts}
+        return {Path("-"): "".join(artifact.text for artifact in artifacts)}
+    return {Path(output) / emitted / artifact.path: artifact.text for artifact in artifacts}
 
 
 def _lines(

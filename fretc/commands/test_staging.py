@@ -80,7 +80,7 @@ def _logs(project: Project, suite: Suite, folder: Path) -> int:
     )
     for one in wrong:
         click.echo(f"{signs.BAD.glyph} {one.test.name} is not written: {visible(one.why)}")
-    _listed("cannot be recorded", ((one.why, one.test.name) for one in refused))
+    _listed("cannot be recorded", ((refusal.why, refusal.test.name) for refusal in refused))
     if interrupted:
         return EXIT_INTERRUPTED
     return EXIT_USAGE if wrong else EXIT_OK
@@ -113,7 +113,10 @@ def _scenarios(project: Project, suite: Suite, folder: Path, runs: int, jobs: in
         interrupted = True
     except RuntimeError as error:
         fail(Diagnostic(Code.PROCESS_KILLED, str(error)))
-    words = {(one.requirement, one.situation, one.polarity): one.words for one in suite.obligations}
+    words = {
+        (obligation.requirement, obligation.situation, obligation.polarity): obligation.words
+        for obligation in suite.obligations
+    }
     unlike = _written(project, found, folder, words)
     _say(found, aims, why, words, folder, unlike)
     if interrupted:

@@ -185,7 +185,7 @@ def verify_evidence(
 def _status(results: Sequence[Recheck], same: bool | None, scope: Scope) -> int:
     from fretc.reproduction.outcome import Finding
 
-    kinds = {one.finding for one in results}
+    kinds = {result.finding for result in results}
     if Finding.DIFFERS in kinds or same is False:
         return EXIT_VIOLATION
     return EXIT_INCONCLUSIVE if Finding.UNKNOWN in kinds or scope.part else EXIT_OK
@@ -463,7 +463,7 @@ def _print(results: Sequence[Recheck], same: bool | None, against: str) -> None:
     from fretc.reproduction.outcome import SIGNS, Finding
 
     lines: list[tuple[str, str | None]] = []
-    width = max((len(one.requirement) for one in results), default=0)
+    width = max((len(result.requirement) for result in results), default=0)
     run = None
     for one in results:
         if one.run != run:
@@ -497,7 +497,7 @@ def _print_json(results: Sequence[Recheck], same: bool | None, scope: Scope, aga
     from compiler.files.templating import to_json
 
     record = {
-        "results": [asdict(one) for one in results],
+        "results": [asdict(result) for result in results],
         "report_is_the_same": same,
         "counts": _counts(results, same),
         "only": list(scope.claimed) if scope.part else None,

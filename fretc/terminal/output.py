@@ -103,12 +103,12 @@ def print_project_diagnostics(diagnostics: Sequence[Diagnostic], requirements: s
         diagnostics: diagnostics of the project.
         requirements: its path, as named by the user.
     """
-    warnings = [each for each in diagnostics if _is_about_a_sentence(each)]
-    others = [each for each in diagnostics if each not in warnings]
+    warnings = [diagnostic for diagnostic in diagnostics if _is_about_a_sentence(diagnostic)]
+    others = [diagnostic for diagnostic in diagnostics if diagnostic not in warnings]
     print_diagnostics(others)
     if not warnings:
         return
-    counts = Counter(each.code.number for each in warnings)
+    counts = Counter(warning.code.number for warning in warnings)
     codes = ", ".join(f"{count} {code}" for code, count in sorted(counts.items()))
     noun = "warning about a sentence" if len(warnings) == 1 else "warnings about sentences"
     place = "" if requirements == REQUIREMENTS_FOLDER else f" --requirements {quote(requirements)}"

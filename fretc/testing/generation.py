@@ -179,21 +179,21 @@ class _Generation:
         return {special[need]: self._purpose(*need) for need in met if need in special}
 
     def _purpose(self, key: str, polarity: Polarity) -> _Purpose:
-        words = next(each.words for each in self._situations if each.key == key)
+        words = next(situation.words for situation in self._situations if situation.key == key)
         return _Purpose(key if polarity is Polarity.UNKNOWN else f"{key}-{polarity}", words)
 
     def _telling_apart(
         self, told: Mapping[str, Answer], runs: Collection[Run]
     ) -> dict[Run, _Purpose]:
         """Runs for the mutants that the given runs do not kill."""
-        alive = {each.key for each in self._wrong}.difference(*(run.kills for run in runs))
+        alive = {mutant.key for mutant in self._wrong}.difference(*(run.kills for run in runs))
         shown = {
-            run: [each.key for each in self._wrong if each.key in run.kills & alive]
+            run: [mutant.key for mutant in self._wrong if mutant.key in run.kills & alive]
             for run in told.values()
             if isinstance(run, Run)
         }
         chosen = cover(shown, {run: run.rank for run in shown})
-        words = {each.key: each.words for each in self._wrong}
+        words = {mutant.key: mutant.words for mutant in self._wrong}
         return {
             run: _Purpose(
                 f"unlike-{key}", f"distinguishes {self._rule.id} from its mutant with {words[key]}"
@@ -217,8 +217,10 @@ class _Generation:
             decided=says.decided,
             first_violation=says.first_violation,
             because=says.because,
-            situations=tuple(each.key for each in self._situations if each.key in run.situations),
-            kills=tuple(each.key for each in self._wrong if each.key in run.kills),
+            situations=tuple(
+                situation.key for situation in self._situations if situation.key in run.situations
+            ),
+            kills=tuple(mutant.key for mutant in self._wrong if mutant.key in run.kills),
         )
 
     def _outcome(self, polarity: Polarity, verdict: Verdict) -> Iterator[str]:
@@ -231,7 +233,11 @@ class _Generation:
     def _expected(self, run: Run) -> Expected:
         requirement, monitor = self._rule, self._monitor
         if run.polarity is Polarity.UNKNOWN:
-            atom = next(each.unknown for each in self._situations if each.key in run.situations)
+            atom = next(
+                situation.unknown
+                for situation in self._situations
+                if situation.key in run.situations
+            )
             assert atom is not None
             return undecided(requirement, monitor, run.word, atom)
         found = expected(requirement, monitor, run.word)
@@ -241,43 +247,43 @@ class _Generation:
     def _obligations(
         self, met: Mapping[Need, Answer], made: Mapping[Run, Test]
     ) -> Iterator[GoalResult]:
-        for each in self._situations:
-            for polarity in _polarities(each):
-                found = met[each.key, polarity]
+        for situation in self._situations:
+            for polarity in _polarities(situation):
+                found = met[situation.key, polarity]
                 if isinstance(found, Run):
                     runs = [run for run in made if run.polarity is polarity]
-                    tests = _names(made, [run for run in runs if each.key in run.situations])
-                    yield _obligation(self._rule, each, polarity, GoalStatus.MET, tests=tests)
+                    tests = _names(made, [run for run in runs if situation.key in run.situations])
+                    yield _obligation(self._rule, situation, polarity, GoalStatus.MET, tests=tests)
                 else:
                     outcome = found.outcome(
                         GoalStatus.IMPOSSIBLE, GoalStatus.EXCLUDED, GoalStatus.NOT_SEARCHED
                     )
                     yield _obligation(
-                        self._rule, each, polarity, outcome, by=found.by, why=found.why
+                        self._rule, situation, polarity, outcome, by=found.by, why=found.why
                     )
 
     def _mutants(
         self, told: Mapping[str, Answer], made: Mapping[Run, Test]
     ) -> Iterator[MutantResult]:
-        for each in self._wrong:
-            found = told.get(each.key)
+        for mutant in self._wrong:
+            found = told.get(mutant.key)
             if isinstance(found, Absence):
                 outcome = found.outcome(
                     MutantStatus.EQUIVALENT, MutantStatus.EXCLUDED, MutantStatus.NOT_SEARCHED
                 )
-                yield _mutated(self._rule, each, outcome, by=found.by, why=found.why)
+                yield _mutated(self._rule, mutant, outcome, by=found.by, why=found.why)
             else:
-                tests = _names(made, [run for run in made if each.key in run.kills])
+                tests = _names(made, [run for run in made if mutant.key in run.kills])
                 assert tests
-                yield _mutated(self._rule, each, MutantStatus.KILLED, tests=tests)
+                yield _mutated(self._rule, mutant, MutantStatus.KILLED, tests=tests)
 
     def _telling(self, chosen: Iterable[Run]) -> dict[str, Answer]:
         """A shortest run for each mutant that no selected run kills, one for several mutants."""
         found: dict[str, Answer] = {}
         runs = list(chosen)
-        for each in self._wrong:
-            if not any(each.key in run.kills for run in runs):
-                answer = found[each.key] = self._runs.telling(each)
+        for mutant in self._wrong:
+            if not any(mutant.key in run.kills for run in runs):
+                answer = found[mutant.key] = self._runs.telling(mutant)
                 if isinstance(answer, Run):
                     runs.append(answer)
         return found

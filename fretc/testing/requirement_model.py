@@ -99,7 +99,7 @@ class RequirementModel:
         self.alphabet = Fixed(alphabet)
         self._letters = (*self.alphabet.inputs, *self.alphabet.outputs)
         self._quiet = frozenset(self._asked(requirement))
-        self.others: Ids = tuple(each.id for each in others if each.id in self._counters)
+        self.others: Ids = tuple(other.id for other in others if other.id in self._counters)
         self._memory = Memory(self._fresh, self._shared)
         self._past = Past(self.alphabet.atom, self._memory)
         self._own = self._judged(

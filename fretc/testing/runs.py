@@ -86,12 +86,12 @@ class Runs:
         self.situations, self.mutants = situations(requirement), mutants(requirement)
         places = Places(requirement)
         self._formulas: dict[str, Formula | Absence] = {}
-        for each in self.situations:
+        for situation in self.situations:
             try:
-                self._formulas[each.key] = places.formula(each)
+                self._formulas[situation.key] = places.formula(situation)
             except UnsupportedError as error:
-                self._formulas[each.key] = Absence(why=str(error))
-        more = [*(each.requirement for each in self.mutants), *places.carriers]
+                self._formulas[situation.key] = Absence(why=str(error))
+        more = [*(mutant.requirement for mutant in self.mutants), *places.carriers]
         budget = Budget(seconds)
         self.bench = RequirementModel(requirement, others, more, budget)
         every = [requirement, *others]
@@ -179,7 +179,7 @@ class Runs:
 
     def _judged(self, made: Word) -> Run:
         own = judged(self.requirement, made)
-        columns = {each.key: self._column(each, made) for each in self.situations}
+        columns = {situation.key: self._column(situation, made) for situation in self.situations}
         first = own.breach & -own.breach
         early = (first << 1) - 1 if first else -1
         return Run(
@@ -188,9 +188,9 @@ class Runs:
             frozenset(key for key, column in columns.items() if column & early),
             frozenset(key for key, column in columns.items() if column),
             frozenset(
-                each.key
-                for each in self.mutants
-                if is_killed(own, judged(each.requirement, made), made.ticks)
+                mutant.key
+                for mutant in self.mutants
+                if is_killed(own, judged(mutant.requirement, made), made.ticks)
             ),
         )
 
@@ -256,9 +256,9 @@ def difference(
 def _read(requirements: Iterable[FormalizedRequirement]) -> dict[str, frozenset[str]]:
     """Signals or variables that each atom reads."""
     found: dict[str, frozenset[str]] = {}
-    for each in requirements:
-        declared = each.declarations.propositions if each.declarations else {}
-        for name, part in candidates(each.sentence):
+    for requirement in requirements:
+        declared = requirement.declarations.propositions if requirement.declarations else {}
+        for name, part in candidates(requirement.sentence):
             bound = declared.get(name)
             found[name] = frozenset(bound.signals if bound else (n.id for n in e.names(part)))
     return found

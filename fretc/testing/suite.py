@@ -151,8 +151,12 @@ class Suite(Record, frozen=True):
     @property
     def is_complete(self) -> bool:
         """Whether no search is missing."""
-        met = all(each.outcome is not GoalStatus.NOT_SEARCHED for each in self.obligations)
-        return met and all(each.outcome is not MutantStatus.NOT_SEARCHED for each in self.mutants)
+        met = all(
+            obligation.outcome is not GoalStatus.NOT_SEARCHED for obligation in self.obligations
+        )
+        return met and all(
+            mutant.outcome is not MutantStatus.NOT_SEARCHED for mutant in self.mutants
+        )
 
 
 def unused(name: str, names: set[str]) -> str:

@@ -64,17 +64,21 @@ _HEAD = ("", "tests", "ticks", "situations", "mutants")
 
 def _table(suite: Suite, columns: int = len(_HEAD)) -> Iterator[str]:
     rows = [_HEAD]
-    for each in suite.requirements:
-        own = [test for test in suite.tests if test.requirement == each.id]
-        obligations = [one for one in suite.obligations if one.requirement == each.id]
-        mutants = [one for one in suite.mutants if one.requirement == each.id]
+    for requirement in suite.requirements:
+        own = [test for test in suite.tests if test.requirement == requirement.id]
+        obligations = [
+            obligation
+            for obligation in suite.obligations
+            if obligation.requirement == requirement.id
+        ]
+        mutants = [mutant for mutant in suite.mutants if mutant.requirement == requirement.id]
         rows.append(
             (
-                each.id,
+                requirement.id,
                 str(len(own)),
                 str(sum(test.ticks for test in own)),
-                _counts([one.outcome for one in obligations], GoalStatus),
-                _counts([one.outcome for one in mutants], MutantStatus),
+                _counts([obligation.outcome for obligation in obligations], GoalStatus),
+                _counts([mutant.outcome for mutant in mutants], MutantStatus),
             )
         )
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
@@ -91,7 +95,7 @@ def _table(suite: Suite, columns: int = len(_HEAD)) -> Iterator[str]:
 
 def _counts(outcomes: Sequence[str], kinds: type[GoalStatus] | type[MutantStatus]) -> str:
     """`14 met, 2 impossible`."""
-    found = ((sum(each == kind for each in outcomes), kind) for kind in kinds)
+    found = ((sum(outcome == kind for outcome in outcomes), kind) for kind in kinds)
     return ", ".join(f"{count} {kind}" for count, kind in found if count)
 
 
@@ -113,16 +117,20 @@ def _remarks(suite: Suite) -> Iterator[Line]:
 
 def _lost(suite: Suite) -> Iterator[tuple[str, str]]:
     """Requirements without a search for the same reason, and the reason."""
-    for each in suite.requirements:
-        reasons = {one.why for one in suite.obligations if one.requirement == each.id}
-        reasons |= {one.why for one in suite.mutants if one.requirement == each.id}
+    for requirement in suite.requirements:
+        reasons = {
+            obligation.why
+            for obligation in suite.obligations
+            if obligation.requirement == requirement.id
+        }
+        reasons |= {mutant.why for mutant in suite.mutants if mutant.requirement == requirement.id}
         if len(reasons) == 1 and "" not in reasons:
-            yield each.id, reasons.pop()
+            yield requirement.id, reasons.pop()
 
 
 def _doubts(suite: Suite) -> Iterator[Line]:
     """Tests with possibly impossible values, with one of the reasons."""
-    doubted = [each for each in suite.requirements if each.doubt]
+    doubted = [requirement for requirement in suite.requirements if requirement.doubt]
     if doubted:
         ids = listed([each.id for each in doubted])
         text = f"some tests of {ids} may have impossible values: {doubted[0].doubt}"
@@ -131,8 +139,8 @@ def _doubts(suite: Suite) -> Iterator[Line]:
 
 def _by_situation(suite: Suite) -> list[list[GoalResult]]:
     found: dict[tuple[str, str], list[GoalResult]] = {}
-    for each in suite.obligations:
-        found.setdefault((each.requirement, each.situation), []).append(each)
+    for obligation in suite.obligations:
+        found.setdefault((obligation.requirement, obligation.situation), []).append(obligation)
     return [*found.values()]
 
 
@@ -145,8 +153,8 @@ def _unmet(obligations: Sequence[GoalResult]) -> Iterator[Line]:
         (GoalStatus.NOT_SEARCHED, signs.UNKNOWN, f"not searched: {first.why}"),
     ):
         if all(
-            (each.outcome, each.by, each.why) == (outcome, first.by, first.why)
-            for each in obligations
+            (obligation.outcome, obligation.by, obligation.why) == (outcome, first.by, first.why)
+            for obligation in obligations
         ):
             yield f"{sign.glyph} {first.requirement}: {how}: {first.words}", sign.colour
             return
@@ -194,7 +202,7 @@ def shown(
         roles: roles of those that have one.
         wordings: atoms with another label than their name.
     """
-    tested = next(each for each in suite.requirements if each.id == id)
+    tested = next(requirement for requirement in suite.requirements if requirement.id == id)
     yield f"{id}  {tested.sentence}", None
     if tested.kept:
         yield f"  its tests also satisfy {listed(tested.kept)}", None

@@ -35,7 +35,7 @@ def prove(project: Project, request: Request) -> tuple[Proof, ...] | Diagnostic:
             (single if method.of_requirement else common).extend(results)
     places = {requirement.id: place for place, requirement in enumerate(project.formalized)}
     proofs = (*sorted(single, key=lambda each: places[each.requirement]), *common)
-    return tuple(_open_where_demanded(each, project, request) for each in proofs)
+    return tuple(_open_where_demanded(proof, project, request) for proof in proofs)
 
 
 def _open_where_demanded(proof: Proof, project: Project, request: Request) -> Proof:

@@ -86,7 +86,7 @@ def arena(
     of_rules = tuple(
         found[requirement.id] for requirement in requirements if requirement.id in found
     )
-    of_assumptions = tuple(found[each.id] for each in assumptions)
+    of_assumptions = tuple(found[assumption.id] for assumption in assumptions)
     return Arena(Fixed(alphabet), of_rules, of_assumptions, beyond)
 
 

@@ -174,7 +174,7 @@ class Propositions:
             if self._elsewhere.issuperset(atoms):
                 continue
             whole = name in glossary and kind_of(glossary[name].type) in (Kind.WHOLE, Kind.NATURAL)
-            plain = all(_is_plain(self._compared.get(each), whole=whole) for each in atoms)
+            plain = all(_is_plain(self._compared.get(atom), whole=whole) for atom in atoms)
             plain = plain and self._elsewhere.isdisjoint(atoms)
             if (len(atoms) > 1 or not isinstance(self._parts[atoms[0]], e.Name)) and not plain:
                 yield from self._doubt(atoms)

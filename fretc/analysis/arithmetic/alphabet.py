@@ -79,11 +79,11 @@ class Cells:
         self._lasting = {
             name: lasting
             for name, lasting in self._atoms.lasting.items()
-            if not any(each in refused for each in lasting.atoms)
+            if not any(atom in refused for atom in lasting.atoms)
         }
         for name in self._atoms.lasting.keys() - self._lasting.keys():
             parts = self._atoms.lasting[name].atoms
-            refused[name] = next(refused[each] for each in parts if each in refused)
+            refused[name] = next(refused[part] for part in parts if part in refused)
         elsewhere = frozenset([*self._of, *self._lasting])
         self._plain = Propositions(requirements, roles, fresh, elsewhere, refused)
 
@@ -225,7 +225,7 @@ class Cells:
 
     def memory(self) -> Counter | None:
         """Stored facts about earlier ticks, which the player of the numbers must respect."""
-        pairs = [each for each in self._pairs if each.now in self._of and each.then in self._of]
+        pairs = [pair for pair in self._pairs if pair.now in self._of and pair.then in self._of]
         agrees = self._agreement(pairs) if pairs else bdd.true()
         bits = self._kept.needed([agrees, *(each.is_so for each in self._lasted.values())])
         if not bits:
@@ -270,4 +270,4 @@ class Cells:
 
     @property
     def _used(self) -> Iterator[Group]:
-        return (each for each in self._groups if each.is_used)
+        return (group for group in self._groups if group.is_used)

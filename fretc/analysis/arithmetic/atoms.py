@@ -167,7 +167,7 @@ class Atoms:
     ) -> Mapping[str, Moment]:
         """Moments in which all other signals are known; durations of these signals are refused."""
         for name, lasting in [*self.lasting.items()]:
-            if any(not moments[each].signals.isdisjoint(open_) for each in lasting.atoms):
+            if any(not moments[atom].signals.isdisjoint(open_) for atom in lasting.atoms):
                 self.refused[name] = f"`{name}` has a duration of what may be unknown"
                 del self.lasting[name]
         needed = {each for lasting in self.lasting.values() for each in lasting.atoms}

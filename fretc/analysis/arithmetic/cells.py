@@ -182,7 +182,7 @@ def _seen(formulas: Sequence[Term], domain: Term, limit: Limit) -> Iterator[Patt
 def reads(formula: Term, variables: Sequence[Term]) -> bool:
     """Whether a formula reads one of the variables."""
     names = read_by(formula)
-    return any(each.decl().name() in names for each in variables)
+    return any(variable.decl().name() in names for variable in variables)
 
 
 def literals(formulas: Sequence[Term], pattern: Sequence[bool]) -> list[Term]:
@@ -197,15 +197,15 @@ def point(constraints: Sequence[Term], variables: Sequence[Term]) -> Point:
     solver.set("timeout", _PATIENCE)
     solver.add(*constraints)
     solver.push()
-    solver.add([z3.IsInt(each) for each in variables if z3.is_real(each)])
+    solver.add([z3.IsInt(variable) for variable in variables if z3.is_real(variable)])
     if solver.check() != z3.sat:
         solver.pop()
         solver.set("timeout", 0)
         answer = solver.check()
         assert answer == z3.sat, "the pattern has been seen"
     model = solver.model()
-    variables = [each for each in variables if z3.is_arith(each)]
-    values = [model.eval(each, model_completion=True) for each in variables]
+    variables = [variable for variable in variables if z3.is_arith(variable)]
+    values = [model.eval(variable, model_completion=True) for variable in variables]
     return {
         str(each): Fraction(str(value.as_fraction() if value.is_real() else value.as_long()))
         for each, value in zip(variables, values, strict=True)
@@ -219,6 +219,11 @@ _PATIENCE = 1_000
 def fixed(point_: Point, variables: Sequence[Term]) -> list[Term]:
     """Constraints that fix the numbers."""
     return [
-        each == (z3.RealVal(str(point_[str(each)])) if each.is_real() else int(point_[str(each)]))
-        for each in variables
+        variable
+        == (
+            z3.RealVal(str(point_[str(variable)]))
+            if variable.is_real()
+            else int(point_[str(variable)])
+        )
+        for variable in variables
     ]

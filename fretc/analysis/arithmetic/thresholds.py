@@ -127,11 +127,13 @@ def _factors(term: Term) -> tuple[dict[str, Fraction], Fraction]:
     variables = z3util.get_vars(term)
 
     def at(one: str) -> Fraction:
-        values = [(each, _number(each, int(str(each) == one))) for each in variables]
+        values = [
+            (variable, _number(variable, int(str(variable) == one))) for variable in variables
+        ]
         return Fraction(str(z3.simplify(z3.substitute(term, *values))))
 
     rest = at("")
-    return {str(each): at(str(each)) - rest for each in variables}, rest
+    return {str(variable): at(str(variable)) - rest for variable in variables}, rest
 
 
 def _number(like: Term, value: int) -> Term:

@@ -87,7 +87,7 @@ def circuit(machine: Machine, requirements: Sequence[str], number: int) -> Circu
         tuple(requirements),
         {names[each]: atom for each, atom in machine.inputs.items()},
         {names[each]: atom for each, atom in machine.outputs.items()},
-        tuple(names[each] for each in machine.steps),
+        tuple(names[step] for step in machine.steps),
         replies,
         tuple(known[root] for root in machine.replies.values()),
         steps,

@@ -73,8 +73,8 @@ def _shrunk(
     def is_open(some: Members) -> bool:
         return bool(bdd.at(open_sets, bdd.point({i: i in some for i in range(size)})) == bdd.true())
 
-    for each in sorted(members):
-        fewer = members - {each}
+    for member in sorted(members):
+        fewer = members - {member}
         if is_open(fewer) and is_conflict(fewer):
             members = fewer
     return members
@@ -83,8 +83,8 @@ def _shrunk(
 def minimal(members: Sequence[str], holds: Callable[[Sequence[str]], bool]) -> tuple[str, ...]:
     """A minimal subset with a monotone property that the whole set has."""
     kept = list(members)
-    for each in members:
-        rest = [other for other in kept if other != each]
+    for member in members:
+        rest = [other for other in kept if other != member]
         if holds(rest):
             kept = rest
     return tuple(kept)

@@ -114,7 +114,9 @@ class Game:
             self.safe = self.safe & counter.safe
         self.kept = upheld(alphabet, assumptions, budget) if kept is None else kept
         """Whether the environment can satisfy the assumptions for ever after a tick."""
-        self.promises = [each.fair for each in assumptions if each.fair is not None]
+        self.promises = [
+            assumption.fair for assumption in assumptions if assumption.fair is not None
+        ]
         self.duties = [each.fair for each in counters if each.fair is not None]
 
     @property

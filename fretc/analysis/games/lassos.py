@@ -73,7 +73,7 @@ def lasso(
     if not cells.numbers.is_of_moments:
         return None
     counters = arena(requirements, (), cells, fresh, as_fret=as_fret).counters
-    waiting = {each.id for each in counters if each.fair is not None}
+    waiting = {counter.id for counter in counters if counter.fair is not None}
     search = _Search(cells, counters)
     for length in range(1, LONGEST + 1):
         if budget.spent > budget.seconds / 2:

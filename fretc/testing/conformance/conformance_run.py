@@ -157,8 +157,8 @@ class ConformanceRun:
         for id in run.broken:
             if id not in self._failures:
                 self._failures[id] = self._failure(aim, self._rules[id], run, driver)
-        for each in self._fields:
-            for other in each.aims:
+        for field in self._fields:
+            for other in field.aims:
                 if _shows(run, other, other.shown[0]):
                     self._outcomes[other] = Outcome.REACHED, ""
 

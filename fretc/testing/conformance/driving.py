@@ -63,7 +63,7 @@ class Driver:
         Raises:
             UnsupportedError: as for `towards`; also ProgramError.
         """
-        sides = [_Side(each, choose, change) for each in self._fields]
+        sides = [_Side(field, choose, change) for field in self._fields]
         return self._run(
             lambda tick: _joined(sides, {}) if tick < most else None,
             lambda truths: all(side.moves(truths) for side in sides),

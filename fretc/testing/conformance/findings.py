@@ -68,7 +68,7 @@ class Conformance(Record, frozen=True):
     def is_complete(self) -> bool:
         """Whether the search is complete and every situation that can be forced was reached."""
         left = (Outcome.NOT_REACHED, Outcome.NOT_SEARCHED)
-        reached = all(each.outcome not in left for each in self.situations)
+        reached = all(situation.outcome not in left for situation in self.situations)
         return self.whole and reached and not self.untried and not self.not_judged
 
 

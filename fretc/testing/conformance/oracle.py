@@ -40,7 +40,7 @@ class Oracle:
             UnsupportedError: a column is neither an input nor an output.
         """
         self._rules = [*requirements, *assumptions]
-        self._assumed = {each.id for each in assumptions}
+        self._assumed = {assumption.id for assumption in assumptions}
         self._monitor = load("monitors.py", text(*self._rules))
         self._truths: Callable[..., Sequence[bool | None]] | None
         self._truths = getattr(self._monitor, "truths", None)

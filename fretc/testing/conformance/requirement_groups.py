@@ -96,7 +96,7 @@ class RequirementGroup:
             for requirement in requirements
             if requirement.id in found
         }
-        given = [found[each.id] for each in assumptions]
+        given = [found[assumption.id] for assumption in assumptions]
         given += [before] if before is not None else []
         self.aims = tuple(aim for requirement in requirements for aim in self._aims(requirement))
         self.transition = Transition([*self._counters.values(), *given, self._remembered()])

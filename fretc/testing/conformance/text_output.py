@@ -51,7 +51,7 @@ def _table(found: Conformance) -> Iterator[Line]:
     broken = {each.requirement for each in found.failures}
     width = max(map(len, found.requirements), default=0)
     for id in found.requirements:
-        own = [each for each in found.situations if each.requirement == id]
+        own = [situation for situation in found.situations if situation.requirement == id]
         counts = {kind: sum(each.outcome is kind for each in own) for kind in Outcome}
         shown = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
         sign = signs.BAD if id in broken else signs.GOOD if found.whole else signs.UNKNOWN
@@ -85,7 +85,7 @@ def _failure(failure: Failure, roles: Mapping[str, Role]) -> Iterator[Line]:
 def _rest(found: Conformance) -> Iterator[Line]:
     """Situations that were not reached."""
     for id in found.requirements:
-        own = [each for each in found.situations if each.requirement == id]
+        own = [situation for situation in found.situations if situation.requirement == id]
         free = [each.situation for each in own if each.outcome is Outcome.UP_TO_PROGRAM]
         if free:
             text = f"{id}: depends on the program, and did not occur: {', '.join(free)}"

@@ -83,7 +83,7 @@ def _log(plan: Plan, test: Test, monitor: Monitor, temporary: Path, folder: Path
     stage = synthesize(test, plan.declarations, monitor)
     path = temporary / f"{test.name}.mcap"
     _write(stage, test, path)
-    verdicts = {each.requirement: each.verdict for each in audited(plan, str(path)).results}
+    verdicts = {result.requirement: result.verdict for result in audited(plan, str(path)).results}
     expected, actual = _expected(test, plan), verdicts[test.requirement]
     if actual != expected:
         why = f"the audit of it says {actual}, not {expected}"
@@ -99,7 +99,7 @@ def _expected(test: Test, plan: Plan) -> str:
 
 
 def _write(stage: SyntheticLog, test: Test, path: Path) -> None:
-    topics = {each.topic: Topic(each.topic, each.type) for each in stage.messages}
+    topics = {message.topic: Topic(message.topic, message.type) for message in stage.messages}
     about = {
         "test": test.name,
         "requirement": test.requirement,
@@ -108,6 +108,6 @@ def _write(stage: SyntheticLog, test: Test, path: Path) -> None:
         "lead": str(stage.lead),
     }
     with recording(path, epoch=EPOCH, topics=tuple(topics.values())) as log:
-        for each in stage.messages:
-            log.write(each.topic, each.message, each.time)
+        for message in stage.messages:
+            log.write(message.topic, message.message, message.time)
         log.finish("test", about)

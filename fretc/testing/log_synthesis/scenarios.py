@@ -79,7 +79,9 @@ def realizable_goals(suite: Suite, project: Project) -> tuple[tuple[Aim, ...], M
             why[requirement.id] = f"`{free[0]}` has no binding"
         elif absent:
             why[requirement.id] = f"the simulated robot has no topic `{absent[0]}`"
-    aims = tuple(_aim(one) for one in suite.obligations if one.outcome is GoalStatus.MET)
+    aims = tuple(
+        _aim(obligation) for obligation in suite.obligations if obligation.outcome is GoalStatus.MET
+    )
     return tuple(aim for aim in aims if aim[0] not in why), why
 
 

@@ -67,7 +67,7 @@ def synthesize(test: Test, declarations: Declarations, monitor: Monitor) -> Synt
     parts = [part(declarations.propositions[n], clock.period) for n in monitor.PROPOSITIONS]
     names = dict.fromkeys(name for one in parts for name in one.proposition.signals)
     signals = [declarations.signals[name] for name in names]
-    stage = _SignalSearch(parts, signals, {each.name: field(each) for each in signals})
+    stage = _SignalSearch(parts, signals, {signal.name: field(signal) for signal in signals})
     found = tick_plan(test, parts, monitor)
     contents = stage.contents(test, found)
     return SyntheticLog(found.lead, tuple(_messages(stage, contents, clock.period, declarations)))

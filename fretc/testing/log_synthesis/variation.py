@@ -31,7 +31,9 @@ def varied(scenario: Scenario, chance: Random) -> Scenario:
 
 
 def _moved(scenario: Scenario, chance: Random) -> Scenario:
-    barrel = chance.choice([each.name for each in STORE.obstacles if isinstance(each, Barrel)])
+    barrel = chance.choice(
+        [obstacle.name for obstacle in STORE.obstacles if isinstance(obstacle, Barrel)]
+    )
     place = _place(chance)
     moved = {**scenario.store.moved, barrel: place}
     return replace(scenario, store=replace(scenario.store, moved=moved))

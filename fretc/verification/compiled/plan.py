@@ -181,7 +181,7 @@ def implemented(
         NotAMonitorError: there is no id.
         UnexpectedLayoutError: a requirement is unknown.
     """
-    by_id = {each.id: each for each in requirements}
+    by_id = {requirement.id: requirement for requirement in requirements}
     if not ids:
         raise NotAMonitorError("it contains no requirement")
     for id in ids:

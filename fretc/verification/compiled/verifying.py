@@ -161,7 +161,9 @@ def _without_delays(
             PythonRail(monitor, requirement, names, doubt=doubt),
         )
         windows = right.windows()
-        if left is None or [line.length for line in left.lines] != [each.lo for each in windows]:
+        if left is None or [line.length for line in left.lines] != [
+            window.lo for window in windows
+        ]:
             return None
         letters = [
             FreeLetter(values, oldest)

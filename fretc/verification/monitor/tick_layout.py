@@ -117,7 +117,7 @@ def inlined(body: Sequence[ast.stmt]) -> str:
     statements += [each for each in loop.body[1:] if not _is_of_odd_values(each)]
     statements += [each for each in body[place + 2 : -1] if ast.unparse(each) not in others]
     on_rail = _OnRail(marks)
-    lines = (ast.unparse(on_rail.visit(copy.deepcopy(each))) for each in statements)
+    lines = (ast.unparse(on_rail.visit(copy.deepcopy(statement))) for statement in statements)
     return "\n".join(["rail.tick = tick = rail.tick + 1", *lines])
 
 
