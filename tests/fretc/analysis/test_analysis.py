@@ -355,6 +355,6 @@ def test_what_takes_too_long_comes_with_a_clue(monkeypatch: pytest.MonkeyPatch) 
     (found,) = verdicts.conflicts(setting, Budget(0.3))
     assert isinstance(found, OpenQuestion)
     assert found.why == (
-        "not answered within 0.3 s of a processor; "
-        "with all durations divided by 5001, R1 and R2 fight"
+        "not answered within 0.3 CPU seconds; "
+        "with all durations divided by 5001, R1 and R2 conflict"
     )

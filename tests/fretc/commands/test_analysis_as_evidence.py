@@ -116,7 +116,7 @@ def test_an_analysis_of_other_requirements_differs(analyzed: Fretc) -> None:
 @pytest.mark.slow
 def test_what_is_not_asked_again_is_not_checked(analyzed: Fretc) -> None:
     run = analyzed("verify-evidence", "--no-analysis")
-    assert (run.status, "?     not checked: nothing was analyzed again" in run.out) == (3, True)
+    assert (run.status, "?     not checked: the analysis was not repeated" in run.out) == (3, True)
     run = analyzed("verify-evidence", "--only", "r1")
     assert (run.status, "not checked: the analysis was not repeated: `--only`" in run.out) == (
         3,

@@ -206,7 +206,7 @@ def test_the_store_is_free_when_the_command_reads_it(robot: Fretc) -> None:
         "folder = os.open('build/evidence', os.O_RDONLY)\n"
         "fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)",
     )
-    assert "notified by" in robot("audit", "runs", "--notify", lock).err
+    assert "sent the summary to" in robot("audit", "runs", "--notify", lock).err
 
 
 @pytest.mark.slow

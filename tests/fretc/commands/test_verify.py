@@ -430,7 +430,7 @@ def test_bounds_are_of_the_monitor_that_fretc_writes(
     edited("r1_monitor.py", "oldest_1 >= 4\n", "oldest_1 >= 5\n")
     run = fretc("verify", "--layer", "bounds", path, "--file", "r1_monitor.py")
     assert run.status == 3
-    assert run.out.count("the monitor is not the one that fretc writes for it") == 2
+    assert run.out.count("the monitor is not the one that fretc generates for it") == 2
 
 
 @pytest.mark.slow
@@ -495,7 +495,7 @@ def test_an_interceptor_of_other_bindings_is_not_checked(
     edited("interceptor.py", "hold=4,", "hold=3,")
     run = fretc("verify", "--layer", "loop", path, "--interceptor", "interceptor.py")
     assert run.status == 3
-    assert "its options are not those that the bindings declare" in run.out
+    assert "its options differ from those that the bindings declare" in run.out
 
 
 @pytest.mark.slow
@@ -512,7 +512,7 @@ def test_an_interceptor_of_other_bindings_is_not_checked(
             "velocity[:2]",
             "its node is not the one that fretc generates for these bindings",
         ),
-        ("hold=4,", "hold=3,", "its options are not those that the bindings declare"),
+        ("hold=4,", "hold=3,", "its options differ from those that the bindings declare"),
         ("    wz: float = 0.0\n", "", "fretc cannot read its core: `class Velocity"),
         (
             "def halted(",
@@ -641,8 +641,8 @@ def test_crosshair_is_given_the_core_and_the_limit(
     [
         ("ZERO = Velocity()", "ZERO = print()", "fretc cannot read its core: "),
         ("\n\nclass Gate:", "\n\nstep = print\n\nclass Gate:", "the node below it"),
-        ("post: __return__ or state.held", "post: print() or state.held", "are not those of fretc"),
-        ("    post: __return__ or not state.stop\n", "", "are not those of fretc"),
+        ("post: __return__ or state.held", "post: print() or state.held", "differ from those of fretc"),
+        ("    post: __return__ or not state.stop\n", "", "differ from those of fretc"),
     ],
 )
 def test_crosshair_does_not_execute_what_may_not_be_pure(
