@@ -296,7 +296,7 @@ assumptions
    1  the safety function steps at every tick of 100 ms and sends its request every time \
 (`requests`, [assume])
    2  stop messages arrive in the order of sending, each within 100 ms (`latency`, [assume])
-   3  never are more than 1 stop messages lost in a row (`lost`, [assume])
+   3  at most 1 stop messages in a row are lost (`lost`, [assume])
    4  `stopped` is false while the wheels are commanded to move, and true once they \
 have had zero for 170 ms (`braking`, [assume]), or earlier
    5  the wheels follow a published command at once, and keep it until the next one
@@ -641,7 +641,11 @@ def test_crosshair_is_given_the_core_and_the_limit(
     [
         ("ZERO = Velocity()", "ZERO = print()", "fretc cannot read its core: "),
         ("\n\nclass Gate:", "\n\nstep = print\n\nclass Gate:", "the node below it"),
-        ("post: __return__ or state.held", "post: print() or state.held", "differ from those of fretc"),
+        (
+            "post: __return__ or state.held",
+            "post: print() or state.held",
+            "differ from those of fretc",
+        ),
         ("    post: __return__ or not state.stop\n", "", "differ from those of fretc"),
     ],
 )

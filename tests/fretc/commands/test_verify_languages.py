@@ -149,7 +149,9 @@ def test_a_monitor_in_c_needs_its_header(fretc: Fretc) -> None:
     write("other.c", "int x;\n")
     run = fretc("verify", "--file", "other.c", "r1.fret")
     assert run.status == 2
-    assert run.err.startswith("F602 `other.c` is not a generated monitor: it does not include its header")
+    assert run.err.startswith(
+        "F602 `other.c` is not a generated monitor: it does not include its header"
+    )
 
 
 @pytest.mark.slow
