@@ -60,7 +60,8 @@ def test_tests_of_one_requirement_are_drawn(fretc: Fretc, folder: Path) -> None:
     run = fretc("test", str(folder), "--show", "R1")
     assert run.status == 0
     assert run.out.startswith(
-        "R1  whenever start the line shall within 2 ticks satisfy run\n  its tests also satisfy R2\n"
+        "R1  whenever start the line shall within 2 ticks satisfy run\n  its tests also satisfy "
+        "R2\n"
     )
     assert (
         "✔ r1-answered-at-last-tick-kept: satisfied\n"
