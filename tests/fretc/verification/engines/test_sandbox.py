@@ -77,7 +77,7 @@ def work(seconds: float) -> tuple[int, float]:
 def test_calls_of_a_session_share_a_process_and_each_has_its_limits() -> None:
     with Session(Limits(seconds=1, memory=2**30)) as session:
         session.call(pretend, 0.0)
-        assert session.call(spin) == NoResult("out of time: more than 1 s of a processor")
+        assert session.call(spin) == NoResult("out of time: more than 1 CPU seconds")
         assert session.call(twice, 21) == 42
         session.call(pretend, 41.5)
         first, second = session.call(limit), session.call(limit)
@@ -98,7 +98,7 @@ def test_calls_of_a_session_share_a_process_and_each_has_its_limits() -> None:
 @full_only("CPU seconds")
 def test_the_limit_is_counted_from_what_was_taken_before_the_call() -> None:
     with Session(Limits(seconds=1)) as session:
-        assert session.call(spin) == NoResult("out of time: more than 1 s of a processor")
+        assert session.call(spin) == NoResult("out of time: more than 1 CPU seconds")
         answers = [session.call(work, seconds) for seconds in (0, 1.2, 0)]
     found = [each for each in answers if not isinstance(each, NoResult)]
     assert len(found) == 3, answers
