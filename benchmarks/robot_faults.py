@@ -20,7 +20,7 @@ from compiler.targets.python import monitor as monitors
 from fretc.analysis.arena.budget import Budget
 from fretc.campaigns.experiment import SafetyFunction, interceptor_text, monitor_text
 from fretc.testing.assembly import jobs
-from fretc.testing.bench import Bench
+from fretc.testing.requirement_model import RequirementModel
 from fretc.testing.words import Naming, judged, word
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
@@ -275,7 +275,7 @@ def by_flips(subject: Subject) -> list[Run]:
     runs = []
     for each in requirements(subject):
         for atom in each.watched:
-            bench = Bench(each, (), (), Budget(60))
+            bench = RequirementModel(each, (), (), Budget(60))
             found = bench.doubt_of(bdd.true(), atom, ())
             if found is None:
                 continue

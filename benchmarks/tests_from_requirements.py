@@ -23,7 +23,7 @@ from compiler.project.folder import load
 from compiler.project.paths import requirement_files
 from compiler.situations.mutants import mutants
 from fretc.testing.assembly import jobs
-from fretc.testing.suite import Fate
+from fretc.testing.suite import MutantStatus
 from fretc.testing.words import Word, is_killed, judged
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.requirement_sets import requirement
@@ -136,10 +136,10 @@ def main() -> None:
     print(f"{fates.total()} mutants:", dict(fates))
     suites: dict[str, list[tuple[int, int, int]]] = {}
     for subject, batch in zip(requirements, batches, strict=True):
-        same = {one.key for one in batch.mutants if one.outcome is Fate.EQUIVALENT}
+        same = {one.key for one in batch.mutants if one.outcome is MutantStatus.EQUIVALENT}
         wrong = [each.requirement for each in mutants(subject) if each.key not in same]
         lengths = [test.ticks for test in batch.tests]
-        ours = sum(one.outcome is Fate.KILLED for one in batch.mutants)
+        ours = sum(one.outcome is MutantStatus.KILLED for one in batch.mutants)
         suites.setdefault("ours", []).append((len(lengths), sum(lengths), ours))
         others = {"flips": by_flips(subject), "random": at_random(subject, lengths, seed=1)}
         for name, words in others.items():

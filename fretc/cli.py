@@ -1,7 +1,7 @@
-"""The command: read, call, print, exit. Nothing heavy is imported before a command needs it.
+"""Entry point of the command line: parse, run a command, print, exit.
 
-Exit status: 0 all shown, 1 a violation, 2 bad use or bad input, 3 nothing violated but something
-not shown; 130 stopped by Ctrl-C.
+A command imports its libraries when it runs. Exit status: 0 all satisfied or proved, 1 a violation,
+2 bad usage or bad input, 3 no violation but something inconclusive; 130 stopped by Ctrl-C.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from compiler.emit import TARGETS
 from compiler.files.build_id import __version__
 from compiler.files.processes import isolate_imports
 from fretc.api.refusal import too_deep
-from fretc.terminal.completion import answered
+from fretc.terminal.completion import answer_query
 from fretc.terminal.group import DEFAULT, Commands, Registry
 from fretc.terminal.output import (
-    BAD,
-    INTERRUPTED,
-    SHOWN,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
     final_status,
     not_written,
-    say,
-    say_accepted,
-    say_line,
+    print_accepted_count,
+    print_diagnostics,
+    print_status,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.limits import ExceededError, exceeded
@@ -77,7 +77,7 @@ _GROUPS = {
         "sbom": ("sbom:sbom", "List the installed components as CycloneDX."),
     },
 }
-"""By the work of the user, the most used first: module and attribute, and the line in the help."""
+"""Commands by task, the most used first: module and attribute, and the line in the help."""
 _COMMANDS = Registry(
     {
         DEFAULT: "fretc.commands.formalize:compile_",
@@ -111,7 +111,7 @@ _SUMMARIES = {
     help="Folder outside the project in which parents of requirements may also be. Repeatable.",
 )
 def cli(folders: tuple[str, ...]) -> None:
-    """The command itself; its help is `_HELP`."""
+    """The command line; its help is `_HELP`."""
     if folders:
         from compiler.files.settings import OUTSIDE
 
@@ -120,50 +120,52 @@ def cli(folders: tuple[str, ...]) -> None:
 
 
 def main() -> None:
-    """Run a command: no traceback ever reaches a user."""
+    """Run the command line; no exception reaches the user as a traceback."""
     _prepare()
     try:
         _run()
         sys.stdout.flush()
-        raise SystemExit(SHOWN)
+        raise SystemExit(EXIT_OK)
     except click.exceptions.Exit as exit_:
         raise SystemExit(exit_.exit_code) from None
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
-        raise SystemExit(SHOWN) from None
+        raise SystemExit(EXIT_OK) from None
     except click.ClickException as error:
-        say([_bad_usage(error)])
-        raise SystemExit(BAD) from None
+        print_diagnostics([_bad_usage(error)])
+        raise SystemExit(EXIT_USAGE) from None
     except (click.Abort, KeyboardInterrupt):
-        say_line("stopped")
-        raise SystemExit(INTERRUPTED) from None
+        print_status("stopped")
+        raise SystemExit(EXIT_INTERRUPTED) from None
     except ExceededError as error:
-        say([exceeded(error)])
-        raise SystemExit(BAD) from None
+        print_diagnostics([exceeded(error)])
+        raise SystemExit(EXIT_USAGE) from None
     except RecursionError:
-        say([too_deep()])
-        raise SystemExit(BAD) from None
+        print_diagnostics([too_deep()])
+        raise SystemExit(EXIT_USAGE) from None
     except OSError as error:
         _no_output(error)
-        raise SystemExit(BAD) from None
+        raise SystemExit(EXIT_USAGE) from None
     except Exception as error:
-        said = getattr(error, "diagnostic", None)  # as of a store that is damaged in the middle
+        said = getattr(error, "diagnostic", None)  # For example a store with a damaged table.
         if isinstance(said, Diagnostic):
-            say([said])
-            raise SystemExit(BAD) from None
+            print_diagnostics([said])
+            raise SystemExit(EXIT_USAGE) from None
         if "FRETC_TRACEBACK" in os.environ:
             raise
-        say([_internal(error)])
-        raise SystemExit(BAD) from None
+        print_diagnostics([_internal(error)])
+        raise SystemExit(EXIT_USAGE) from None
 
 
 _GARBAGE = 200_000
-"""New objects among which the collector looks for circles: what a command imports is none of them,
-and by 700, as Python begins, a tenth of a start went into looking through it again and again."""
+"""Number of new objects after which the garbage collector runs. Imports create no cycles, and with
+Python's default of 700 the collector takes a tenth of the start-up time."""
 
 
 def _prepare() -> None:
-    """Closed or narrow streams and a termination must cost neither the exit status nor files.
+    """Make streams and signals safe: closed pipes and SIGTERM keep exit status and files intact.
+
+        Nothing in the current folder is executed by accident.
 
     Nor is anything executed that happens to lie in the current folder.
     """
@@ -180,23 +182,23 @@ def _prepare() -> None:
 
 
 def _run() -> None:
-    """Not click's own `main`: that takes a closed pipe for exit status 1, a violation."""
-    if answered(cli):
+    """Run the command without click's `main`, which maps a closed pipe to exit status 1."""
+    if answer_query(cli):
         return
     with cli.make_context("fretc", sys.argv[1:]) as context:
         try:
             cli.invoke(context)
-            status = SHOWN
+            status = EXIT_OK
         except SystemExit as exit_:
-            status = int(exit_.code or SHOWN)
-        say_accepted(context)
+            status = int(exit_.code or EXIT_OK)
+        print_accepted_count(context)
         raise SystemExit(final_status(context, status))
 
 
 def _no_output(error: OSError) -> None:
-    """The reader of standard output has gone, or it cannot be written."""
+    """Report that standard output cannot be written; a closed pipe is not reported."""
     if not isinstance(error, BrokenPipeError):
-        say([not_written("standard output", error.strerror or str(error))])
+        print_diagnostics([not_written("standard output", error.strerror or str(error))])
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -221,5 +223,5 @@ def _internal(error: Exception) -> Diagnostic:
     return Diagnostic(
         Code.INTERNAL,
         f"internal error in fretc: {type(error).__name__}{where}: {error}",
-        help="please report it with the input; FRETC_TRACEBACK=1 shows where it comes from",
+        help="please report it together with the input; FRETC_TRACEBACK=1 shows the traceback",
     )

@@ -1,4 +1,4 @@
-"""What the `fretc` command runs: Ctrl-C stops it in one line, also while the rest is imported."""
+"""Entry point of the `fretc` command: handles Ctrl-C also during imports."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 
 
 def main() -> None:
-    """Run the command; its exit status is 130 where Ctrl-C came before it could answer."""
+    """Run the command; the exit status is 130 if Ctrl-C stopped it during imports."""
     try:
         from fretc.cli import main as run
 

@@ -207,7 +207,7 @@ def readers(folder: Path) -> dict[str, Reader]:
         "scenario",
         "s.toml",
         SCENARIO,
-        ("simulate", "s.toml", "--duration", "0.01", "--out", "s.mcap"),
+        ("simulate", "s.toml", "--duration", "0.01", "-o", "s.mcap"),
     )
     add("FRET's JSON", "e.json", EXPORT, ("import", "e.json", "-o", "-"))
     add("FRET's CSV", "e.csv", TABLE, ("import", "e.csv", "-o", "-", "--id-column", "id"))

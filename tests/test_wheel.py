@@ -80,5 +80,5 @@ def test_it_makes_a_monitor_far_from_the_checkout(installed: Path, tmp_path: Pat
 
 
 def test_it_simulates_far_from_the_checkout(installed: Path, tmp_path: Path) -> None:
-    run = ran(installed, tmp_path, "simulate", "walker", "--duration", "0.1", "--out", "run.mcap")
+    run = ran(installed, tmp_path, "simulate", "walker", "--duration", "0.1", "-o", "run.mcap")
     assert (run.returncode, run.stderr) == (0, "wrote run.mcap\n")

@@ -1,5 +1,5 @@
-"""The analysis of requirement sets: realizability, conflicts, redundancy, vacuity, consistency.
+"""Analysis of requirement sets: realizability, conflicts, redundancy, vacuity, consistency.
 
-Input is the requirements of a component and its assumptions. Output is findings, with plays,
+Input is the requirements of a component and its assumptions. Output is findings, with traces,
 repairs and controllers.
 """

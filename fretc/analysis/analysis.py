@@ -1,4 +1,4 @@
-"""The analysis of a requirement set: every question of it, component by component."""
+"""The analysis of a requirement set: all questions, component by component."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.components import by_outputs, by_variables
 from fretc.analysis.controllers.circuit import Circuit
-from fretc.analysis.controllers.files import Form
+from fretc.analysis.controllers.files import ControllerFormat
 from fretc.analysis.controllers.moves import Mealy
 from fretc.analysis.findings import (
     SCHEMA,
@@ -45,15 +45,15 @@ from fretish.reading.recursion import with_recursion_limit
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What a caller may choose."""
+    """Options of an analysis."""
 
     seconds: float = 20.0
-    """Of a processor, for each question about each component."""
+    """CPU time limit in seconds, for each question about each component."""
     as_fret: bool = False
-    """FRET's question: the past form of each requirement holds at every tick, so that `eventually`
-    means at once."""
+    """Answer FRET's question: the past form of each requirement holds at every tick, so that
+    `eventually` means at once."""
     repairs: bool = True
-    """Whether what would settle conflicts is looked for."""
+    """Whether to search for repairs of conflicts."""
 
 
 DEFAULT = Options()
@@ -85,13 +85,13 @@ def analyze(
     assumptions: Sequence[FormalizedRequirement] = (),
     options: Options = DEFAULT,
 ) -> Analysis:
-    """All that can be known of the requirements together, computed in this process.
+    """The analysis of the requirements, computed in this process.
 
     Args:
         requirements: the requirements, in the order of the files.
-        roles: of every variable of requirements and assumptions (`roles`).
-        assumptions: what the environment keeps.
-        options: limits, and FRET's reading.
+        roles: role of every variable of requirements and assumptions.
+        assumptions: the assumptions about the environment.
+        options: time limits, and whether FRET's question is answered.
     """
     found: list[Finding] = []
     for job in jobs(requirements, roles, assumptions, options):
@@ -101,10 +101,10 @@ def analyze(
 
 Question = Callable[[RealizabilityProblem, Budget], Iterator[Finding]]
 _OF_GROUPS: Mapping[str, Question] = {
-    "does each of {} say anything?": of_runs.constants,
+    "is any of {} satisfied by every run?": of_runs.constants,
     "is each of {} ever triggered?": of_runs.vacuities,
     "do some of {} imply others?": of_runs.redundancies,
-    "can a run lead to where {} clash?": of_runs.inconsistencies,
+    "can a run make {} impossible to satisfy together?": of_runs.inconsistencies,
 }
 
 
@@ -138,8 +138,8 @@ def jobs(
 
 
 def _promises(assumptions: Sequence[FormalizedRequirement], roles: Roles, options: Options) -> Job:
-    """Whether the assumptions can be kept at all: from those that cannot, everything follows."""
-    title = f"can any run keep the assumptions {', '.join(each.id for each in assumptions)}?"
+    """Job: whether any run satisfies the assumptions; otherwise every result would follow."""
+    title = f"can any run satisfy the assumptions {', '.join(each.id for each in assumptions)}?"
 
     def ask(known: Sequence[Finding]) -> Iterator[Finding]:
         for group in by_variables(assumptions, (), roles):
@@ -148,7 +148,9 @@ def _promises(assumptions: Sequence[FormalizedRequirement], roles: Roles, option
             for each in of_runs.consistency(setting, budget):
                 if isinstance(each, Consistency) and each.holds is False:
                     ids = ", ".join(each.requirements)
-                    yield OpenQuestion("what follows from the assumptions", f"no run keeps {ids}")
+                    yield OpenQuestion(
+                        "what follows from the assumptions", f"no run satisfies {ids}"
+                    )
 
     return Job(title, ask, partial(OpenQuestion, title))
 
@@ -158,9 +160,9 @@ def controllers(
     roles: Roles,
     assumptions: Sequence[FormalizedRequirement],
     options: Options,
-    form: Form,
+    form: ControllerFormat,
 ) -> tuple[Job, ...]:
-    """For each component: how it is kept, in such a form; to be asked where each can be."""
+    """Jobs that compute a controller of each realizable component in the given form."""
     return tuple(
         _Setting(each, roles, assumptions, options).controller(number, form)
         for number, each in enumerate(by_outputs(requirements, assumptions, roles), 1)
@@ -168,7 +170,7 @@ def controllers(
 
 
 class _Setting:
-    """Requirements that are looked at together; their arena is built when it is needed first."""
+    """Requirements that are examined together; their arena is built when it is first needed."""
 
     def __init__(
         self,
@@ -187,7 +189,7 @@ class _Setting:
         self._built: RealizabilityProblem | None = None
 
     def _stage(self, budget: Budget) -> RealizabilityProblem:
-        """The arena, whose comparisons are sorted out in the time of the first question."""
+        """The realizability problem, built within the time of the first question."""
         if self._built is None:
             as_fret = self._options.as_fret
             self._built = stage(
@@ -196,7 +198,7 @@ class _Setting:
         return self._built
 
     def verdict(self) -> Job:
-        """Whether a component can be kept."""
+        """Job: whether a component is realizable."""
 
         def not_checked(why: str) -> Component:
             return component(self._rules, self._roles, Verdict.NOT_CHECKED, why)
@@ -209,14 +211,15 @@ class _Setting:
             except (UnsupportedError, OutOfTimeError) as error:
                 yield not_checked(str(error))
 
-        return Job(f"can {self._name} be kept together?", ask, not_checked)
+        return Job(f"can {self._name} be satisfied together?", ask, not_checked)
 
     def consistency(self) -> Job:
-        """Whether any run keeps a group; where a system keeps all of it, one does.
+        """Job: whether any run satisfies all requirements of a group.
 
-        Where a system that chooses everything cannot keep a part of it, none does.
+        A run exists if the group is realizable. None exists if a part is unrealizable even for a
+        system that chooses every variable.
         """
-        title = f"can any run keep {self._name}?"
+        title = f"can any run satisfy {self._name}?"
 
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
             kept, lost = (
@@ -241,8 +244,8 @@ class _Setting:
         return Job(title, ask, partial(OpenQuestion, title))
 
     def conflicts(self) -> Job:
-        """Which of a component fight, where it cannot be kept, or nobody knows."""
-        title = f"which of {self._name} fight?"
+        """Job: the minimal conflicts of a component that is unrealizable or undecided."""
+        title = f"which of {self._name} conflict?"
 
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
             mine = [
@@ -258,8 +261,8 @@ class _Setting:
         return Job(title, ask, partial(OpenQuestion, title))
 
     def repairs(self) -> Job:
-        """What would settle the conflicts of a component."""
-        title = f"what would settle the conflicts of {self._name}?"
+        """Job: changes that would resolve the conflicts of a component."""
+        title = f"what would resolve the conflicts of {self._name}?"
 
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
             mine = [
@@ -272,9 +275,9 @@ class _Setting:
 
         return Job(title, ask, partial(OpenQuestion, title))
 
-    def controller(self, number: int, form: Form) -> Job:
-        """How a component that can be kept is kept."""
-        title = f"how can {self._name} be kept?"
+    def controller(self, number: int, form: ControllerFormat) -> Job:
+        """Job: a controller of a realizable component."""
+        title = f"how can {self._name} be satisfied?"
 
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
             yield from self._answers(title, partial(strategy, number=number, form=form))
@@ -282,7 +285,7 @@ class _Setting:
         return Job(title, ask, partial(OpenQuestion, title))
 
     def job(self, title: str, question: Question) -> Job:
-        """A question about a group."""
+        """Job that asks one question about a group."""
         title = title.format(self._name)
         return Job(
             title, lambda known: self._answers(title, question), partial(OpenQuestion, title)
@@ -309,7 +312,7 @@ def assembled(
     options: Options,
     findings: Iterable[Finding],
 ) -> Analysis:
-    """The findings as one value; what has no finding is not known."""
+    """The findings as one analysis; a question without a finding is not checked."""
     found = tuple(findings)
     conflicting = [frozenset(each.requirements) for each in _of(Conflict, found)]
     components = tuple(_fought(each, conflicting) for each in _of(Component, found))
@@ -342,7 +345,8 @@ def assembled(
         always=tuple(each.requirement for each in constants if each.always),
         never=tuple(each.requirement for each in constants if not each.always),
         assumptions=tuple(
-            Assumption(each.id, each.entry.text, printed(each.written)) for each in assumptions
+            Assumption(assumption.id, assumption.entry.text, printed(assumption.written))
+            for assumption in assumptions
         ),
         roles={name: roles[name] for name in sorted(roles)},
         terms=tuple(_terms([*requirements, *assumptions], bool(assumptions), options)),
@@ -361,25 +365,25 @@ def _looks_back(requirement: FormalizedRequirement) -> bool:
 
 
 def _verdict(components: Sequence[Component], missing: Sequence[str]) -> tuple[Verdict, str]:
-    """Of the whole: one component that cannot be kept is enough."""
+    """Verdict of the whole set: one unrealizable component is enough."""
     bad = [each for each in components if each.verdict is Verdict.UNREALIZABLE]
     unknown = [each for each in components if each.verdict is Verdict.NOT_CHECKED]
     if bad:
         which = "; ".join(", ".join(each.requirements) for each in bad)
-        return Verdict.UNREALIZABLE, f"cannot be kept together: {which}"
+        return Verdict.UNREALIZABLE, f"cannot be satisfied together: {which}"
     if missing:
-        return Verdict.NOT_CHECKED, f"not looked at: {', '.join(missing)}"
+        return Verdict.NOT_CHECKED, f"not examined: {', '.join(missing)}"
     if unknown:
         return Verdict.NOT_CHECKED, "; ".join(each.why for each in unknown)
     return Verdict.REALIZABLE, "for each component the system has a strategy"
 
 
 def _fought(component: Component, conflicts: Sequence[frozenset[str]]) -> Component:
-    """A component is decided by a conflict in it, too, where it took too long as a whole."""
+    """The component as unrealizable if it has a conflict, also if its own question timed out."""
     if component.verdict is Verdict.NOT_CHECKED and any(
-        each.issubset(component.requirements) for each in conflicts
+        conflict.issubset(component.requirements) for conflict in conflicts
     ):
-        return replace(component, verdict=Verdict.UNREALIZABLE, why="some of them fight")
+        return replace(component, verdict=Verdict.UNREALIZABLE, why="some of them conflict")
     return component
 
 
@@ -395,12 +399,12 @@ def _consistent(
 def _terms(
     requirements: Sequence[FormalizedRequirement], assumes: bool, options: Options
 ) -> Iterator[str]:
-    """What the findings rest on.
+    """Sentences with the assumptions of the analysis.
 
     Args:
         requirements: the requirements and the assumptions.
         assumes: whether there are assumptions.
-        options: of the analysis.
+        options: options of the analysis.
     """
     yield (
         "at each tick the environment sets all inputs, then the system all outputs, which may "
@@ -412,13 +416,16 @@ def _terms(
             "means at once"
         )
     else:
-        yield "`eventually` may take as long as it likes, but not for ever"
+        yield "an `eventually` may take any number of ticks, but not for ever"
     if assumes:
-        yield "what is said of runs is said of those that keep all assumptions"
+        yield "results about runs hold for the runs that satisfy all assumptions"
     if any(_looks_back(requirement) for requirement in requirements):
         yield (
-            "before the first tick nothing was true; `preBool`, `preInt` and `preReal` state their "
+            "before the first tick every proposition is false; `preBool`, `preInt` and `preReal` "
+            "state their "
             "own first value"
         )
     if any(comparisons(requirement) for requirement in requirements):
-        yield "numbers are exact: whole or real, without bounds; rounding of floats is not modelled"
+        yield (
+            "numbers are exact integers or reals without bounds; rounding of floats is not modelled"
+        )

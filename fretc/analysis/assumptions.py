@@ -1,4 +1,4 @@
-"""What the environment is taken to keep: the sentences of `[[assume.requirement]]`."""
+"""Assumptions about the environment: the sentences of `[[assume.requirement]]`."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 def assumptions(
     requirements: Sequence[FormalizedRequirement], declarations: Declarations | None
 ) -> tuple[tuple[FormalizedRequirement, ...], tuple[Diagnostic, ...]]:
-    """The assumptions as requirements, and all that there is to say of them.
+    """The assumptions as requirements, and their diagnostics.
 
     Args:
-        requirements: the requirements; an assumption has an id of its own.
+        requirements: the requirements; assumptions have other ids.
         declarations: the bindings; None: there are none.
     """
     if declarations is None or not declarations.environment:

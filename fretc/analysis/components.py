@@ -1,7 +1,7 @@
-"""Requirements that hang together: by the outputs that they share, or by any variable.
+"""Components of requirements: linked by shared outputs, or by any shared variable.
 
-Requirements without a common output can be kept apart: each component has a strategy of its own
-for the same inputs, and together these are one.
+Requirements without a common output can be satisfied independently: each component has its own
+strategy for the same inputs, and the strategies can be combined.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ Tokens = frozenset[str]
 
 
 def tokens(requirement: FormalizedRequirement, roles: Roles, *kinds: Role) -> Tokens:
-    """The variables of such roles that a requirement reads; of a bound proposition its signals."""
+    """Variables of these roles that a requirement reads; for a bound proposition, its signals."""
     found: set[str] = set()
     for name in requirement.variables:
         if roles[name] in kinds:
@@ -34,12 +34,12 @@ def by_outputs(
     assumptions: Sequence[FormalizedRequirement],
     roles: Roles,
 ) -> list[tuple[FormalizedRequirement, ...]]:
-    """Components: those of which no output is shared; assumptions about outputs join them."""
+    """Components that share no output; assumptions about outputs join them."""
 
     def of(requirement: FormalizedRequirement) -> Tokens:
         return tokens(requirement, roles, Role.OUTPUT)
 
-    return _groups(requirements, [each for each in assumptions if of(each)], of)
+    return _groups(requirements, [assumption for assumption in assumptions if of(assumption)], of)
 
 
 def by_variables(
@@ -47,7 +47,7 @@ def by_variables(
     assumptions: Sequence[FormalizedRequirement],
     roles: Roles,
 ) -> list[tuple[FormalizedRequirement, ...]]:
-    """Groups that share no variable at all."""
+    """Groups that share no variable."""
     return _groups(
         requirements,
         assumptions,
@@ -60,7 +60,7 @@ def about(
     assumptions: Sequence[FormalizedRequirement],
     roles: Roles,
 ) -> tuple[FormalizedRequirement, ...]:
-    """The assumptions that bear upon the requirements, directly or by way of other assumptions."""
+    """Assumptions that concern the requirements, directly or through other assumptions."""
     kinds = (Role.INPUT, Role.OUTPUT)
     reached = {
         token for requirement in requirements for token in tokens(requirement, roles, *kinds)
@@ -70,7 +70,7 @@ def about(
     while True:
         near = [each for each in rest if reached & tokens(each, roles, *kinds)]
         if not near:
-            return tuple(each for each in assumptions if each in found)
+            return tuple(assumption for assumption in assumptions if assumption in found)
         for each in near:
             rest.remove(each)
             found.append(each)
@@ -82,7 +82,7 @@ def _groups(
     links: Sequence[FormalizedRequirement],
     of: Callable[[FormalizedRequirement], Tokens],
 ) -> list[tuple[FormalizedRequirement, ...]]:
-    """The requirements that are linked, in their order; links themselves are in no group."""
+    """Linked requirements in their order; the links themselves are in no group."""
     groups: list[tuple[set[int], set[str]]] = []
     members = [*requirements, *links]
     for number, requirement in enumerate(members):

@@ -1,6 +1,6 @@
-"""An analysis as evidence: what it is of, exactly, and whether that is what there is now.
+"""Analysis results as evidence: `build/analysis.json`, and whether it is up to date.
 
-Nothing in a file is trusted: a verdict that does not follow from what stands beside it is F503.
+The file is not trusted: a verdict that does not follow from its findings is F503.
 """
 
 from __future__ import annotations
@@ -27,32 +27,34 @@ from fretish.printer import sentence as printed
 
 SCHEMA: Final = "fretc-analyzed-set-1"
 DEFAULT = "build/analysis.json"
-"""Where `fretc analyze` writes."""
+"""Default path of the output of `fretc analyze`."""
 
 
 class Member(Record, frozen=True):
-    """A requirement, or an assumption, as it was when it was analyzed."""
+    """A requirement or an assumption when it was analyzed."""
 
     sentence: Annotated[str, about("in FRETish")]
     sha256: Annotated[
         Sha256,
         about(
-            "SHA-256 of all that the analysis reads of it: formulas, ticks, what its names are "
-            "bound to, their types and roles"
+            "SHA-256 of everything that the analysis reads: formulas, ticks, the bindings of its "
+            "names, their types and roles"
         ),
     ]
 
 
 class Document(Record, frozen=True):
-    """What `build/analysis.json` holds."""
+    """Content of `build/analysis.json`."""
 
     schema: Literal["fretc-analyzed-set-1"]
     fretc: Annotated[str, about("version of the tool")]
     as_fret: Annotated[
-        bool, about("whether it answers FRET's question: `eventually` means at once")
+        bool, about("whether FRET's question was answered: `eventually` means at once")
     ]
-    requirements: Annotated[dict[Name, Member], about("all that were asked about, by their ids")]
-    assumptions: Annotated[dict[Name, Member], about("what the environment was taken to keep")]
+    requirements: Annotated[
+        dict[Name, Member], about("the requirements that were analyzed, by their ids")
+    ]
+    assumptions: Annotated[dict[Name, Member], about("what the environment was assumed to satisfy")]
     analysis: Analysis
 
 
@@ -73,14 +75,14 @@ def document(
     *,
     as_fret: bool,
 ) -> Document:
-    """The evidence of an analysis of these."""
+    """The evidence of an analysis of these requirements."""
     return Document(
         SCHEMA, __version__, as_fret, members(requirements), members(assumptions), analysis
     )
 
 
 def members(requirements: Sequence[FormalizedRequirement]) -> dict[str, Member]:
-    """Requirements, or assumptions, as they are now, by their ids."""
+    """Present requirements or assumptions, by id."""
     return {
         requirement.id: Member(printed(requirement.written), _digest(requirement))
         for requirement in requirements
@@ -88,7 +90,7 @@ def members(requirements: Sequence[FormalizedRequirement]) -> dict[str, Member]:
 
 
 def _digest(requirement: FormalizedRequirement) -> str:
-    """Of all that the analysis reads of a requirement."""
+    """SHA-256 of everything that the analysis reads of a requirement."""
     declared = requirement.declarations
     return canonical.digest(
         {
@@ -114,12 +116,12 @@ def suspicions(
     requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
 ) -> Iterator[str]:
-    """Why an analysis says nothing of these: what was added, was taken out, or has changed.
+    """Reasons why an analysis is out of date: added, removed or changed requirements.
 
     Args:
         known: the evidence.
-        requirements: the requirements in force now.
-        assumptions: what the environment is taken to keep now.
+        requirements: the present active requirements.
+        assumptions: the present assumptions.
     """
     if known.as_fret:
         yield "it answers FRET's question, in which `eventually` means at once"
@@ -131,7 +133,7 @@ def changes(
     requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
 ) -> Iterator[str]:
-    """What was added, was taken out, or has changed since an analysis."""
+    """Added, removed and changed requirements since an analysis."""
     yield from _changes(known.requirements, members(requirements), "")
     yield from _changes(known.assumptions, members(assumptions), "assumption ")
 
@@ -139,9 +141,9 @@ def changes(
 def _changes(then: Mapping[str, Member], now: Mapping[str, Member], what: str) -> Iterator[str]:
     for id in (*then, *(each for each in now if each not in then)):
         if id not in now:
-            yield f"{what}{id} was part of the set, and is not any more"
+            yield f"{what}{id} is no longer part of the set"
         elif id not in then:
-            yield f"{what}{id} was no part of the set"
+            yield f"{what}{id} was not part of the set"
         elif then[id] != now[id]:
             yield f"{what}{id} has changed since"
 
@@ -149,30 +151,32 @@ def _changes(then: Mapping[str, Member], now: Mapping[str, Member], what: str) -
 def remarks(
     analysis: Analysis, requirements: Sequence[FormalizedRequirement]
 ) -> Iterator[Diagnostic]:
-    """F561 for each conflict; F562 where nobody knows."""
+    """F561 for each conflict; F562 if realizability is unknown."""
     places = {requirement.id: requirement.entry.wording for requirement in requirements}
     for each in analysis.conflicts:
         ids = each.requirements
-        what = "can be kept by no system" if len(ids) == 1 else "cannot be kept together"
+        what = (
+            "cannot be satisfied by any system" if len(ids) == 1 else "cannot be satisfied together"
+        )
         yield Diagnostic(
             Code.UNREALIZABLE,
             f"{listed(ids)} {what}: {each.because}",
             places.get(ids[0]),
-            help="look at the run: `fretc analyze`",
+            help="`fretc analyze` shows the run",
             severity=Severity.WARNING,
         )
     if analysis.verdict is Verdict.UNREALIZABLE and not analysis.conflicts:
         yield Diagnostic(
             Code.UNREALIZABLE,
             f"requirements {analysis.why}",
-            help="look at them: `fretc analyze`",
+            help="`fretc analyze` shows them",
             severity=Severity.WARNING,
         )
     if analysis.verdict is Verdict.NOT_CHECKED:
         yield Diagnostic(
             Code.NOT_ANALYZED,
-            f"it is not known whether all requirements can be kept together: {analysis.why}",
-            help="see what is open: `fretc analyze`",
+            f"it is unknown whether all requirements can be satisfied together: {analysis.why}",
+            help="`fretc analyze` shows the open questions",
             severity=Severity.WARNING,
         )
 
@@ -182,7 +186,7 @@ def remarks(
 
 @dataclass(frozen=True, slots=True)
 class AnalyzedSet:
-    """A whole file, with its name and its SHA-256."""
+    """A complete file, with its name and SHA-256."""
 
     file: str
     sha256: str
@@ -211,18 +215,18 @@ def read(path: str) -> AnalyzedSet | Diagnostic:
 
 
 def known(path: str | None) -> AnalyzedSet | Diagnostic | None:
-    """The file; None: that at its usual place, where there is one."""
+    """The analysis of a file, or of the default file if it exists; None: there is none."""
     place = path or default_path()
     return read(place) if place is not None else None
 
 
 def default_path() -> str | None:
-    """The file of `fretc analyze` at its usual place, if there is one."""
+    """Default path of the analysis, if the file exists."""
     return DEFAULT if Path(DEFAULT).exists() else None
 
 
 def _contradiction(found: Document) -> str:
-    """Why the verdict does not follow; empty where it does."""
+    """Why the verdict does not follow from the findings; empty if it does."""
     analysis = found.analysis
     ids = found.requirements.keys()
     named = {id for each in analysis.components for id in each.requirements}
@@ -236,14 +240,14 @@ def _contradiction(found: Document) -> str:
         for id in each.requirements
     }
     if analysis.conflicts or any(
-        each.verdict is Verdict.UNREALIZABLE for each in analysis.components
+        component.verdict is Verdict.UNREALIZABLE for component in analysis.components
     ):
         follows = Verdict.UNREALIZABLE
     else:
         follows = Verdict.REALIZABLE if ids <= shown else Verdict.NOT_CHECKED
     if analysis.verdict is follows:
         return ""
-    return f"the verdict is `{analysis.verdict}`, and `{follows}` is what its parts say"
+    return f"the verdict is `{analysis.verdict}`, but its parts imply `{follows}`"
 
 
 def _wrong(source: Source, what: str) -> Diagnostic:

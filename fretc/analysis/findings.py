@@ -1,8 +1,8 @@
-"""What an analysis of a requirement set has found, as it is written and printed.
+"""Findings of the analysis of a requirement set, as they are written and printed.
 
-A requirement set is *realizable* where a system can choose its outputs tick by tick, knowing the
-inputs up to and including that tick, and keep every requirement whatever the inputs are. Whatever
-has no answer within its limits is `not checked`: no finding is ever left out in silence.
+A requirement set is *realizable* if a system can choose its outputs tick by tick, knowing the
+inputs up to and including that tick, and satisfy every requirement for all inputs. A question
+without an answer within its limits is reported as `not checked`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ SCHEMA: Final = "fretc-analysis-1"
 
 
 class Verdict(StrEnum):
-    """Can the requirements be kept together? The values are the words of files."""
+    """Whether the requirements are realizable. The values are those of files."""
 
     REALIZABLE = "realizable"
     UNREALIZABLE = "unrealizable"
@@ -26,52 +26,54 @@ class Verdict(StrEnum):
 
 
 class Component(Record, frozen=True):
-    """Requirements that share outputs, directly or by way of others; no other one has these."""
+    """Requirements linked by shared outputs; no other requirement has these outputs."""
 
     requirements: Annotated[tuple[Name, ...], about("ids, in the order of the files")]
-    outputs: Annotated[tuple[Name, ...], about("the outputs that they are about")]
+    outputs: Annotated[tuple[Name, ...], about("the outputs that the requirements are about")]
     verdict: Verdict
-    why: Annotated[str, about("how it is known, or why nothing is known")]
-    seconds: Annotated[float, about("of a processor")]
+    why: Annotated[str, about("the method that decided it, or why it was not decided")]
+    seconds: Annotated[float, about("CPU seconds")]
 
 
 class Conflict(Record, frozen=True):
-    """A minimal conflict: these cannot be kept together, and without any one of them they can."""
+    """A minimal set of requirements that cannot be satisfied together."""
 
     requirements: Annotated[tuple[Name, ...], about("ids, sorted")]
     play: Annotated[
         tuple[Tick, ...],
-        about("a run that the environment forces, tick by tick; empty where it takes too long"),
+        about(
+            "a run that the environment can force, tick by tick; empty if it was not found in time"
+        ),
     ]
-    because: Annotated[str, about("one sentence that says why")]
+    because: Annotated[str, about("one sentence with the reason")]
     loop: Annotated[
         Count | None,
-        about(
-            "the tick to which the last one leads back for ever; null: the play ends in a breach"
-        ),
+        about("the tick at which the repeated part begins; null: the run ends in a violation"),
     ] = None
 
 
 class Repair(Record, frozen=True):
-    """What would settle a conflict, as the game of the changed set has shown."""
+    """A proved change that resolves a conflict."""
 
-    conflict: Annotated[tuple[Name, ...], about("the ids of the conflict that it settles")]
+    conflict: Annotated[tuple[Name, ...], about("the ids of the conflict that the repair resolves")]
     requirement: Annotated[
         Name | None, about("whose bound changes; null: the sentences are assumptions")
     ]
     sentences: Annotated[tuple[Name, ...], about("in FRETish")]
-    settles: Annotated[bool, about("whether all of the component can be kept then")]
+    settles: Annotated[
+        bool, about("whether all requirements of the component can then be satisfied")
+    ]
 
 
 class Redundancy(Record, frozen=True):
-    """A requirement that others imply: no run that keeps these breaks it."""
+    """A requirement that others imply: every run that satisfies them satisfies it."""
 
     requirement: Name
     by: Annotated[tuple[Name, ...], about("a minimal set of others that imply it; sorted")]
 
 
 class Vacuity(Record, frozen=True):
-    """A requirement of which a part never happens, in any run that keeps the others."""
+    """A requirement with a part that never happens in runs that satisfy the others."""
 
     requirement: Name
     by: Annotated[tuple[Name, ...], about("a minimal set of others that exclude it; sorted")]
@@ -79,9 +81,9 @@ class Vacuity(Record, frozen=True):
 
 
 class Inconsistency(Record, frozen=True):
-    """Requirements that a run can lead to where they cannot be kept together any more.
+    """Requirements that become impossible to satisfy together after a run (rt-inconsistency).
 
-    No single one is broken then, or has become impossible.
+    No single requirement is violated or impossible then.
     """
 
     requirements: Annotated[tuple[Name, ...], about("ids, sorted")]
@@ -89,7 +91,7 @@ class Inconsistency(Record, frozen=True):
 
 
 class Assumption(Record, frozen=True):
-    """What the environment is taken to keep."""
+    """An assumption about the environment."""
 
     id: Name
     text: Annotated[str, about("in natural language; it may be empty")]
@@ -109,7 +111,7 @@ class OpenQuestion(Record, frozen=True):
 
 
 class Analysis(Record, frozen=True):
-    """All that is known of a requirement set."""
+    """All findings about a requirement set."""
 
     schema: Literal["fretc-analysis-1"]
     fretc: Annotated[str, about("version of the tool")]
@@ -118,26 +120,30 @@ class Analysis(Record, frozen=True):
     components: tuple[Component, ...]
     conflicts: tuple[Conflict, ...]
     complete: Annotated[bool, about("whether these are all minimal conflicts")]
-    repairs: Annotated[tuple[Repair, ...], about("what would settle each conflict")]
+    repairs: Annotated[tuple[Repair, ...], about("changes that would resolve each conflict")]
     redundant: tuple[Redundancy, ...]
     removable: Annotated[
         tuple[Name, ...],
         about("redundant requirements that the others imply even without all of these; sorted"),
     ]
     vacuous: tuple[Vacuity, ...]
-    consistent: Annotated[bool | None, about("whether any run keeps all of them; null: not known")]
+    consistent: Annotated[
+        bool | None, about("whether any run satisfies all of them; null: not known")
+    ]
     inconsistent: Annotated[
         tuple[Inconsistency, ...], about("real-time inconsistencies, of pairs and triples first")
     ]
-    always: Annotated[tuple[Name, ...], about("requirements that every run keeps")]
-    never: Annotated[tuple[Name, ...], about("requirements that no run keeps")]
+    always: Annotated[tuple[Name, ...], about("requirements that every run satisfies")]
+    never: Annotated[tuple[Name, ...], about("requirements that no run satisfies")]
     assumptions: tuple[Assumption, ...]
     roles: Annotated[
         dict[str, Role],
-        about("who chooses each variable: the environment inputs, the system outputs"),
+        about(
+            "the role of each variable: the environment chooses inputs, the system chooses outputs"
+        ),
     ]
-    terms: Annotated[tuple[str, ...], about("what all of this rests on, in words")]
-    open: Annotated[tuple[OpenQuestion, ...], about("what was not answered, and why")]
+    terms: Annotated[tuple[str, ...], about("the assumptions of the analysis, in words")]
+    open: Annotated[tuple[OpenQuestion, ...], about("questions without an answer, and the reasons")]
 
 
 def schema() -> dict[str, Any]:
@@ -145,6 +151,6 @@ def schema() -> dict[str, Any]:
     return json_schema(
         Analysis,
         SCHEMA,
-        "Whether requirements can be kept together, as `fretc analyze` writes it",
+        "Whether requirements can be satisfied together, as `fretc analyze` writes it",
         "Nothing but `seconds` depends on when or where it was made.",
     )

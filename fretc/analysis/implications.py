@@ -1,4 +1,4 @@
-"""Implications among requirements, for any choice of outputs: of runs, not of games."""
+"""Implications among requirements, for any choice of outputs: about runs, not games."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from fretc.analysis.realizability_problem import RealizabilityProblem
 from fretc.analysis.reasons import listed
 
 MOST_TRIPLES = 500
-"""Of requirements that hang together; of more none is looked at."""
+"""Maximum number of triples of linked requirements that are examined."""
 _FEW = 3
-"""So many requirements are looked at by themselves."""
+"""Number of requirements up to which they are examined by themselves."""
 
 
 @dataclass(frozen=True, slots=True)
 class Consistency:
-    """Whether a run keeps all of these; None: not known."""
+    """Whether a run satisfies all requirements; None: unknown."""
 
     requirements: tuple[str, ...]
     holds: bool | None
@@ -33,7 +33,7 @@ class Consistency:
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A requirement that every run keeps, or none."""
+    """A requirement that every run satisfies, or no run."""
 
     requirement: str
     always: bool
@@ -49,9 +49,9 @@ class Removable:
 def consistency(
     setting: RealizabilityProblem, budget: Budget
 ) -> Iterator[Consistency | OpenQuestion]:
-    """Whether any run keeps all requirements."""
+    """Whether any run satisfies all requirements."""
     ids = tuple(requirement.id for requirement in setting.requirements)
-    question = f"whether any run keeps {listed(ids)}"
+    question = f"whether any run satisfies {listed(ids)}"
     doubt = setting.left_out or setting.of_inputs or setting.of_outputs
     try:
         there = setting.close(ids, budget)
@@ -72,7 +72,7 @@ def consistency(
 
 
 def constants(setting: RealizabilityProblem, budget: Budget) -> Iterator[Constant | OpenQuestion]:
-    """Requirements that say nothing, or ask for what cannot be."""
+    """Requirements that every run satisfies, or no run."""
     for counter in setting.arena.counters:
         try:
             if not setting.runs((counter,), budget.again()).is_possible():
@@ -80,13 +80,13 @@ def constants(setting: RealizabilityProblem, budget: Budget) -> Iterator[Constan
             elif _is_implied(setting, counter, (), budget.again()):
                 yield Constant(counter.id, always=True)
         except OutOfTimeError as error:
-            yield OpenQuestion(f"whether {counter.id} says anything", str(error))
+            yield OpenQuestion(f"whether every run satisfies {counter.id}", str(error))
 
 
 def redundancies(
     setting: RealizabilityProblem, budget: Budget
 ) -> Iterator[Redundancy | Removable | OpenQuestion]:
-    """Requirements that others imply, one at a time; then those that go together."""
+    """Requirements that others imply, one at a time; then those that can be removed together."""
     counters = setting.arena.counters
     found: list[str] = []
     for counter in counters:
@@ -102,7 +102,7 @@ def redundancies(
     try:
         yield Removable(_removable(setting, found, budget.again()))
     except OutOfTimeError as error:
-        yield OpenQuestion(f"which of {listed(found)} may go together", str(error))
+        yield OpenQuestion(f"which of {listed(found)} can be removed together", str(error))
 
 
 def _removable(
@@ -120,12 +120,12 @@ def _removable(
 def _implying(
     setting: RealizabilityProblem, counter: Counter, others: Sequence[Counter], budget: Budget
 ) -> tuple[str, ...] | None:
-    """A minimal set of others that imply a counter, one of them if that is enough; None: none."""
+    """A minimal set of others that implies a counter; None: there is none."""
 
     def implied(ids: Sequence[str]) -> bool:
         return _is_implied(setting, counter, setting.counters(ids), budget)
 
-    every = [each.id for each in others]
+    every = [other.id for other in others]
     if not implied(every):
         return None
     single = next((ids for ids in ([], *([id] for id in every)) if implied(ids)), None)
@@ -135,19 +135,19 @@ def _implying(
 def _is_implied(
     setting: RealizabilityProblem, counter: Counter, others: Sequence[Counter], budget: Budget
 ) -> bool:
-    """Whether there are runs that keep the others, and none of them breaks the counter."""
+    """Whether runs satisfy the others, and none of these runs violates the counter."""
     setting = setting.close((each.id for each in (counter, *others)), budget)
     (counter,) = setting.counters([counter.id])
-    kept = setting.counters(each.id for each in others)
+    kept = setting.counters(other.id for other in others)
     runs = setting.runs(kept, budget, watched=(counter,))
     lasting = runs.lasting()
     if (runs.transition.initial & lasting) == bdd.false():
-        return False  # of no run anything is true
+        return False  # Without any run, every statement about runs holds.
     return not runs.can_break(counter, lasting)
 
 
 def vacuities(setting: RealizabilityProblem, budget: Budget) -> Iterator[Vacuity | OpenQuestion]:
-    """Requirements of which a scope or a trigger never comes, in runs that keep the others."""
+    """Requirements whose scope or trigger never occurs in runs that satisfy the others."""
     requirements = {requirement.id: requirement for requirement in setting.requirements}
     for counter in setting.arena.counters:
         others = [each.id for each in setting.arena.counters if each is not counter]
@@ -190,25 +190,25 @@ def _vacuity(
 def inconsistencies(
     setting: RealizabilityProblem, budget: Budget
 ) -> Iterator[Inconsistency | OpenQuestion]:
-    """Pairs and triples that can be led to where they cannot be kept; the whole, where none is.
+    """Pairs and triples that can become impossible to satisfy together; else the whole set.
 
     Source: Post, Hoenicke, Podelski, rt-Inconsistency: a new property for real-time requirements,
-    FASE 2011. It is not monotone, so nothing is made smaller by leaving requirements out.
+    FASE 2011. The property is not monotone, so leaving requirements out does not minimize it.
     """
     if len(setting.requirements) == 1:
         return
     doubt = setting.of_inputs or setting.of_outputs
     counters = setting.arena.counters
     names = listed([requirement.id for requirement in setting.requirements])
-    question = f"whether a run can lead to where {names} clash"
+    question = f"whether a run can make {names} impossible to satisfy together"
     if doubt is not None:
         yield OpenQuestion(question, doubt)
         return
     found: list[frozenset[str]] = []
     try:
-        alone = {each.id: setting.runs((each,), budget).lasting() for each in counters}
+        alone = {counter.id: setting.runs((counter,), budget).lasting() for counter in counters}
         for members in _candidates(setting, counters):
-            ids = frozenset(each.id for each in members)
+            ids = frozenset(member.id for member in members)
             if any(smaller <= ids for smaller in found):
                 continue
             if len(members) > _FEW and found:
@@ -224,7 +224,7 @@ def inconsistencies(
 def _candidates(
     setting: RealizabilityProblem, counters: Sequence[Counter]
 ) -> Iterator[tuple[Counter, ...]]:
-    """Pairs and triples that share variables, and all of them."""
+    """Pairs and triples that share variables, and the whole set."""
     read = {
         requirement.id: frozenset(requirement.variables) for requirement in setting.requirements
     }
@@ -250,11 +250,11 @@ def _inconsistency(
     alone: Mapping[str, Function],
     budget: Budget,
 ) -> Inconsistency | None:
-    ids = sorted(each.id for each in members)
+    ids = sorted(member.id for member in members)
     there = setting.close(ids, budget)
     if there is not setting:
         setting, members = there, there.counters(ids)
-        alone = {each.id: setting.runs((each,), budget).lasting() for each in members}
+        alone = {member.id: setting.runs((member,), budget).lasting() for member in members}
     runs = setting.runs(members, budget)
     each_alone = bdd.true()
     for counter in members:

@@ -1,4 +1,4 @@
-"""What each question of some requirements starts from: their arena, and what limits its answers."""
+"""The realizability problem of some requirements: their arena, and the limits of its answers."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from fretc.analysis.games.runs import Runs
 from fretish.bindings.declarations import Role
 
 _FEW = 5
-"""So many requirements and assumptions are looked at by themselves."""
+"""Number of requirements and assumptions up to which they are examined by themselves."""
 _LONG = 10
-"""Bits of a count that is worth an order of its own beside another one."""
+"""Number of bits of a count that is worth interleaving."""
 
 
 @dataclass(frozen=True, slots=True)
 class RealizabilityProblem:
-    """Some requirements, the assumptions that bear upon them, and the arena of both."""
+    """Some requirements, the assumptions that concern them, and the arena of both."""
 
     requirements: tuple[FormalizedRequirement, ...]
     assumptions: tuple[FormalizedRequirement, ...]
@@ -42,34 +42,35 @@ class RealizabilityProblem:
     roles: Roles
     as_fret: bool
     favoured: Role = Role.INPUT
-    """Who chooses what nothing is known of: a number of the tick before, a signal that may be
-    unknown, what was before the first tick. A player who loses even so loses."""
+    """Player who chooses unknown values: a number of the previous tick, whether a signal is
+    unknown, values before the first tick. A favoured player who loses certainly loses."""
     steps: int = 0
-    """How many ticks before a bound of a number it is remembered whether that is within reach."""
+    """Number of ticks before a bound for which its reachability is stored."""
     fresh: Numbers = field(default_factory=numbers, compare=False, repr=False)
-    """Variables that nothing of the stage has."""
+    """Variables that the problem does not use."""
     _close: dict[frozenset[str], RealizabilityProblem] = field(
         default_factory=dict, compare=False, repr=False
     )
     _upheld: list[Function] = field(default_factory=list, compare=False, repr=False)
-    """What each game of the stage needs of the assumptions, once it has been computed."""
+    """Computed facts about the assumptions that each game of the problem needs."""
 
     def counters(self, ids: Iterable[str]) -> tuple[Counter, ...]:
-        """Those of some requirements, in the order of the files."""
+        """Counters of some requirements, in the order of the files."""
         wanted = set(ids)
         return tuple(each for each in self.arena.counters if each.id in wanted)
 
     def close(self, ids: Iterable[str], budget: Budget) -> RealizabilityProblem:
-        """Where some of the requirements are best looked at: by themselves, if they count far.
+        """The problem in which some of the requirements are best examined.
 
-        What is remembered of numbers depends on all requirements; there it is the stage itself.
+        That is a problem of their own if their counts are long; but the stored facts about numbers
+        depend on all requirements, and then it is this problem.
 
         Raises:
-            OutOfTimeError: it takes longer than the budget to sort out their comparisons.
+            OutOfTimeError: solving their comparisons takes longer than the budget.
         """
         wanted = frozenset(ids)
         members = (*self.counters(wanted), *self.arena.assumptions)
-        long = [each for each in members if each.longest >= _LONG]
+        long = [member for member in members if member.longest >= _LONG]
         remembers = bool(self._memory) or self.arena.alphabet.is_refinable
         if len(members) > _FEW or len(long) < 2 or remembers:
             return self
@@ -78,7 +79,7 @@ class RealizabilityProblem:
         return self._close[wanted]
 
     def _apart(self, ids: frozenset[str], budget: Budget) -> RealizabilityProblem:
-        """Some of the requirements by themselves; the stage itself, if less is known of them so."""
+        """A problem of some of the requirements; this problem, if the other one is less exact."""
         try:
             found = interleaved(self, ids, budget)
         except UnsupportedError:
@@ -104,7 +105,7 @@ class RealizabilityProblem:
         return () if memory is None else (memory,)
 
     def generous(self, budget: Budget) -> RealizabilityProblem:
-        """The same where the system is favoured: what cannot be kept even so cannot be kept."""
+        """The problem with the system favoured: unrealizable there is certainly unrealizable."""
         if self.arena.alphabet.open is None:
             return self
         return _built(
@@ -119,10 +120,10 @@ class RealizabilityProblem:
         )
 
     def assuming(self, more: Sequence[FormalizedRequirement]) -> RealizabilityProblem:
-        """The same under further assumptions, whose bits come last in the order.
+        """The problem under further assumptions, whose bits come last in the variable order.
 
         Raises:
-            UnsupportedError: they say something that the stage has no letters for.
+            UnsupportedError: the problem has no atoms for them.
         """
         alphabet, found = self.arena.alphabet, list(self.arena.assumptions)
         for requirement in more:
@@ -138,7 +139,7 @@ class RealizabilityProblem:
         )
 
     def finer(self, budget: Budget) -> RealizabilityProblem | None:
-        """The same with twice as much remembered of numbers; None: that tells nothing more."""
+        """The problem with twice as many stored ticks of numbers; None: no more precise."""
         if not self.arena.alphabet.is_refinable or self.steps >= _MOST_STEPS:
             return None
         steps, near = 2 * self.steps or 1, self.assumptions
@@ -152,7 +153,7 @@ class RealizabilityProblem:
             steps=steps,
         )
         if (found.left_out, found.of_outputs) != (self.left_out, self.of_outputs):
-            return None  # it is more than can be sorted out
+            return None  # Solving more than that takes too long.
         return None if found.arena.size == self.arena.size else found
 
     def runs(
@@ -163,19 +164,19 @@ class RealizabilityProblem:
         *,
         certain: bool = False,
     ) -> Runs:
-        """The runs that keep some counters, and all assumptions."""
+        """Runs that satisfy some counters, and all assumptions."""
         counters = [*kept, *self.arena.assumptions, *self._memory]
         return Runs(self.arena.alphabet, counters, budget, watched, certain=certain)
 
     def ticks(
         self, ids: Iterable[str], runs: Iterable[Run], numbers: Sequence[Tick] = ()
     ) -> tuple[Tick, ...]:
-        """Letters as values of the variables of some requirements and of the assumptions.
+        """Valuations as values of the variables of some requirements and of the assumptions.
 
         Args:
-            ids: of the requirements.
-            runs: letters from the first tick on.
-            numbers: of each tick, where they depend on those of the tick before.
+            ids: ids of the requirements.
+            runs: valuations from the first tick on.
+            numbers: numbers of each tick, if they depend on earlier numbers.
         """
         wanted = set(ids)
         requirements = [
@@ -202,7 +203,7 @@ class RealizabilityProblem:
 
     @property
     def certain(self) -> tuple[Counter, ...]:
-        """The counters of requirements of which the environment has no letter too many."""
+        """Counters of requirements for which the environment has only possible valuations."""
         doubtful = self.arena.alphabet.doubtful(Role.INPUT)
         if any(not doubtful.isdisjoint(_atoms(requirement)) for requirement in self.assumptions):
             return ()
@@ -214,12 +215,12 @@ class RealizabilityProblem:
 
     @property
     def of_inputs(self) -> str | None:
-        """Why the environment has more letters here than there can be; None: it has not."""
+        """Why the environment has valuations that may be impossible; None: it has none."""
         return self.arena.alphabet.doubts.get(Role.INPUT)
 
     @property
     def of_outputs(self) -> str | None:
-        """The same of the system."""
+        """Why the system has valuations that may be impossible; None: it has none."""
         return self.arena.alphabet.doubts.get(Role.OUTPUT)
 
     @property
@@ -240,11 +241,11 @@ def stage(
     as_fret: bool = False,
     budget: Budget = ENDLESS,
 ) -> RealizabilityProblem:
-    """The stage of some requirements.
+    """The realizability problem of some requirements.
 
     Raises:
         UnsupportedError: an assumption has no counter.
-        OutOfTimeError: it takes longer than the budget to sort out their comparisons.
+        OutOfTimeError: solving their comparisons takes longer than the budget.
     """
     near = about(requirements, assumptions, roles)
     return _built(requirements, near, roles, numbers(), budget, as_fret=as_fret)
@@ -253,10 +254,10 @@ def stage(
 def interleaved(
     setting: RealizabilityProblem, ids: Iterable[str], budget: Budget
 ) -> RealizabilityProblem:
-    """The stage of a few of the requirements, with bits of the same weight side by side.
+    """The problem of a few requirements, with bits of equal weight adjacent.
 
-    So one count stays easy to compare with another one; counters one after the other need as many
-    nodes for it as the counts have values. For many requirements that is worse.
+    So counts are easy to compare; with counters one after the other, the diagrams need a node for
+    each value of a count. For many requirements this order is worse.
     """
     wanted = set(ids)
     requirements = [requirement for requirement in setting.requirements if requirement.id in wanted]
@@ -300,7 +301,7 @@ def _built(
 
 
 def _has_numbers(requirement: FormalizedRequirement) -> bool:
-    """Whether it compares any, as far as its letters tell."""
+    """Whether an atom of the requirement compares numbers."""
     declared = requirement.declarations
     if declared is None:
         return bool(comparisons(requirement))
@@ -310,7 +311,7 @@ def _has_numbers(requirement: FormalizedRequirement) -> bool:
 
 
 _MOST_STEPS = 8
-"""With more the comparisons of a group take longer to sort out than a question may."""
+"""Maximum of `steps`; beyond it, solving a group takes longer than a question may."""
 
 
 def alphabet_of(
@@ -323,18 +324,16 @@ def alphabet_of(
     *,
     of_moments: bool = False,
 ) -> Alphabet:
-    """The letters of some requirements.
-
-    With the numbers that comparisons are about; z3 is imported where there are some.
+    """The alphabet of some requirements; with numbers, z3 is imported.
 
     Args:
-        requirements: whose atoms they have.
-        roles: of their variables.
+        requirements: requirements with the atoms.
+        roles: roles of their variables.
         fresh: variables for bits.
-        favoured: who chooses what is not known.
-        budget: for sorting comparisons out.
-        steps: how many ticks before a bound it is remembered whether that is within reach.
-        of_moments: whether propositions over several samples are true or false at will.
+        favoured: player who chooses unknown values.
+        budget: time limit for solving comparisons.
+        steps: number of ticks before a bound for which its reachability is stored.
+        of_moments: whether propositions over several samples are treated as free.
     """
     if not any(map(_has_numbers, requirements)):
         return Propositions(requirements, roles, fresh)

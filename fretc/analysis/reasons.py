@@ -1,4 +1,4 @@
-"""Why a play is lost, in one sentence."""
+"""The reason why a game is lost, in one sentence."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from fretish.printer import expression
 from fretish.syntax import Timing, ends_with_run, stop
 
 _MOST_TERMS = 3
-"""Alternatives that a demand is shown with."""
+"""Maximum number of alternatives of a demand in the sentence."""
 _LONGEST = 1_000
-"""Ticks of a play of which each is looked at."""
+"""Maximum length of a trace whose ticks are all examined."""
 
 
 def because(
@@ -31,13 +31,13 @@ def because(
     game: Game,
     play: GameTrace,
 ) -> str:
-    """What the requirements ask for where the play is lost.
+    """What the requirements demand when the game is lost.
 
     Args:
-        requirements: of a minimal conflict.
-        counters: of the same.
-        game: of the same.
-        play: in which the environment wins.
+        requirements: requirements of a minimal conflict.
+        counters: their counters.
+        game: their game.
+        play: trace in which the environment wins.
     """
     details = {
         requirement.id: _details(requirement, game.alphabet, play) for requirement in requirements
@@ -48,7 +48,10 @@ def because(
     now = _asked_last(counters, game, play)
     if not now or len(requirements) == 1:
         id = requirements[0].id
-        return f"at tick {last} no output keeps {id}{details[id]}, whatever was done before"
+        return (
+            f"at tick {last} no output satisfies {id}{details[id]}, whatever the earlier "
+            "outputs were"
+        )
     parts: list[str] = []
     wanted = ""
     for id, words in now.items():
@@ -56,13 +59,13 @@ def because(
         same = what == wanted and verb in ("demands", "forbids")
         parts.append(f"{id} {verb} {'it' if same else what}{details[id]}")
         wanted = what
-    silent = _asked([each for each in counters if each.id not in now], game, play)
+    silent = _asked([counter for counter in counters if counter.id not in now], game, play)
     before = [each for id, words in silent.items() for each in _before(id, words)]
     return f"at tick {last} {_joined(parts)}{''.join(f'; {each}' for each in before)}"
 
 
 def _asked_last(counters: Sequence[Counter], game: Game, play: GameTrace) -> dict[str, str]:
-    """What outputs each requirement asks for at the last tick, in words; those that ask."""
+    """Id → outputs that the requirement demands at the last tick, in words."""
     inputs = {number: play.runs[-1][0][number] for number in game.alphabet.inputs}
     known = bdd.point({**play.state, **inputs})
     words = {counter.id: _words(bdd.at(counter.safe, known), game) for counter in counters}
@@ -72,7 +75,7 @@ def _asked_last(counters: Sequence[Counter], game: Game, play: GameTrace) -> dic
 def _asked(
     counters: Sequence[Counter], game: Game, play: GameTrace
 ) -> Mapping[str, tuple[str, ...]]:
-    """What outputs each requirement asks for, tick by tick, in words; nothing of a long play."""
+    """Id → outputs that the requirement demands at each tick, in words; empty for a long trace."""
     if not counters or play.ticks > _LONGEST:
         return {}
     states = [game.transition.start]
@@ -87,7 +90,7 @@ def _asked(
 
 
 def _before(id: str, words: Sequence[str]) -> Iterator[str]:
-    """What a requirement asked for when it last asked for anything."""
+    """The last demand of a requirement for outputs."""
     ticks = [tick for tick, each in enumerate(words) if each]
     if ticks:
         first = last = ticks[-1]
@@ -105,7 +108,7 @@ def _joined(parts: Sequence[str]) -> str:
 
 
 def _details(requirement: FormalizedRequirement, alphabet: Alphabet, play: GameTrace) -> str:
-    """` (since tick 3, by tick 5)`: of the demand that is open at the last tick; or nothing."""
+    """` (since tick 3, by tick 5)` for the obligation that is open at the last tick; or nothing."""
     begun, last = _begun(requirement, alphabet, play), play.ticks - 1
     words = [] if begun in (None, last) else [f"since tick {begun}"]
     if play.loop is None:
@@ -116,7 +119,7 @@ def _details(requirement: FormalizedRequirement, alphabet: Alphabet, play: GameT
 def _limit(
     requirement: FormalizedRequirement, alphabet: Alphabet, begun: int | None, last: int
 ) -> Iterator[str]:
-    """How long the demand is open that began then, if that is known."""
+    """Duration or end of the obligation that began at a tick, if it is known."""
     scope = requirement.sentence.scope
     demand = requirement.demanded.demand
     match demand.kind:
@@ -150,7 +153,7 @@ def _stop(timing: Timing) -> str:
 
 
 def _begun(requirement: FormalizedRequirement, alphabet: Alphabet, play: GameTrace) -> int | None:
-    """When the demand began that is open at the last tick; None: there is none, or no condition."""
+    """Tick at which the obligation began that is open at the last tick, or None."""
     if requirement.sentence.condition is None:
         return None
     signals = (requirement.watch.trigger, requirement.watch.owed)
@@ -160,7 +163,7 @@ def _begun(requirement: FormalizedRequirement, alphabet: Alphabet, play: GameTra
     trigger, owed = (evaluate(signal, known, ticks) for signal in signals)
     if (
         Trait.FORBIDS in TRAITS[requirement.demanded.demand.kind]
-    ):  # what is open is of the newest trigger
+    ):  # The open obligation is that of the newest trigger.
         return trigger.bit_length() - 1 if trigger else None
     settled = ~owed & ((1 << ticks - 1) - 1)
     tick = settled.bit_length()
@@ -191,17 +194,17 @@ def _for_ever(
         why = f", because {listed([f'{id} {words.pop()}' for id, words in always.items()])}"
     else:
         verb = "is" if len(others) == 1 else "are"
-        why = f", as long as {listed(others)} {verb} kept" if others else ""
+        why = f", as long as {listed(others)} {verb} satisfied" if others else ""
     verb = "is" if len(lost) == 1 else "are"
     return f"{open_} {verb} never met{why}: the environment repeats {again} for ever"
 
 
 def _words(asked: Function, game: Game) -> str:
-    """What outputs a requirement asks for; empty: any."""
+    """Outputs that a requirement demands, in words; empty: any."""
     if asked == bdd.true():
         return ""
     if asked & game.reachable == bdd.false():
-        return "can be kept by no output"
+        return "cannot be satisfied by any output"
     terms: list[str] = []
     rest = asked
     while rest != bdd.false() and len(terms) < _MOST_TERMS:

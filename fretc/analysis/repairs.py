@@ -1,7 +1,7 @@
-"""What would settle a conflict: the least change of a bound, or an assumption of a small family.
+"""Repairs of a conflict: the least change of a bound, or a simple assumption.
 
-Each suggestion is a sentence that parses, and is proved: the game of the changed set is played, and
-the system wins. An assumption that would take away every trigger settles nothing.
+Each repair is a sentence that parses, and is proved: the system wins the game of the changed set.
+An assumption that makes every trigger impossible is no repair.
 """
 
 from __future__ import annotations
@@ -44,53 +44,53 @@ from fretish.syntax import (
 )
 
 MOST_ASSUMPTIONS = 4
-"""Of a conflict: more are no help."""
+"""Maximum number of suggested assumptions of a conflict."""
 MOST_INPUTS = 8
-"""Of a conflict with more no assumption is looked for."""
+"""Maximum number of inputs of a conflict for which assumptions are searched."""
 _ROOM = 8
-"""Ticks beyond twice the bounds of a conflict, within which another bound is looked for."""
+"""Ticks beyond twice the bounds of a conflict, within which another bound is searched."""
 Rules = tuple[FormalizedRequirement, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """What the conflicts of a component share."""
+    """Results that the conflicts of a component share."""
 
     triggered: dict[tuple[str, ...], frozenset[str]] = field(default_factory=dict)
-    """Ids of the requirements whose triggers can come as things are, by all of these ids."""
+    """Ids of requirements → those of them whose triggers can occur at present."""
     fits: dict[object, bool] = field(default_factory=dict)
-    """Of requirements with such bounds, under such assumptions: whether the system wins."""
+    """Changed bounds and assumptions → whether the system wins."""
     assumptions: dict[tuple[str, ...], Rules | None] = field(default_factory=dict)
-    """By their wordings."""
+    """Assumptions by their sentences."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Setting:
-    """A component, one of its conflicts, and the time that is left."""
+    """A component, one of its conflicts, and the remaining time."""
 
     whole: RealizabilityProblem
     requirements: Rules
-    """Those of the conflict."""
+    """Requirements of the conflict."""
     fought: Sequence[frozenset[str]]
-    """The ids of each conflict of the component."""
+    """Ids of each conflict of the component."""
     budget: Budget
     known: _Known
 
     @property
     def longest(self) -> int:
-        """A bound that is as good as any longer one, or nearly."""
+        """A bound that is long enough to represent any longer one."""
         return 2 * sum(requirement.ticks or 0 for requirement in self.requirements) + _ROOM
 
 
 def repairs(
     setting: RealizabilityProblem, conflicts: Sequence[Conflict], budget: Budget
 ) -> Iterator[Repair | OpenQuestion]:
-    """What would settle each conflict of a component.
+    """Repairs of each conflict of a component.
 
     Args:
-        setting: of the component.
-        conflicts: some of its minimal ones.
-        budget: for all of them.
+        setting: problem of the component.
+        conflicts: some of its minimal conflicts.
+        budget: time limit for all of them.
     """
     known = _Known()
     fought = [frozenset(conflict.requirements) for conflict in conflicts]
@@ -108,11 +108,11 @@ def repairs(
                 )
             except (OutOfTimeError, UnsupportedError) as error:
                 ids = ", ".join(conflict.requirements)
-                yield OpenQuestion(f"what else would settle {ids}", str(error))
+                yield OpenQuestion(f"what else would resolve {ids}", str(error))
 
 
 def _changes(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:
-    """The least change of each bound."""
+    """Repairs that change a bound as little as possible."""
     for requirement in setting.requirements:
         changed = _least_change(setting, requirement)
         if changed is not None:
@@ -123,9 +123,9 @@ def _changes(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:
 
 
 def _promises(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:
-    """Some assumptions."""
+    """Repairs that add assumptions."""
     for assumed in islice(_assumptions(setting), MOST_ASSUMPTIONS):
-        sentences = tuple(printed(each.written) for each in assumed)
+        sentences = tuple(printed(assumption.written) for assumption in assumed)
         settles = _fits(setting, setting.whole.requirements, assumed)
         yield Repair(tuple(conflict), None, sentences, settles)
 
@@ -140,7 +140,7 @@ def _with(requirements: Rules, changed: FormalizedRequirement) -> Rules:
 
 
 def _fits(setting: _Setting, requirements: Rules, assumed: Rules) -> bool:
-    """Whether the system wins, for certain, and each requirement can still be triggered."""
+    """Whether the system certainly wins, and each requirement can still be triggered."""
     key = (
         tuple((requirement.id, requirement.ticks) for requirement in requirements),
         tuple(requirement.entry.wording.text for requirement in assumed),
@@ -163,10 +163,10 @@ def _is_shown_to_fit(setting: _Setting, requirements: Rules, assumed: Rules) -> 
 def _staged(
     setting: _Setting, requirements: Rules, assumed: Rules
 ) -> tuple[RealizabilityProblem, tuple[Counter, ...]]:
-    """Where the requirements are under the assumptions, and their counters.
+    """The problem of the requirements under the assumptions, and their counters.
 
-    It is that of the component, where all are counted there and the assumptions count nothing: to
-    build another one takes longer than the game.
+    The component's problem is reused if it has all counters and the assumptions need no counts,
+    because building another one takes longer than the game.
     """
     whole, budget = setting.whole, setting.budget
     ids = [requirement.id for requirement in requirements]
@@ -187,7 +187,7 @@ def _staged(
 
 
 def _triggered_now(setting: _Setting, requirements: Rules) -> frozenset[str]:
-    """The ids of the requirements whose triggers can come, as things are."""
+    """Ids of the requirements whose triggers can occur at present."""
     key = tuple(requirement.id for requirement in requirements)
     known = setting.known.triggered
     if key not in known:
@@ -198,13 +198,13 @@ def _triggered_now(setting: _Setting, requirements: Rules) -> frozenset[str]:
 def _triggered(
     setting: _Setting, there: RealizabilityProblem, counters: Sequence[Counter]
 ) -> frozenset[str]:
-    """The ids of the requirements whose triggers can come, in a run that keeps the assumptions."""
+    """Ids of the requirements whose triggers can occur in a run that satisfies the assumptions."""
     found: set[str] = set()
     for counter in counters:
         runs = there.runs((), setting.budget, watched=(counter,))
         lasting = runs.lasting()
         if (runs.transition.initial & lasting) == bdd.false():
-            return frozenset()  # no run keeps the assumptions
+            return frozenset()  # No run satisfies the assumptions.
         if runs.can_reach(counter.triggered, lasting):
             found.add(counter.id)
     return frozenset(found)
@@ -216,7 +216,7 @@ def _triggered(
 def _least_change(
     setting: _Setting, requirement: FormalizedRequirement
 ) -> FormalizedRequirement | None:
-    """The requirement with another bound: as little later, or as little shorter, as will do."""
+    """The requirement with the nearest bound that resolves the conflict."""
     scope, timing = requirement.sentence.scope, requirement.sentence.timing
     if requirement.ticks is None or (scope is not None and scope.kind.negates):
         return None
@@ -235,7 +235,7 @@ def _least_change(
             least = None if least is None else -least
         case Immediately() | Next() | Finally() | Eventually() | Always() | Never():
             return None
-        case After() | Until() | Before():  # a longer `after` is not weaker
+        case After() | Until() | Before():  # A longer `after` is not weaker.
             return None
         case _:
             assert_never(timing)
@@ -243,9 +243,10 @@ def _least_change(
 
 
 def _first(setting: _Setting, is_enough: Callable[[int], bool], low: int, high: int) -> int | None:
-    """The first number of low..high from which on something monotone holds; None: none.
+    """The first number of low..high from which a monotone property holds; None: there is none.
 
-    It is most often a bound of the conflict, or next to one: these are tried before the others.
+    Numbers next to a bound of the conflict are tried first, because the answer is often one of
+    them.
     """
     if low > high or not is_enough(high):
         return None
@@ -262,7 +263,7 @@ def _first(setting: _Setting, is_enough: Callable[[int], bool], low: int, high: 
             high = middle
         else:
             low = middle + 1
-        marks = [each for each in marks if low <= each < high]
+        marks = [mark for mark in marks if low <= mark < high]
     return low
 
 
@@ -278,7 +279,7 @@ def _bounded(requirement: FormalizedRequirement, ticks: int) -> FormalizedRequir
 
 
 def _assumptions(setting: _Setting) -> Iterator[Rules]:
-    """Assumptions about the inputs of the conflict, each as weak as its family has it."""
+    """Assumptions about the inputs of the conflict, each as weak as its pattern allows."""
     inputs = _inputs(setting)
     if len(inputs) > MOST_INPUTS:
         return
@@ -308,10 +309,10 @@ def _assumptions(setting: _Setting) -> Iterator[Rules]:
 
 
 def _lost(setting: _Setting) -> Function | None:
-    """The inputs that lose any tick, where nothing is remembered; None: something may be.
+    """Inputs that lose at any tick, if no requirement has memory; None: some has.
 
-    Then each tick is like the first one, and the environment wins by such inputs there. Only what
-    excludes all of them at every tick settles the conflict: of our families, two inputs at once.
+    Then every tick is like the first one, and only an assumption that excludes all of these inputs
+    at every tick resolves the conflict.
     """
     there, counters = _staged(setting, setting.requirements, ())
     game = there.game(counters, setting.budget)
@@ -321,7 +322,7 @@ def _lost(setting: _Setting) -> Function | None:
 
 
 def _inputs(setting: _Setting) -> dict[str, Function]:
-    """The propositions of the conflict that the environment decides, as sentences spell them."""
+    """Propositions of the conflict that the environment chooses, as spelled in sentences."""
     roles, alphabet = setting.whole.roles, setting.whole.arena.alphabet
     found: dict[str, Function] = {}
     for requirement in setting.requirements:
@@ -335,14 +336,14 @@ def _inputs(setting: _Setting) -> dict[str, Function]:
 
 
 def _kept(setting: _Setting, *wordings: str) -> Iterator[Rules]:
-    """The assumptions, where they settle the conflict."""
+    """The assumptions as a repair, if they resolve the conflict."""
     assumed = _assumed(setting, wordings)
     if assumed is not None and _fits(setting, setting.requirements, assumed):
         yield assumed
 
 
 def _distances(setting: _Setting, *sides: tuple[str, str]) -> Iterator[Rules]:
-    """The least distance of one input after another that settles the conflict."""
+    """The least distance between two inputs that resolves the conflict."""
 
     def wordings(ticks: int) -> list[str]:
         return [f"{when} the environment shall for {ticks} ticks satisfy !{n}" for when, n in sides]
@@ -368,7 +369,7 @@ def _assumed(setting: _Setting, wordings: Sequence[str]) -> Rules | None:
 
 
 def _formalized(id: str, text: str, like: FormalizedRequirement) -> FormalizedRequirement | None:
-    """A sentence among the declarations of another requirement; None where it is none there."""
+    """A sentence with the declarations of another requirement; None if it does not parse there."""
     requirement, _ = formalize(
         RequirementEntry(id, Source("repair", text).span()), like.declarations
     )

@@ -1,4 +1,4 @@
-"""What `fretc analyze` prints: the answer, each conflict as a play, then what else is known."""
+"""Text output of `fretc analyze`: the verdict, each conflict with a trace, then other findings."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ SIGNS: Mapping[Verdict, StatusSymbol] = {
     Verdict.NOT_CHECKED: signs.UNKNOWN,
     Verdict.REALIZABLE: signs.GOOD,
 }
-"""The worst first, as for verdicts."""
+"""Symbols of verdicts, the worst first."""
 _UNKNOWN = signs.UNKNOWN.colour
 _WIDEST = 14
-"""Columns of a play that are drawn side by side; the next ones stand below them."""
+"""Maximum number of adjacent columns of a trace; further ones follow below."""
 
 
 def lines(
     analysis: Analysis, sentences: Mapping[str, str], left_out: Sequence[str] = ()
 ) -> Iterator[Line]:
-    """All of it.
+    """All lines of the text output.
 
     Args:
-        analysis: what is known.
+        analysis: the analysis.
         sentences: each requirement in FRETish, by its id.
-        left_out: ids of requirements that nothing is known of, because of mistakes.
+        left_out: ids of requirements that were not analyzed because of errors.
     """
     sign = SIGNS[analysis.verdict]
     yield f"{sign.glyph} {_headline(analysis, 'other ' if left_out else '')}", sign.colour
     if left_out:
-        yield f"{signs.UNKNOWN.glyph} without {listed(left_out)}: see the mistakes", _UNKNOWN
+        yield f"{signs.UNKNOWN.glyph} without {listed(left_out)}: see the errors", _UNKNOWN
     for component in analysis.components:
         yield from _component(component)
     for number, conflict in enumerate(analysis.conflicts, 1):
@@ -60,17 +60,17 @@ def lines(
 
 def _headline(analysis: Analysis, which: str) -> str:
     count = len(analysis.components)
-    bad = sum(each.verdict is Verdict.UNREALIZABLE for each in analysis.components)
+    bad = sum(component.verdict is Verdict.UNREALIZABLE for component in analysis.components)
     match analysis.verdict:
         case Verdict.REALIZABLE:
             how = (
                 "while the assumptions hold" if analysis.assumptions else "whatever the inputs are"
             )
-            return f"realizable: a system can keep all {which}requirements, {how}"
+            return f"realizable: a system can satisfy all {which}requirements, {how}"
         case Verdict.UNREALIZABLE if count == 1:
-            return f"unrealizable: no system can keep all {which}requirements"
+            return f"unrealizable: no system can satisfy all {which}requirements"
         case Verdict.UNREALIZABLE:
-            return f"unrealizable: {bad} of {count} components cannot be kept"
+            return f"unrealizable: {bad} of {count} components cannot be satisfied"
         case Verdict.NOT_CHECKED:
             return f"not checked: {analysis.why}"
 
@@ -85,7 +85,7 @@ def _conflict(
     number: int, conflict: Conflict, analysis: Analysis, sentences: Mapping[str, str]
 ) -> Iterator[Line]:
     ids = conflict.requirements
-    what = "can be kept by no system" if len(ids) == 1 else "cannot be kept together"
+    what = "cannot be satisfied by any system" if len(ids) == 1 else "cannot be satisfied together"
     yield f"{signs.BAD.glyph} conflict {number}: {listed(ids)} {what}", signs.BAD.colour
     yield f"  {conflict.because}", None
     width = max(map(len, ids))
@@ -94,7 +94,7 @@ def _conflict(
     for row in drawn(conflict.play, analysis.roles):
         yield f"    {row}", None
     if conflict.loop is not None:
-        yield f"    and from tick {conflict.loop} on the same again, for ever", None
+        yield f"    the ticks from {conflict.loop} on repeat for ever", None
     fixing = [each for each in analysis.repairs if each.conflict == ids]
     if fixing:
         yield "  each of these changes resolves the conflict (proved):", None
@@ -112,17 +112,17 @@ def _repair(repair: Repair) -> Iterator[Line]:
 
 def _inconsistency(clash: Inconsistency, analysis: Analysis) -> Iterator[Line]:
     sign = signs.OPEN
-    where = "from the start" if not clash.play else "after this run, which breaks none of them"
+    where = "from the start" if not clash.play else "after this run, which violates none of them"
     ids = listed(clash.requirements)
-    yield f"{sign.glyph} {ids} can no longer be kept together {where}", sign.colour
+    yield f"{sign.glyph} {ids} can no longer be satisfied together {where}", sign.colour
     for row in drawn(clash.play, analysis.roles):
         yield f"    {row}", None
 
 
 def drawn(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> Iterator[str]:
-    """A lane for each variable, inputs first; equal ticks in one column."""
+    """A row for each variable, inputs first; equal ticks share a column."""
     names = lanes(play, roles)
-    if not names:  # no tick, or no variable: all that is compared are outputs
+    if not names:  # There is no tick, or no variable because only outputs are compared.
         return
     found = columns(play, names)
     width = max(len("tick"), *(len(_lane(name, roles)) for name in names))
@@ -136,7 +136,7 @@ def drawn(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> It
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """Equal ticks in a row, and the value of each lane."""
+    """Equal adjacent ticks, and the value of each row."""
 
     first: int
     last: int
@@ -149,13 +149,13 @@ class Column:
 
 
 def lanes(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> list[str]:
-    """The names of a play, those of inputs first."""
+    """Names of the variables of a trace, inputs first."""
     names = play[0] if play else ()
     return sorted(names, key=lambda name: (roles.get(name) is Role.OUTPUT, name))
 
 
 def columns(play: Sequence[Mapping[str, object]], names: Sequence[str]) -> list[Column]:
-    """A play with equal ticks in one column."""
+    """A trace with equal adjacent ticks in one column."""
     found: list[Column] = []
     for _, group in groupby(enumerate(play), lambda pair: pair[1]):
         run = list(group)
@@ -181,18 +181,20 @@ def _value(value: object) -> str:
 
 
 def remarks(analysis: Analysis) -> Iterator[Line]:
-    """What single requirements say, or do not."""
+    """Findings about single requirements."""
     empty = signs.EMPTY
     if analysis.consistent is False:
-        yield f"{signs.BAD.glyph} no run at all keeps all requirements", signs.BAD.colour
+        yield f"{signs.BAD.glyph} no run satisfies all requirements", signs.BAD.colour
     for id in analysis.never:
-        yield f"{signs.BAD.glyph} no run keeps {id}", signs.BAD.colour
+        yield f"{signs.BAD.glyph} no run satisfies {id}", signs.BAD.colour
     for id in analysis.always:
-        yield f"{empty.glyph} every run keeps {id}: it says nothing", empty.colour
+        yield f"{empty.glyph} every run satisfies {id}: it has no effect", empty.colour
     for vacuity in analysis.vacuous:
-        never = "is never triggered" if vacuity.what == "trigger" else "has a scope that never is"
-        by = f" as long as {listed(vacuity.by)} is kept" if len(vacuity.by) == 1 else ""
-        by = f" as long as {listed(vacuity.by)} are kept" if len(vacuity.by) > 1 else by
+        never = (
+            "is never triggered" if vacuity.what == "trigger" else "has a scope that never begins"
+        )
+        by = f" as long as {listed(vacuity.by)} is satisfied" if len(vacuity.by) == 1 else ""
+        by = f" as long as {listed(vacuity.by)} are satisfied" if len(vacuity.by) > 1 else by
         yield f"{empty.glyph} {vacuity.requirement} {never}{by}", empty.colour
     for each in analysis.redundant:
         if each.by:
@@ -200,12 +202,12 @@ def remarks(analysis: Analysis) -> Iterator[Line]:
             text = f"{each.requirement} is redundant: {listed(each.by)} {verb} it"
             yield f"{empty.glyph} {text}", empty.colour
     gone = [id for id in analysis.removable if id not in analysis.always]
-    if len([each for each in analysis.redundant if each.by]) > 1 and gone:
-        yield f"  {listed(gone)} can go together: the others say the same", None
+    if len([redundancy for redundancy in analysis.redundant if redundancy.by]) > 1 and gone:
+        yield f"  {listed(gone)} can be removed together: the others imply them", None
 
 
 def _rest(analysis: Analysis) -> Iterator[Line]:
-    """What it rests on, and what is open."""
+    """Open questions and assumptions of the analysis."""
     for each in analysis.open:
         text = f"{signs.UNKNOWN.glyph} open: {each.question}: {each.why}"
         yield text, signs.UNKNOWN.colour

@@ -1,4 +1,4 @@
-"""Whether a component can be kept, and if not, which of its requirements fight."""
+"""Verdict of a component, and its conflicts if it is unrealizable."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.controllers.circuit import Circuit, circuit
-from fretc.analysis.controllers.files import Form
+from fretc.analysis.controllers.files import ControllerFormat
 from fretc.analysis.controllers.machine import NoMachineError, machine
 from fretc.analysis.controllers.moves import Mealy, mealy
 from fretc.analysis.findings import Component, Conflict, OpenQuestion, Verdict
@@ -26,7 +26,7 @@ from fretish.bindings.declarations import Role
 
 @dataclass(frozen=True, slots=True)
 class Completeness:
-    """All minimal conflicts among these are found."""
+    """All minimal conflicts among these requirements were found."""
 
     requirements: tuple[str, ...]
 
@@ -34,9 +34,9 @@ class Completeness:
 def verdict(
     setting: RealizabilityProblem, budget: Budget
 ) -> tuple[Component, RealizabilityProblem]:
-    """Whether the requirements of a component can be kept together, and the stage that tells.
+    """Whether the requirements of a component are realizable, and the problem that decides it.
 
-    Where that depends on numbers of earlier ticks, more and more of them is remembered.
+    If the answer depends on numbers of earlier ticks, more and more of them are stored.
     """
     answer, why = _answer(setting, budget)
     there = setting
@@ -56,7 +56,7 @@ def verdict(
 
 
 def _has_room(budget: Budget) -> bool:
-    """Whether there is time to remember more: each time takes several times as long."""
+    """Whether there is time to store more; each refinement takes several times as long."""
     return budget.spent < budget.seconds / 8
 
 
@@ -86,9 +86,9 @@ def component(
 
 
 def _verdict(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str]:
-    """The verdict, and how it is known, or why it is not."""
+    """The verdict with its reason."""
     _check_assumptions(setting, budget)
-    if not _is_lost(setting, [each.id for each in setting.arena.counters], budget):
+    if not _is_lost(setting, [counter.id for counter in setting.arena.counters], budget):
         doubt = setting.left_out or setting.of_outputs
         if doubt is None:
             return Verdict.REALIZABLE, "the system has a strategy"
@@ -112,7 +112,7 @@ _WHATEVER = "whatever the unknown values are"
 
 
 def _unrolled(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str] | None:
-    """What a run shows where there are no inputs: it keeps all, or there is none."""
+    """Verdict without inputs: a satisfying run, or proof that there is none."""
     from fretc.analysis.games.lassos import Impossible, lasso
 
     chosen = [
@@ -127,9 +127,9 @@ def _unrolled(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, s
     if found is None:
         return None
     if isinstance(found, Impossible):
-        return Verdict.UNREALIZABLE, f"no run of {found.ticks} ticks keeps all of them"
+        return Verdict.UNREALIZABLE, f"no run of {found.ticks} ticks satisfies all of them"
     run = f"a run of {len(found.numbers)} ticks that repeats itself from tick {found.loop} on"
-    return Verdict.REALIZABLE, f"there are no inputs, and {run} keeps all of them"
+    return Verdict.REALIZABLE, f"there are no inputs, and {run} satisfies all of them"
 
 
 def _is_lost(setting: RealizabilityProblem, ids: Sequence[str], budget: Budget) -> bool:
@@ -139,49 +139,50 @@ def _is_lost(setting: RealizabilityProblem, ids: Sequence[str], budget: Budget) 
 
 
 def strategy(
-    setting: RealizabilityProblem, budget: Budget, *, number: int, form: Form
+    setting: RealizabilityProblem, budget: Budget, *, number: int, form: ControllerFormat
 ) -> Iterator[Circuit | Mealy | OpenQuestion]:
-    """How a component that can be kept is kept.
+    """The controller of a realizable component.
 
     Args:
-        setting: of the component.
-        budget: for finding it.
-        number: of the component.
-        form: in which the strategy is to be written.
+        setting: problem of the component.
+        budget: time limit.
+        number: number of the component.
+        form: output form of the controller.
     """
     ids = tuple(requirement.id for requirement in setting.requirements)
     try:
         game = setting.game(setting.arena.counters, budget)
         found = machine(game, game.solution(), budget)
-        if form is Form.PYTHON:
+        if form is ControllerFormat.PYTHON:
             yield circuit(found, ids, number)
         else:
             yield mealy(found, ids, budget)
     except (UnsupportedError, NoMachineError, OutOfTimeError) as error:
-        yield OpenQuestion(f"how can {', '.join(ids)} be kept?", str(error))
+        yield OpenQuestion(f"how can {', '.join(ids)} be satisfied?", str(error))
 
 
 def _check_assumptions(setting: RealizabilityProblem, budget: Budget) -> None:
-    """Raise UnsupportedError where no run keeps the assumptions: all would follow from them."""
+    """Raise UnsupportedError if no run satisfies the assumptions: every result would follow."""
     if not setting.assumptions:
         return
     runs = setting.runs((), budget)
     if not runs.is_possible():
-        ids = ", ".join(each.id for each in setting.assumptions)
-        raise UnsupportedError(f"no run keeps the assumptions {ids}")
+        ids = ", ".join(assumption.id for assumption in setting.assumptions)
+        raise UnsupportedError(f"no run satisfies the assumptions {ids}")
 
 
 def conflicts(
     setting: RealizabilityProblem, budget: Budget
 ) -> Iterator[Conflict | Completeness | OpenQuestion]:
-    """Every minimal conflict; at the end a question, where there may be more.
+    """Every minimal conflict; at the end an open question if there may be more.
 
-    Where something is not known, a conflict is certain if the environment wins whatever it is taken
-    for; it is minimal for certain if the environment does not win any less, though it is favoured.
-    Where neither is certain, more of numbers is remembered.
+    With unknown values, a conflict is certain if the environment wins for all of them; it is
+    certainly minimal if the environment does not win with fewer requirements even when favoured. If
+    neither is certain, more about numbers is stored.
     """
     question = (
-        f"which others of {', '.join(requirement.id for requirement in setting.requirements)} fight"
+        "which others of "
+        f"{', '.join(requirement.id for requirement in setting.requirements)} conflict"
     )
     shown: set[tuple[str, ...]] = set()
     found = _Fights(setting, setting)
@@ -218,24 +219,24 @@ def _perhaps_larger(conflict: Conflict) -> Conflict:
 
 @dataclass(slots=True)
 class _Fights:
-    """The minimal conflicts of a stage, as far as what is not known lets them be told."""
+    """Minimal conflicts of a problem, as far as unknown values permit."""
 
     strict: RealizabilityProblem
-    """Where the environment is favoured."""
+    """Problem with the environment favoured."""
     generous: RealizabilityProblem
-    """Where the system is."""
+    """Problem with the system favoured."""
     larger: list[tuple[str, ...]] = field(default_factory=list)
-    """Conflicts of which it is not certain that they are minimal."""
+    """Conflicts that may not be minimal."""
     smaller: list[tuple[str, ...]] = field(default_factory=list)
-    """What the environment wins only where it is favoured."""
+    """Sets against which the environment wins only if it is favoured."""
 
     @property
     def is_open(self) -> bool:
-        """Whether more might be told of them."""
+        """Whether more could be decided about them."""
         return bool(self.larger or self.smaller)
 
     def minimal(self, budget: Budget) -> Iterator[tuple[str, ...]]:
-        """Those that are certain; then all others are known, too."""
+        """Conflicts that are certainly minimal; then all others are known, too."""
         ids = [each.id for each in self.generous.certain]
         for core in _minimal(self.generous, ids, budget):
             fewer = [[id for id in core if id != other] for other in core]
@@ -250,7 +251,7 @@ class _Fights:
                     self.smaller.append(core)
 
     def sure(self, ids: Sequence[str]) -> RealizabilityProblem:
-        """The stage whose plays of these requirements are certain."""
+        """The problem whose traces of these requirements are certain."""
         known = {each.id for each in self.strict.certain}
         return self.strict if known.issuperset(ids) else self.generous
 
@@ -260,14 +261,14 @@ class _Fights:
         doubt = self.strict.left_out or self.generous.of_inputs or self.strict.of_outputs
         if doubt is None and self.smaller:
             which = "; ".join(map(listed, self.smaller))
-            return f"{self.strict.of_inputs}; that decides whether these can be kept: {which}"
+            return f"{self.strict.of_inputs}; that decides whether these can be satisfied: {which}"
         return doubt
 
 
 def _minimal(
     there: RealizabilityProblem, ids: Sequence[str], budget: Budget
 ) -> Iterator[tuple[str, ...]]:
-    """The minimal conflicts of some requirements."""
+    """Minimal conflicts of some requirements."""
     read = {requirement.id: frozenset(requirement.variables) for requirement in there.requirements}
 
     def chosen(members: Members) -> tuple[str, ...]:
@@ -285,11 +286,11 @@ def _minimal(
 
 
 _SHORT = 200
-"""Ticks of the longest duration where durations are scaled."""
+"""Ticks of the longest duration after scaling."""
 
 
 def _hint(setting: RealizabilityProblem, budget: Budget) -> str:
-    """What fights where all durations are a fraction of what they are: a clue, and no finding."""
+    """Conflict with all durations scaled down: a hint, not a finding."""
     longest = max((requirement.ticks or 0 for requirement in setting.requirements), default=0)
     factor = -(-longest // _SHORT)
     if factor < 2:
@@ -305,7 +306,7 @@ def _hint(setting: RealizabilityProblem, budget: Budget) -> str:
         for some in (setting.requirements, setting.assumptions)
     )
     scaled = stage(requirements, assumptions, setting.roles, as_fret=setting.as_fret)
-    every = [each.id for each in scaled.arena.counters]
+    every = [counter.id for counter in scaled.arena.counters]
 
     def fights(ids: Sequence[str]) -> bool:
         return _is_lost(scaled, ids, budget)
@@ -313,24 +314,26 @@ def _hint(setting: RealizabilityProblem, budget: Budget) -> str:
     try:
         if not fights(every):
             return ""
-        return f"; with all durations divided by {factor}, {listed(minimal(every, fights))} fight"
+        return (
+            f"; with all durations divided by {factor}, {listed(minimal(every, fights))} conflict"
+        )
     except OutOfTimeError:
         return ""
 
 
 _LONGEST = 200_000
-"""Ticks of a play that is written down."""
+"""Maximum number of ticks of a trace in the output."""
 
 
 def _conflict(whole: RealizabilityProblem, members: Sequence[str], budget: Budget) -> Conflict:
-    """A minimal conflict, with a play that the formulas of its monitors confirm."""
+    """A minimal conflict, with a trace that the formulas of its monitors confirm."""
     ids, setting = sorted(members), whole.close(members, budget)
     counters = setting.counters(ids)
     game = setting.game(counters, budget)
     try:
         play = Counterstrategy(game, game.solution(traps=True), budget).play()
     except (NoPlayError, OutOfTimeError) as error:
-        return Conflict(tuple(ids), (), f"the environment wins by a play that is {error}")
+        return Conflict(tuple(ids), (), f"the environment wins, by a run that is {error}")
     requirements = [requirement for requirement in setting.requirements if requirement.id in ids]
     alphabet = setting.arena.alphabet
     lost = broken(requirements, alphabet, play, as_fret=setting.as_fret)

@@ -1,7 +1,7 @@
-"""Questions answered in a process of their own: one that hangs or dies costs no other its answer.
+"""Questions answered in a separate process: a timeout or crash costs no other answer.
 
-A single operation on large diagrams cannot be interrupted from Python, and may take any memory. The
-process is forked, so it has everything; what it finds comes back finding by finding.
+A single operation on large diagrams cannot be interrupted from Python, and its memory use is
+unbounded. The process is forked, so that it has all data; it returns one finding at a time.
 """
 
 from __future__ import annotations
@@ -23,22 +23,22 @@ from fretish.reading.recursion import with_recursion_limit
 
 F = TypeVar("F")
 MEMORY = 4 * 2**30
-"""Bytes of address space that the process may take."""
+"""Limit of the process's address space, in bytes."""
 
 
-class Stopped(Exception):  # noqa: N818
-    """Ctrl-C; what was found before it has been given."""
+class Interrupted(Exception):  # noqa: N818
+    """Ctrl-C was pressed; earlier findings have been yielded."""
 
 
 def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterator[F]:
-    """What the jobs find, and what each of them lacks whose process ended.
+    """Findings of the jobs; a job whose process ended gives its finding for a lost answer.
 
     Args:
-        jobs: in the order in which they are done.
-        progress: is called with each question before it is looked at.
+        jobs: jobs in order.
+        progress: called with the title of each job before it starts.
 
     Raises:
-        Stopped: on Ctrl-C, after what each remaining job lacks.
+        Stopped: on Ctrl-C, after the findings of the remaining jobs.
     """
     found: list[F] = []
     with _interruption() as is_stopped:
@@ -70,12 +70,12 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
         if is_stopped():
             for job in jobs[number:]:
                 yield job.lost("stopped by Ctrl-C")
-            raise Stopped
+            raise Interrupted
 
 
 @contextmanager
 def _interruption() -> Iterator[Callable[[], bool]]:
-    """Whether Ctrl-C was pressed: it breaks into nothing, so that nothing that was sent is lost."""
+    """Whether Ctrl-C was pressed; a flag, so that no finding that was sent is lost."""
     pressed: list[int] = []
     before = signal.signal(signal.SIGINT, lambda number, frame: pressed.append(number))
     try:
@@ -85,10 +85,10 @@ def _interruption() -> Iterator[Callable[[], bool]]:
 
 
 def _next(process: ForkProcess, answers: Connection, is_stopped: Callable[[], bool]) -> Any:
-    """What was sent next: a finding, a mistake of ours, None; after Ctrl-C the rest of it.
+    """The next message: a finding, an internal error, or None; after Ctrl-C the rest of it.
 
     Raises:
-        EOFError: nothing comes any more.
+        EOFError: the process has ended.
     """
     while not is_stopped() and not answers.poll(_PATIENCE):
         pass
@@ -102,7 +102,7 @@ def _next(process: ForkProcess, answers: Connection, is_stopped: Callable[[], bo
 
 
 _PATIENCE = 0.1
-"""Seconds after which Ctrl-C is looked at."""
+"""Seconds between two checks for Ctrl-C."""
 
 
 def _started(jobs: Sequence[Job[F]], found: Sequence[F]) -> tuple[ForkProcess, Connection]:
@@ -116,7 +116,7 @@ def _started(jobs: Sequence[Job[F]], found: Sequence[F]) -> tuple[ForkProcess, C
 
 
 def _answer(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[F]) -> None:
-    """Send each finding, None at the end of each job, and a mistake of ours where there is one."""
+    """Send each finding, None at the end of each job, and an internal error if there is one."""
     ignore_interrupts()
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # BuDDy's last words
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
@@ -141,5 +141,5 @@ def _answer_all(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[
 def _ending(status: int) -> str:
     """Why the process ended before its answer."""
     if status in (-signal.SIGPROF, -signal.SIGKILL):
-        return "it took longer than it may"
+        return "it exceeded its time limit"
     return f"it took more than {MEMORY // 2**30} GiB of memory, or failed (exit status {status})"

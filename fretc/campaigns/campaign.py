@@ -1,4 +1,4 @@
-"""Many missions: each scenario with each seed is simulated, audited and counted."""
+"""Campaigns: each scenario is simulated with each seed, and every log is audited and counted."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from simulation.nodes.safety import Interceptor as MakeInterceptor
 from simulation.world.scenario import Interceptor, Scenario
 
 CONFIDENCE = 0.95
-"""Of the intervals."""
+"""Confidence level of the intervals."""
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One mission: what happened in the world, and the verdicts on its log."""
+    """Result of one mission: what happened in the world, and the verdicts on its log."""
 
     scenario: str
     seed: int
@@ -42,15 +42,15 @@ class Run:
     latencies: tuple[float, ...]
     """Seconds from each request to the standstill."""
     distances: tuple[float, ...]
-    """Metres that the robot moved meanwhile."""
+    """Metres that the robot moved between request and standstill."""
     verdicts: Mapping[str, str]
     wrong: Mapping[str, str]
-    """Of the requirements whose verdict is not the stated one, what was stated."""
+    """The stated verdicts of the requirements whose verdict differs."""
 
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """How many of some runs; `low` and `high` are its Clopper-Pearson interval."""
+    """A proportion of runs; `low` and `high` are its Clopper-Pearson interval."""
 
     count: int
     runs: int
@@ -58,7 +58,7 @@ class Share:
     high: float
 
     def __str__(self) -> str:
-        """With the interval in percent."""
+        """Count, total and interval in percent."""
         return f"{self.count}/{self.runs} ({self.low * 100:.0f}-{self.high * 100:.0f} %)"
 
 
@@ -132,19 +132,19 @@ def campaign(
     folder: Path | None = None,
     tell: Callable[[int], None] = lambda done: None,
 ) -> list[Run]:
-    """Every scenario with every seed, scenarios first.
+    """Run every scenario with every seed, scenario by scenario.
 
     Args:
-        scenarios: in any number.
-        seeds: for each of them the same.
-        jobs: processes.
-        folder: where the logs stay; None: they are removed.
-        tell: is called with the number of missions that are done.
+        scenarios: any number of scenarios.
+        seeds: the seeds for each scenario.
+        jobs: number of processes.
+        folder: folder for the logs; None: the logs are removed.
+        tell: called with the number of finished missions.
 
     Raises:
         RuntimeError: the process of a mission was killed twice.
     """
-    monitored_requirements(plan())  # before the processes are born: they inherit it
+    monitored_requirements(plan())  # Set before the processes start, because they inherit it.
     things = [(scenario, seed) for scenario in scenarios for seed in seeds]
     runs: dict[int, Run] = {}
     with _place(folder, things) as logs:
@@ -160,7 +160,7 @@ def campaign(
 
 @contextmanager
 def _place(folder: Path | None, things: Sequence[tuple[Scenario, int]]) -> Iterator[Path]:
-    """Where the logs go. What a process was writing when it was killed does not stay."""
+    """Folder for the logs. Files of a killed process are removed."""
     if folder is None:
         with tempfile.TemporaryDirectory() as temporary:
             yield Path(temporary)
@@ -187,7 +187,7 @@ def _name(scenario: Scenario, seed: int) -> str:
 
 
 def table(runs: Sequence[Run]) -> str:
-    """One line for each scenario, then the violations of each requirement in it."""
+    """Table with a line for each scenario, then the violations by requirement and scenario."""
     groups: dict[str, list[Run]] = {}
     for run in runs:
         groups.setdefault(run.scenario, []).append(run)
@@ -243,4 +243,4 @@ def _violations(groups: Mapping[str, Sequence[Run]]) -> Iterator[str]:
         differences = ", ".join(
             f"{i} is {run.verdicts.get(i)}, not {v}" for i, v in run.wrong.items()
         )
-        yield f"not as stated: {run.scenario}, seed {run.seed}: {differences}"
+        yield f"not as expected: {run.scenario}, seed {run.seed}: {differences}"

@@ -1,4 +1,4 @@
-"""The simulated experiment's requirements, with the safety function and the interceptor of them."""
+"""Requirements of the simulated experiment, with their safety function and interceptor."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ SAFETY_REQUIREMENT = "R1"
 """Its monitor is the Safety Instrumented Function."""
 
 _THRESHOLD = "clearance < 5 cm"
-"""What the safety function compares; a scenario may put another number in."""
+"""Bound that the safety function compares with; a scenario may replace its number."""
 
 _WINDOW = 600_000_000
-"""Nanoseconds that are remembered: more than any `max_age` and any `for` of the propositions."""
+"""Nanoseconds of stored messages: more than any `max_age` and any `for` of the propositions."""
 
 
 def folder() -> Path:
-    """`compiler/requirements` in an installed wheel, `requirements` beside us in a checkout."""
+    """Requirements folder: below `compiler` in a wheel, beside `fretc` in a checkout."""
     package = Path(str(files("compiler")))
     installed = package / "requirements"
     root = installed if installed.is_dir() else package.parent / "requirements"
@@ -60,14 +60,14 @@ def project() -> Project:
 
 @lru_cache(maxsize=1)
 def plan() -> Plan:
-    """What the logs of missions are audited by."""
+    """Audit plan for the logs of missions."""
     audit_plan = planned(project())
     assert isinstance(audit_plan, Plan), audit_plan
     return audit_plan
 
 
 def safety_function(threshold: float = 0.05) -> SafetyFunction:
-    """The safety function, before its first message.
+    """The safety function before its first message.
 
     Args:
         threshold: metres, in place of the 5 cm of the bindings.
@@ -79,8 +79,8 @@ def interceptor(options: Options, publish: Callable[[Sequence[float]], None]) ->
     """The `Gate` of the emitted interceptor, before its first message.
 
     Args:
-        options: in place of those of the bindings.
-        publish: takes the command to the wheels: m/s along x, y, z, and rad/s around them.
+        options: options that replace those of the bindings.
+        publish: receives the wheel command: m/s along x, y, z, and rad/s around them.
     """
     module = executed(interceptor_text(), "interceptor.py")
     module.OPTIONS = module.Options(**asdict(options))
@@ -89,7 +89,7 @@ def interceptor(options: Options, publish: Callable[[Sequence[float]], None]) ->
 
 @lru_cache(maxsize=1)
 def interceptor_text() -> str:
-    """What `--emit interceptor` writes for the mission."""
+    """Text that `--emit interceptor` writes for the mission."""
     declared = project().declarations
     (file,) = interceptors.emit((), TargetOptions(declarations=declared))
     return file.text
@@ -118,19 +118,18 @@ def _declarations(threshold: float) -> Declarations:
 
 
 class SafetyFunction:
-    """Demands a stop while the monitor of R1 has an open demand, or is given a new one.
+    """Requests a stop while the monitor of R1 has an open obligation, or a new trigger.
 
-    Numbers and truth values are made of messages by the code that audits logs. Where it is not
-    known how near things are, they count as too close; where it is not known whether the robot
-    stands, it counts as moving.
+    The code that audits logs converts messages to numbers and truth values. An unknown distance
+    counts as too close; an unknown standstill counts as moving.
     """
 
     def __init__(self, text: str, declarations: Declarations) -> None:
         self._monitor: Any = loaded("safety_function", text)
         names = tuple(self._monitor.PROPOSITIONS)
         propositions = [declarations.propositions[name] for name in names]
-        self._inputs = [one for one in propositions if one.role == "input"]
-        self._outputs = [one for one in propositions if one.role != "input"]
+        self._inputs = [proposition for proposition in propositions if proposition.role == "input"]
+        self._outputs = [proposition for proposition in propositions if proposition.role != "input"]
         self._declarations = declarations
         self._demanded = False
         read = dict.fromkeys(name for one in propositions for name in one.signals)
@@ -140,7 +139,7 @@ class SafetyFunction:
         self._last = -1
 
     def hear(self, topic: str, message: Any, time: int) -> None:
-        """A message has arrived; `time` in nanoseconds, not before the last one."""
+        """Receive a message; `time` in nanoseconds, not before the previous one."""
         for signal in self._signals:
             if signal.path.topic == topic:
                 times, values = self._times[signal.name], self._values[signal.name]
@@ -153,11 +152,14 @@ class SafetyFunction:
     def step(self, time: int) -> bool:
         """Whether the robot must stop now; `time` in nanoseconds."""
         recording = self._recording(time)
-        truths = {one.name: self._truth(one, recording, time, unknown=True) for one in self._inputs}
-        awaited = self._demanded or any(truths.values())  # else no answer is waited for
-        for one in self._outputs:
-            stands = awaited and self._truth(one, recording, time, unknown=False)
-            truths[one.name] = stands
+        truths = {
+            input_.name: self._truth(input_, recording, time, unknown=True)
+            for input_ in self._inputs
+        }
+        awaited = self._demanded or any(truths.values())  # Otherwise no response is pending.
+        for output in self._outputs:
+            stands = awaited and self._truth(output, recording, time, unknown=False)
+            truths[output.name] = stands
         self._last = time
         self._monitor.advance([truths])
         (signal,) = self._monitor.must.signals()
@@ -165,7 +167,7 @@ class SafetyFunction:
         return self._demanded
 
     def _recording(self, time: int) -> Recording:
-        """What is remembered, in the form of a log."""
+        """The stored messages in the form of a log."""
         samples = {
             name: Samples(
                 np.array(times, np.int64),
@@ -192,7 +194,7 @@ class SafetyFunction:
     def _truth(
         self, proposition: Proposition, recording: Recording, time: int, *, unknown: bool
     ) -> bool:
-        """What it was since the last step; `unknown` is what counts where that is not known."""
+        """Value of a proposition since the last step; `unknown` replaces an unknown value."""
         steps = evaluate(proposition, self._declarations, recording)
         new = [
             unknown if value is None else value

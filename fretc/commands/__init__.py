@@ -1,4 +1,4 @@
-"""The commands: one module for each, and helpers for their options and output.
+"""The commands: one module for each, and shared code for their options and output.
 
 Input is the command line. Output is what is printed and written, and the exit status.
 """

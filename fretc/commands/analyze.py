@@ -1,6 +1,6 @@
-"""`fretc analyze`: can requirements be kept together, which fight, which say nothing.
+"""`fretc analyze`: realizability, conflicts and redundancy of a requirement set.
 
-`fretc.analysis` answers; this module reads the options and prints.
+`fretc.analysis` computes the findings; this module reads the options and prints.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from fretc.terminal.options import (
     requirements_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    INTERRUPTED,
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
+    EXIT_INCONCLUSIVE,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
     coloured,
-    deliver,
-    say_briefly,
-    say_line,
-    stop,
+    fail,
+    print_project_diagnostics,
+    print_status,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
 
@@ -84,7 +84,7 @@ def analyze(
     as_fret: bool,
     requirements: str,
     bindings: str | None,
-    form: str,
+    output_format: str,
     output: str,
 ) -> None:
     """Find out whether a system can satisfy all requirements together.
@@ -114,32 +114,32 @@ def analyze(
     project, first = project_of(files, requirements, bindings, ("environment",))
     formalized = active_requirements(project, component)
     assumed, remarks = assumptions(formalized, project.declarations)
-    say_briefly(remarks, first)
+    print_project_diagnostics(remarks, first)
     if has_errors(remarks):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     chosen = roles([*formalized, *assumed])
     if isinstance(chosen, tuple):
-        stop(*chosen)
+        fail(*chosen)
     analysis, stopped = asked(formalized, assumed, chosen, Options(seconds, as_fret))
     evidence = f"{to_json(plain(document(formalized, assumed, analysis, as_fret=as_fret)))}\n"
     if emitted is not None and emit_to == "-":
-        pass  # what is printed is the strategy
+        pass  # Standard output then holds the controller.
     elif output == "-":
         click.echo(evidence, nl=False)
-    elif form == "json":
+    elif output_format == "json":
         click.echo(to_json(plain(analysis)))
     else:
         sentences = {requirement.id: printed(requirement.written) for requirement in formalized}
-        left_out = [each.requirement.id for each in project.refused if each.is_in_force]
+        left_out = [refusal.requirement.id for refusal in project.refused if refusal.is_in_force]
         click.echo(coloured([*lines(analysis, sentences, left_out)]), nl=False)
     if output != "-":
         sources = [entry.wording.source.name for entry in project.requirements]
-        deliver(
+        write_outputs(
             {Path(output): evidence}, [*sources, *companions(sources), *filter(None, [bindings])]
         )
     if emitted is not None and not stopped:
         _emit(analysis, formalized, assumed, chosen, Options(seconds, as_fret), emitted, emit_to)
-    raise SystemExit(INTERRUPTED if stopped else _status(analysis))
+    raise SystemExit(EXIT_INTERRUPTED if stopped else _status(analysis))
 
 
 def asked(
@@ -148,17 +148,17 @@ def asked(
     chosen: Roles,
     options: Options,
 ) -> tuple[Analysis, bool]:
-    """What is found of the requirements, and whether Ctrl-C has stopped it."""
+    """The analysis of the requirements, and whether Ctrl-C has stopped it."""
     from fretc.analysis.analysis import Finding, assembled, jobs
-    from fretc.analysis.worker import Stopped, findings
-    from fretc.terminal.progress import at_work
+    from fretc.analysis.worker import Interrupted, findings
+    from fretc.terminal.progress import print_activity
 
     found: list[Finding] = []
     stopped = False
     try:
-        for finding in findings(jobs(requirements, chosen, assumed, options), at_work):
+        for finding in findings(jobs(requirements, chosen, assumed, options), print_activity):
             found.append(finding)
-    except Stopped:
+    except Interrupted:
         stopped = True
     return assembled(requirements, chosen, assumed, options, found), stopped
 
@@ -172,59 +172,63 @@ def _emit(
     emitted: str,
     output: str,
 ) -> None:
-    """Write the strategies of all components, or none of them."""
+    """Write the controllers of all components, or none of them."""
     from fretc.analysis.analysis import controllers
     from fretc.analysis.controllers.circuit import Circuit
-    from fretc.analysis.controllers.files import Form, automata, controller
+    from fretc.analysis.controllers.files import ControllerFormat, automata, controller
     from fretc.analysis.controllers.moves import Mealy
     from fretc.analysis.findings import OpenQuestion, Verdict
-    from fretc.analysis.worker import Stopped, findings
-    from fretc.terminal.progress import at_work
+    from fretc.analysis.worker import Interrupted, findings
+    from fretc.terminal.progress import print_activity
     from fretish.printer import sentence as printed
 
     if analysis.verdict is not Verdict.REALIZABLE:
-        say_line(f"no strategy is written: {analysis.why}")
+        print_status(f"no controller is written: {analysis.why}")
         return
-    form = Form(emitted)
+    output_format = ControllerFormat(emitted)
     try:
-        found = [*findings(controllers(requirements, chosen, assumed, options, form), at_work)]
-    except Stopped:
-        raise SystemExit(INTERRUPTED) from None
+        found = [
+            *findings(
+                controllers(requirements, chosen, assumed, options, output_format), print_activity
+            )
+        ]
+    except Interrupted:
+        raise SystemExit(EXIT_INTERRUPTED) from None
     circuits = [each for each in found if isinstance(each, Circuit)]
     machines = [each for each in found if isinstance(each, Mealy)]
     for each in found:
         if isinstance(each, OpenQuestion):
-            message = f"no strategy can be written: {each.why}"
-            stop(Diagnostic(Code.TOO_LARGE, message, help=_smaller(form)))
-    if form is Form.PYTHON:
+            message = f"no controller can be written: {each.why}"
+            fail(Diagnostic(Code.TOO_LARGE, message, help=_smaller(output_format)))
+    if output_format is ControllerFormat.PYTHON:
         sentences = {requirement.id: printed(requirement.written) for requirement in requirements}
-        promises = {each.id: each.sentence for each in analysis.assumptions}
+        promises = {assumption.id: assumption.sentence for assumption in analysis.assumptions}
         artifacts = [controller(circuits, sentences, promises)]
     else:
-        artifacts = [*automata(machines, form)]
+        artifacts = [*automata(machines, output_format)]
     if output == "-":
-        deliver({Path("-"): "".join(each.text for each in artifacts)})
+        write_outputs({Path("-"): "".join(artifact.text for artifact in artifacts)})
     else:
-        deliver({Path(output) / each.path: each.text for each in artifacts})
+        write_outputs({Path(output) / artifact.path: artifact.text for artifact in artifacts})
 
 
-def _smaller(form: str) -> str:
-    if form == "python":
-        return "ask for one component with `--component`, or for more time with `--time`"
-    return "`--emit python` has no states, and writes far larger strategies"
+def _smaller(output_format: str) -> str:
+    if output_format == "python":
+        return "select one component with `--component`, or allow more time with `--time`"
+    return "try `--emit python`: it lists no states and can write much larger controllers"
 
 
 def active_requirements(
     project: Project, component: str | None
 ) -> tuple[FormalizedRequirement, ...]:
-    """The requirements that are asked about: those that are in force."""
+    """The requirements to analyze: all that are in force."""
     requirements = tuple(
         requirement for requirement in project.formalized if requirement.entry.status != "retired"
     )
     if component is not None:
         requirements = _of_component(requirements, component)
     if not requirements:
-        stop(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to analyze"))
+        fail(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to analyze"))
     return requirements
 
 
@@ -237,7 +241,7 @@ def _of_component(
     if not chosen:
         known = tuple(dict.fromkeys(requirement.sentence.component for requirement in requirements))
         near = suggestion(component, known)
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
                 f"no requirement is about the component `{component}`",
@@ -252,8 +256,8 @@ def _status(analysis: Analysis) -> int:
 
     match analysis.verdict:
         case Verdict.REALIZABLE:
-            return SHOWN
+            return EXIT_OK
         case Verdict.UNREALIZABLE:
-            return VIOLATION
+            return EXIT_VIOLATION
         case Verdict.NOT_CHECKED:
-            return NOT_SHOWN
+            return EXIT_INCONCLUSIVE

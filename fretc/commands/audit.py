@@ -1,4 +1,4 @@
-"""The command that audits runs."""
+"""`fretc audit`: check recorded runs against the requirements."""
 
 from __future__ import annotations
 
@@ -14,13 +14,12 @@ import click
 from fretc.commands.audit_logs import selected, time_limits
 from fretc.commands.audit_progress import audit_in_memory, audit_into
 from fretc.commands.notify import notify, words
-from fretc.commands.opening import OF_AUDITS
+from fretc.commands.opening import AUDIT_TABLES
 from fretc.commands.summary import summarize
-from fretc.terminal.group import Grouped
+from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import (
-    OF_LOGS,
+    LOG_EXTRAS,
     PATH,
-    Renamed,
     bindings_option,
     extras,
     format_option,
@@ -31,19 +30,19 @@ from fretc.terminal.options import (
     requirements_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
-    deliver,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
+    fail,
     not_written,
     painted,
+    print_diagnostics,
+    print_diagnostics_below,
+    print_project_diagnostics,
+    print_status,
     protect,
-    say,
-    say_also,
-    say_briefly,
-    say_line,
-    stop,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
@@ -62,7 +61,7 @@ if TYPE_CHECKING:
 
 _AUDIT = {
     "Input": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
-    "Output": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
+    "Output": ("output_format", "verbose", "output", "parquet", "annotate", "annotations"),
     "Selection": ("since", "sample", "seed"),
     "Many logs, performance": (
         "labels",
@@ -82,16 +81,14 @@ _AUDIT = {
 
 
 @click.command(
-    cls=Grouped,
+    cls=CommandWithHeadings,
     headings=_AUDIT,
-    epilog=extras({**OF_LOGS, "fleet": "--engine dask"}),
+    epilog=extras({**LOG_EXTRAS, "fleet": "--engine dask"}),
 )
 @click.argument("paths", nargs=-1, required=True, type=PATH, metavar="LOG...")
 @requirements_option
 @bindings_option
 @output_option(
-    cls=Renamed,
-    earlier="--evidence",
     help="Evidence file (NAME.json), or folder of an evidence store (any other name). `-` "
     "prints the evidence.  [default: build/evidence.json for one log, build/evidence for "
     "several]",
@@ -195,7 +192,6 @@ _AUDIT = {
 @path_option(
     "--parquet", help="Also write a Parquet table with one row for each run and requirement."
 )
-@click.option("--resume", is_flag=True, hidden=True)
 @click.option(
     "--summary",
     is_flag=True,
@@ -216,7 +212,7 @@ def audit(
     output: str | None,
     annotate: bool,
     annotations: str | None,
-    form: str,
+    output_format: str,
     verbose: bool,
     evaluation: str,
     integrity: str,
@@ -233,7 +229,6 @@ def audit(
     keep_columns: bool,
     command: str | None,
     parquet: str | None,
-    resume: bool,
     summary: bool,
     query: str | None,
 ) -> None:
@@ -253,10 +248,8 @@ def audit(
     Example: fretc audit runs/ --requirements requirements/mission -o build/mission.json
     """
     if summary or query is not None:
-        summarize(paths, query, form)
+        summarize(paths, query, output_format)
     began = time.perf_counter()
-    if resume:
-        say_line("`--resume` is not needed any more: what a stopped audit has finished is known")
     from compiler.project.folder import load
     from compiler.project.paths import companions, requirement_files, sibling_path
     from fretc.audit.log_paths import files_of
@@ -269,24 +262,26 @@ def audit(
     hook = None if command is None else words(command)
     given_labels = given(labels)
     if isinstance(given_labels, Diagnostic):
-        stop(given_labels)
+        fail(given_labels)
     logs, selection = selected(paths, since, sample, seed)
     limits = time_limits(log_time, whole_time, logs, engine)
     target = outputs.target(output, selection.named if selection else len(logs))
     outputs.check(target, parquet)
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
-        stop(files)
+        fail(files)
     inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
     protect([target.path, *([Path(parquet)] if parquet else [])], inputs)
-    project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
-    say_briefly(project.diagnostics, requirements)
+    project = load(
+        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
+    )
+    print_project_diagnostics(project.diagnostics, requirements)
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
-        stop(*(reason for reason in plan if reason not in project.diagnostics))
+        fail(*(reason for reason in plan if reason not in project.diagnostics))
     plan = replace(plan, labels=given_labels, selection=selection)
     refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
-    say_also(refusals, project.diagnostics)
+    print_diagnostics_below(refusals, project.diagnostics)
     kept = _samples(target, rehash=rehash) if keep_columns else None
     with ExitStack() as stack:
         if target.is_store:
@@ -297,19 +292,19 @@ def audit(
         else:
             result = audit_in_memory(plan, logs, _engine(engine, jobs, limits, kept))
         diagnostics = project.answered(result.diagnostics)
-        say_also(diagnostics, (*project.diagnostics, *refusals))
-        if result.read:  # a mistyped name must not cost the evidence of the last audit
+        print_diagnostics_below(diagnostics, (*project.diagnostics, *refusals))
+        if result.read:  # A mistyped log name must not overwrite the evidence of the last audit.
             wanted = annotate or annotations is not None
             made = outputs.annotation_files(result, project, annotations) if wanted else {}
             if parquet is not None:
                 made[Path(parquet)] = outputs.table(result)
             _deliver(result, target, made, inputs)
         elif os.path.lexists(target.path):
-            say_line(visible(f"no log could be read: `{target.path}` stays as it was"))
-        source, not_judged = result.source, {one.id for one in plan.refused}
+            print_status(visible(f"no log could be read: `{target.path}` is unchanged"))
+        source, not_judged = result.source, {refusal.id for refusal in plan.refused}
         marks = VerdictWords.of((each for _, each in source.briefs()), result.estimates, not_judged)
         is_bad = plan.refused or has_errors((*project.diagnostics, *diagnostics))
-        status = BAD if is_bad else _status(marks)
+        status = EXIT_USAGE if is_bad else _status(marks)
         from fretc.commands.audit_text import Places, Subject, lines
         from fretc.commands.audit_text import summary as summary_of
 
@@ -322,20 +317,20 @@ def audit(
             Places(requirements, bindings, str(target.path)),
             time.perf_counter() - began,
         )
-        if form == "text":
+        if output_format == "text":
             from fretc.terminal.screen import screen
 
             click.echo(painted(lines(subject, screen(), every=verbose)), nl=False)
         else:
-            click.echo(outputs.text(result, project, refusals, form), nl=False)
+            click.echo(outputs.text(result, project, refusals, output_format), nl=False)
         notice = summary_of(subject, status) if hook is not None else {}
-    if hook is not None:  # when the store is free again: the command may read it
+    if hook is not None:  # The store is closed first, because the command may read it.
         notify(hook, notice)
     raise SystemExit(status)
 
 
 def _status(marks: VerdictWords) -> int:
-    return VIOLATION if marks.violated else SHOWN if marks.shown else NOT_SHOWN
+    return EXIT_VIOLATION if marks.violated else EXIT_OK if marks.shown else EXIT_INCONCLUSIVE
 
 
 def _session(folder: Path, plan: Plan, logs: Sequence[str], *, rehash: bool) -> StoreWriter:
@@ -344,20 +339,20 @@ def _session(folder: Path, plan: Plan, logs: Sequence[str], *, rehash: bool) -> 
 
     key = user_key()
     if isinstance(key, Diagnostic):
-        say([key])
+        print_diagnostics([key])
     known = None if isinstance(key, Diagnostic) else key
     try:
         return StoreWriter(folder, plan, logs, known, rehash=rehash)
     except BlockingIOError:
-        stop(busy(folder))
+        fail(busy(folder))
     except OSError as error:
-        stop(not_written(str(folder), error.strerror or str(error)))
+        fail(not_written(str(folder), error.strerror or str(error)))
 
 
 def _deliver(
     result: Outcome, target: Target, others: Mapping[Path, bytes], inputs: Sequence[str]
 ) -> None:
-    """Write everything but a store, which is written."""
+    """Write all outputs except a store, which is already written."""
     from fretc.audit.many_logs import Audit
     from fretc.commands.audit_outputs import remove_other
 
@@ -366,29 +361,29 @@ def _deliver(
         assert isinstance(result, Audit), "what is no store is in memory"
         own = {target.path: result.evidence}
     if {*map(os.path.realpath, own)} & {*map(os.path.realpath, others)}:
-        stop(not_written(str(target.path), "two outputs would go there"))
-    deliver({**own, **others}, inputs)
+        fail(not_written(str(target.path), "two outputs would go there"))
+    write_outputs({**own, **others}, inputs)
     if target.is_store:
-        say_line(visible(f"wrote {target.path}"))
+        print_status(visible(f"wrote {target.path}"))
     remove_other(target)
 
 
 def _samples(target: Target, *, rehash: bool) -> SampleCache | None:
-    """Where samples are kept; None where there is no key of the user, which says who kept them."""
+    """Cache for samples beside the evidence; None without the user's key."""
     from compiler.files.user_key import user_key
     from fretc.audit.store.recordings import SUFFIX, SampleCache
 
     if str(target.path) == "-":
-        stop(_no_place_for_columns("evidence is printed", "name a file with `-o`"))
+        fail(_no_place_for_columns("evidence is printed", "name a file with `-o`"))
     key = user_key()
     if isinstance(key, Diagnostic):
-        say([key])
+        print_diagnostics([key])
         return None
     return SampleCache(target.path.with_name(f"{target.path.name}{SUFFIX}"), key, rehash)
 
 
 def _no_place_for_columns(why: str, fix: str) -> Diagnostic:
-    message = f"`--keep-columns` keeps samples beside the evidence of this machine, and {why}"
+    message = f"`--keep-columns` stores samples beside the evidence on this machine, but {why}"
     return Diagnostic(Code.BAD_USAGE, message, help=fix)
 
 
@@ -407,10 +402,10 @@ def _engine(
         return local_executor(jobs, kept, earlier.results, limits)
     if kept is not None:
         why = f"`--engine {name}` reads the logs elsewhere"
-        stop(_no_place_for_columns(why, "leave out one of the two"))
+        fail(_no_place_for_columns(why, "remove one of the two options"))
     from fretc.audit import dask_executor
 
     engine = dask_executor.engine(name, jobs)
     if isinstance(engine, Diagnostic):
-        stop(engine)
+        fail(engine)
     return engine

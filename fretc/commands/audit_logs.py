@@ -1,10 +1,10 @@
-"""The logs of an audit and the time for them, as the options say."""
+"""Selection of the logs of an audit, and its time limits."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fretc.terminal.output import NOT_SHOWN, say_line, stop
+from fretc.terminal.output import EXIT_INCONCLUSIVE, fail, print_status
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 if TYPE_CHECKING:
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 def selected(
     paths: Sequence[str], since: str | None, sample: int | None, seed: int
 ) -> tuple[list[str], Selection | None]:
-    """The logs that are audited; exit status 3 where none of those that are named is left.
+    """The selected logs; exits with status 3 if no log is left.
 
     Args:
-        paths: as the user names them.
-        since: of which none is older; None: whatever their dates.
-        sample: how many of them by chance; None: all.
-        seed: of the chance.
+        paths: logs as named by the user.
+        since: date of the oldest log; None: any date.
+        sample: size of the random sample; None: all logs.
+        seed: seed of the random sample.
     """
     from fretc.audit.log_paths import logs as logs_of
     from fretc.audit.selection.choice import chosen, in_words
@@ -31,27 +31,27 @@ def selected(
 
     than = None if since is None else time_of(since)
     if isinstance(than, Diagnostic):
-        stop(than)
+        fail(than)
     logs = logs_of(paths)
     if isinstance(logs, Diagnostic):
-        stop(logs)
+        fail(logs)
     some, selection = chosen(logs, than, sample, seed)
     if selection is not None:
-        say_line(in_words(selection))
+        print_status(in_words(selection))
     if not some:
-        say_line("no log is audited; the evidence is unchanged")
-        raise SystemExit(NOT_SHOWN)
+        print_status("no log is audited; the evidence is unchanged")
+        raise SystemExit(EXIT_INCONCLUSIVE)
     return some, selection
 
 
 def time_limits(log: str | None, whole: str | None, logs: Sequence[str], engine: str) -> Limits:
-    """The time for each log and for all of them.
+    """Time limits for each log and for all logs.
 
     Args:
-        log: `--log-time`; None: any.
-        whole: `--time`; None: any.
-        logs: that are audited.
-        engine: where.
+        log: `--log-time`; None: no limit.
+        whole: `--time`; None: no limit.
+        logs: the logs to audit.
+        engine: name of the engine.
     """
     from fretc.audit.pool import ENDLESS, Limits
     from fretc.logs.storage.log_names import STDIN
@@ -59,11 +59,11 @@ def time_limits(log: str | None, whole: str | None, logs: Sequence[str], engine:
     limits = Limits(_seconds("--log-time", log), _seconds("--time", whole))
     if limits != ENDLESS and (STDIN in logs or engine != "local"):
         what = "standard input" if STDIN in logs else f"`--engine {engine}`"
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
-                f"{what} has no limits of time",
-                help="leave out `--time` and `--log-time`, or audit files on this machine",
+                f"{what} does not support time limits",
+                help="remove `--time` and `--log-time`, or audit files on this machine",
             )
         )
     return limits
@@ -74,10 +74,10 @@ def _seconds(option: str, text: str | None) -> float | None:
 
     length = None if text is None else nanoseconds(text)
     if text is not None and length is None:
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
-                f"`{option} {text}` is no time",
+                f"`{option} {text}` is not a duration",
                 help=f"write `{option} 90s`, `{option} 30min` or `{option} 6h`",
             )
         )

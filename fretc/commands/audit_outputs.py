@@ -1,4 +1,4 @@
-"""Where evidence of an audit goes, and the other forms of its results."""
+"""Outputs of an audit: the place of its evidence, and other formats of its results."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from fretc.terminal.output import EVIDENCE, STORE, not_written, say_line, stop
+from fretc.terminal.output import EVIDENCE, STORE, fail, not_written, print_status
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 if TYPE_CHECKING:
@@ -18,46 +18,46 @@ if TYPE_CHECKING:
     from fretc.audit.evidence.schema import Result
 
 _BATCH = 256
-"""Results that are read at once."""
+"""Number of results that are read at once."""
 
 
 class Outcome(Protocol):
-    """An audit, in memory or in a store."""
+    """Result of an audit, in memory or in a store."""
 
     @property
     def source(self) -> EvidenceSource:
-        """Its results."""
+        """The results."""
 
     @property
     def estimates(self) -> Sequence[Estimated]:
-        """What all runs say of each requirement with a probability."""
+        """Estimates of the requirements with a probability, over all runs."""
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What there is to say of the logs."""
+        """Diagnostics of the logs."""
 
     @property
     def read(self) -> int:
-        """How many of the logs could be read."""
+        """Number of logs that could be read."""
 
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Where evidence goes."""
+    """Output path of the evidence."""
 
     path: Path
     is_store: bool
     other: Path | None = None
-    """Where evidence of an earlier audit may be, of which this one takes the place."""
+    """Default path of the other kind, where an earlier audit may have written evidence."""
 
     @property
     def is_printed(self) -> bool:
-        """Whether it goes to standard output."""
+        """Whether the evidence is printed to standard output."""
         return str(self.path) == "-"
 
 
 def target(output: str | None, logs: int) -> Target:
-    """A file for one log, a store for several, if nobody says otherwise."""
+    """The output path: by default a file for one log and a store for several."""
     if output is None:
         places = (EVIDENCE, STORE) if logs == 1 else (STORE, EVIDENCE)
         path, other = map(Path, places)
@@ -66,7 +66,7 @@ def target(output: str | None, logs: int) -> Target:
 
 
 def check(target: Target, parquet: str | None) -> None:
-    """Stop where they cannot be written, before hours of audit have gone by."""
+    """Check that the outputs can be written, before the audit starts."""
     path = target.path
     if parquet is not None:
         _check_table(parquet, path)
@@ -74,23 +74,23 @@ def check(target: Target, parquet: str | None) -> None:
         return
     if not target.is_store:
         if path.exists() and not path.is_file():
-            stop(not_written(str(path), "it is not a regular file"))
+            fail(not_written(str(path), "it is no regular file"))
         return
     if not path.is_dir():
-        stop(_no_folder(path))
+        fail(_no_folder(path))
     from fretc.audit.store.writer import is_store
 
     if any(path.iterdir()) and not is_store(path):
-        stop(_no_store(path))
+        fail(_no_store(path))
 
 
 def _check_table(parquet: str, evidence: Path) -> None:
     if parquet == "-":
-        stop(not_written(parquet, "a table is a file"))
+        fail(not_written(parquet, "a Parquet table cannot be printed"))
     if os.path.exists(parquet) and not os.path.isfile(parquet):
-        stop(not_written(parquet, "it is not a regular file"))
+        fail(not_written(parquet, "it is no regular file"))
     if os.path.realpath(parquet) == os.path.realpath(evidence):
-        stop(not_written(parquet, "two outputs would go there"))
+        fail(not_written(parquet, "two outputs would go there"))
 
 
 def table(outcome: Outcome) -> bytes:
@@ -101,7 +101,7 @@ def table(outcome: Outcome) -> bytes:
 
 
 def remove_other(target: Target) -> None:
-    """Remove what an earlier audit wrote in the other default place: it is not read by mistake."""
+    """Remove evidence of an earlier audit at the other default path."""
     other = target.other
     if other is None:
         return
@@ -110,10 +110,10 @@ def remove_other(target: Target) -> None:
 
         if is_store(other):
             remove(other)
-            say_line(f"removed {other}, the evidence of an earlier audit")
+            print_status(f"removed {other}, the evidence of an earlier audit")
     elif other.is_file() and not other.is_symlink() and _is_evidence(other):
         other.unlink()
-        say_line(f"removed {other}, the evidence of an earlier audit")
+        print_status(f"removed {other}, the evidence of an earlier audit")
 
 
 def _is_evidence(path: Path) -> bool:
@@ -127,7 +127,7 @@ def _is_evidence(path: Path) -> bool:
 
 
 def results(source: EvidenceSource) -> Iterator[Result]:
-    """All results, of a store little at a time."""
+    """All results; those of a store are read in batches."""
     places = [place for place, _ in source.briefs()]
     for start in range(0, len(places), _BATCH):
         yield from (result for _, result in source.details(places[start : start + _BATCH]))
@@ -142,7 +142,7 @@ def bare(source: EvidenceSource, project: Project) -> Iterator[Result]:
 
 
 def annotation_files(outcome: Outcome, project: Project, folder: str | None) -> dict[Path, bytes]:
-    """A log of annotations for each run, and a layout that shows them."""
+    """An annotation log for each run, and a Foxglove layout that shows them."""
     from fretc.audit.outputs.annotations import sidecars
     from fretc.audit.outputs.foxglove_layout import layout_file
 
@@ -153,19 +153,21 @@ def annotation_files(outcome: Outcome, project: Project, folder: str | None) -> 
     }
 
 
-def text(outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], form: str) -> str:
-    """The results for a program."""
+def text(
+    outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], output_format: str
+) -> str:
+    """The results in a format for programs."""
     from fretc.audit.outputs.junit import github, junit
     from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
 
-    if form == "json":
+    if output_format == "json":
         return _json(outcome)
     found = bare(outcome.source, project)
-    if form == "junit":
+    if output_format == "junit":
         return junit(found, outcome.estimates, project.requirements)
-    if form == "github":
+    if output_format == "github":
         return github(found, project.requirements, outcome.estimates)
-    assert form == "sarif", "a choice of --format"
+    assert output_format == "sarif", "a choice of --format"
     diagnostics = (*project.diagnostics, *refusals, *outcome.diagnostics)
     together = [AllRuns.of(one) for one in outcome.estimates]
     each = [OneRun.of(one) for one in found]
@@ -173,7 +175,7 @@ def text(outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], for
 
 
 def _json(outcome: Outcome) -> str:
-    """One JSON array, an object per run and requirement; with probabilities, both by name."""
+    """JSON array with an object for each run and requirement; an object with probabilities."""
     from compiler.files.records import plain
     from compiler.files.templating import to_json
 
@@ -186,14 +188,14 @@ def _json(outcome: Outcome) -> str:
 def _no_folder(path: Path) -> Diagnostic:
     return Diagnostic(
         Code.NOT_WRITTEN,
-        f"`{path}` cannot be written: a store of evidence is a folder",
-        help=f"evidence in one file ends with `.json`: `-o {path}.json`",
+        f"`{path}` cannot be written: an evidence store is a folder, and this is a file",
+        help=f"for evidence in one file, use a name that ends with `.json`: `-o {path}.json`",
     )
 
 
 def _no_store(path: Path) -> Diagnostic:
     return Diagnostic(
         Code.NOT_WRITTEN,
-        f"`{path}` cannot be written: it is a folder with something else in it",
+        f"`{path}` cannot be written: the folder contains other files",
         help="name a new folder, an empty one, or a store that `fretc audit` has written",
     )

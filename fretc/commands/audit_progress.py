@@ -1,4 +1,4 @@
-"""An audit while it goes on: how far it is, what of it is kept, and that Ctrl-C ends it."""
+"""Progress of an audit, and what is saved if it ends early."""
 
 from __future__ import annotations
 
@@ -7,7 +7,13 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from fretc.terminal.output import BAD, INTERRUPTED, say, say_line, stop
+from fretc.terminal.output import (
+    EXIT_INTERRUPTED,
+    EXIT_USAGE,
+    fail,
+    print_diagnostics,
+    print_status,
+)
 from fretc.terminal.progress import progress
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -18,69 +24,68 @@ if TYPE_CHECKING:
 
 
 def audit_in_memory(plan: Plan, logs: Sequence[str], engine: Engine) -> Audit:
-    """Audit the logs; whatever ends that early, nothing is kept."""
+    """Audit the logs in memory; an interrupted audit saves nothing."""
     from fretc.audit.many_logs import audit_logs
 
     try:
         with shown(logs) as show:
             result = audit_logs(plan, logs, engine, tell=lambda log, _: show(log))
     except KeyboardInterrupt:
-        say_line("stopped")
-        raise SystemExit(INTERRUPTED) from None
+        print_status("stopped")
+        raise SystemExit(EXIT_INTERRUPTED) from None
     if isinstance(result, Diagnostic):
-        stop(result)
+        fail(result)
     return result
 
 
 def audit_into(session: StoreWriter, engine: Engine) -> StoredAudit:
-    """Audit the logs of a session; whatever ends that early, what is finished is in its store."""
+    """Audit the logs of a session; an interrupted audit leaves finished results in the store."""
     if session.known:
         count = len(session.known) + len(session.new)
-        say_line(
-            f"{len(session.known)} of {count} logs are unchanged: their earlier results are used "
-            "again"
+        print_status(
+            f"{len(session.known)} of {count} logs are unchanged: their earlier results are reused"
         )
     elif session.earlier.claims:
-        say_line(
-            "requirements or bindings have changed: results of unchanged logs by "
-            f"{len(session.earlier.claims)} unchanged requirements are taken over"
+        print_status(
+            "requirements or bindings have changed: the results of "
+            f"{len(session.earlier.claims)} unchanged requirements on unchanged logs are reused"
         )
     elif session.earlier.stale:
-        say_line("requirements, bindings or fretc have changed: all logs are audited again")
+        print_status("requirements, bindings or fretc have changed: all logs are audited again")
     if session.missing:
         what = "log of the store is" if session.missing == 1 else "logs of the store are"
         whose = "its" if session.missing == 1 else "their"
-        say_line(f"{session.missing} {what} not named this time: {whose} results leave it")
+        print_status(f"{session.missing} {what} not among the inputs: {whose} results are removed")
     if session.earlier.foreign:
-        say_line(
+        print_status(
             f"`{session.folder}` was written by another user or in another folder: its results "
-            "are not used again"
+            "are not reused"
         )
     try:
         with shown(session.new) as show:
             result = session.run(engine, show)
     except KeyboardInterrupt:
-        say_line(f"stopped{_kept(session)}")
-        raise SystemExit(INTERRUPTED) from None
+        print_status(f"stopped{_kept(session)}")
+        raise SystemExit(EXIT_INTERRUPTED) from None
     if isinstance(result, Diagnostic):
-        say([result])
+        print_diagnostics([result])
         if session.kept:
-            say_line(f"not finished{_kept(session)}")
-        raise SystemExit(BAD)
+            print_status(f"not finished{_kept(session)}")
+        raise SystemExit(EXIT_USAGE)
     return result
 
 
 def _kept(session: StoreWriter) -> str:
-    """What is not lost, and how to go on; nothing where nothing is kept."""
+    """Message about the saved results and how to continue; empty if nothing is saved."""
     if not session.kept:
         return ""
     kept, count = session.kept + len(session.known), len(session.known) + len(session.new)
-    return f": {kept} of {count} logs are kept, the same command goes on from there"
+    return f": {kept} of {count} logs are saved; run the same command again to continue"
 
 
 @contextmanager
 def shown(logs: Sequence[str]) -> Iterator[Callable[[str], None]]:
-    """Show how many bytes of these logs are done; gives what is to be called with each of them."""
+    """Show the progress in bytes; yields a function to call with each finished log."""
     sizes = {log: _size(log) for log in logs}
     logs_done = bytes_done = 0
     total = sum(sizes.values())
@@ -96,7 +101,7 @@ def shown(logs: Sequence[str]) -> Iterator[Callable[[str], None]]:
 
 
 def _size(log: str) -> int:
-    """In bytes; something even where it cannot be told, so that the log counts."""
+    """Size of a log in bytes; 1 if it is unknown, so that the log counts."""
     try:
         return max(1, os.path.getsize(log))
     except OSError:

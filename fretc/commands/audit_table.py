@@ -1,4 +1,7 @@
-"""The verdicts of many runs as a table: a row for each requirement, a column of marks for each run.
+"""Table of the verdicts of many runs: a row for each requirement, a column of symbols for each run.
+
+The table is no wider than the screen. Rows and columns that do not fit are counted; the worst are
+always shown.
 
 Nothing of it is wider than the screen. What does not fit is counted, and it is never the worst.
 """
@@ -15,13 +18,13 @@ from fretc.terminal.output import Piece
 from fretc.terminal.screen import Screen, fitted, padded, titled, width
 
 MOST_RUNS = 200
-"""Columns of a table: of more runs the worst ones."""
+"""Maximum number of columns; with more runs, the worst ones are shown."""
 MOST_REQUIREMENTS = 60
-"""Rows of a table: of more requirements the worst ones."""
+"""Maximum number of rows; with more requirements, the worst ones are shown."""
 MOST_NAMES = 20
-"""Runs that are named below the table."""
+"""Maximum number of runs that are named below the table."""
 _GROUP = 10
-"""Marks between two blanks."""
+"""Symbols between two blanks."""
 _LONGEST_ID = 30
 Line = tuple[Piece, ...]
 _BLANK: Line = (("", None),)
@@ -30,12 +33,12 @@ _BLANK: Line = (("", None),)
 def table(
     grid: VerdictWords, screen: Screen, titles: Mapping[str, str] = MappingProxyType({})
 ) -> Iterator[Line]:
-    """The lines of the table, and below it the runs in which something is not shown.
+    """The lines of the table, then the runs that are not satisfied.
 
     Args:
-        grid: of two runs or more.
-        screen: where it is shown.
-        titles: of requirements, by their ids; there need be none.
+        grid: results of two runs or more.
+        screen: the output screen.
+        titles: titles of requirements by id; may lack some.
     """
     counts = [Counter(of_run.values()) for of_run in grid.words]
     badness = [*map(_badness, counts)]
@@ -50,7 +53,7 @@ def table(
 
 
 def _badness(counts: Counter[str]) -> tuple[tuple[int, int], ...]:
-    """The key that sorts runs: their words, the worst first, and how often they have each."""
+    """Sort key of runs: their verdicts, worst first, and how often they have each."""
     return tuple(sorted((severity(word), -count) for word, count in counts.items()))
 
 
@@ -61,7 +64,7 @@ def _blocks(
     screen: Screen,
     titles: Mapping[str, str],
 ) -> Iterator[Line]:
-    """All rows, with as many columns as fit; then all rows again with the next ones."""
+    """Blocks of columns that fit the screen, each with all rows."""
     most = min(screen.width // 3, _LONGEST_ID)
     names = [titled(screen.text(id), screen.text(titles.get(id, "")), most) for id in rows]
     room = max(map(width, (*names, "run")))
@@ -79,7 +82,7 @@ def _blocks(
 
 
 def _numbers(block: Sequence[int]) -> str:
-    """The number of the first run of each group."""
+    """Header line: the number of the first run of each group."""
     firsts = [f"{run + 1}" for run in block[::_GROUP]]
     return " ".join(padded(first, _GROUP) for first in firsts).rstrip()
 
@@ -93,7 +96,7 @@ def _marks(grid: VerdictWords, id: str, block: Sequence[int]) -> Iterator[Piece]
 
 
 def _left_out(grid: VerdictWords, rows: Sequence[str], columns: Sequence[int]) -> Iterator[Line]:
-    """What the table does not have, in one line; none of it is worse than what it has."""
+    """Line with the counts of rows and columns that are not shown."""
     kept_runs, kept_ids = {*columns}, {*rows}
     words = Counter(
         word
@@ -117,7 +120,7 @@ def _left_out(grid: VerdictWords, rows: Sequence[str], columns: Sequence[int]) -
 
 
 def _legend(grid: VerdictWords, bad: Sequence[int], screen: Screen) -> Iterator[Line]:
-    """The names of the worst runs, and how many more there are."""
+    """The names of the worst runs, and the number of further ones."""
     if bad:
         yield _BLANK
     for run in bad[:MOST_NAMES]:

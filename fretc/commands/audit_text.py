@@ -1,4 +1,4 @@
-"""What `fretc audit` prints for a person: the verdicts, the one to look at first, the counts."""
+"""Text output of `fretc audit`: the verdicts, the first one to examine, the counts."""
 
 from __future__ import annotations
 
@@ -36,23 +36,23 @@ from fretish.diagnostics.rendering import visible
 from fretish.documents import named
 
 _FIRST_DATE = 10**17
-"""Nanoseconds, in 1973: a clock that tells less is simulated, and counts from its own zero."""
+"""Nanoseconds, a date in 1973: an earlier time stamp is of a simulated clock that starts at 0."""
 
 
 _LONGEST_NAME = 48
-"""Columns of the name of a requirement, at least, before it is shortened."""
+"""Minimum number of columns for a requirement's name before it is shortened."""
 
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """Where the user keeps what an audit reads and writes, as named on the command line."""
+    """Paths that an audit reads and writes, as named on the command line."""
 
     requirements: str
     bindings: str | None
     evidence: str
 
     def commands(self, id: str) -> Iterator[str]:
-        """Those that show more of a requirement."""
+        """Commands that show more about a requirement."""
         folder = self._option("--requirements", self.requirements, REQUIREMENTS_FOLDER)
         project = f"{folder}{self._option('--bindings', self.bindings, None)}"
         if self.evidence != "-":
@@ -61,7 +61,7 @@ class Places:
 
     @property
     def evidence_option(self) -> str:
-        """What names the evidence to a command that reads it; empty where it finds it by itself."""
+        """The `--evidence` option for other commands; empty for the default path."""
         default = self.evidence if self.evidence in (EVIDENCE, STORE) else None
         return self._option("--evidence", self.evidence, default)
 
@@ -72,28 +72,28 @@ class Places:
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """An audit, and what its text needs beside it."""
+    """An audit, and the other values that its text shows."""
 
     source: EvidenceSource
     marks: VerdictWords
     estimates: Sequence[Estimated]
     project: Project
     refused: Collection[str]
-    """The ids of requirements that could not be compared with any run."""
+    """Ids of requirements that could not be evaluated on any run."""
     places: Places
     seconds: float
-    """That the audit took."""
+    """Duration of the audit."""
 
 
 def lines(subject: Subject, screen: Screen, *, every: bool) -> Iterator[Line]:
     """All lines, the counts last.
 
     Args:
-        subject: what is shown.
-        screen: where.
-        every: list each result also where a table would have them.
+        subject: the audit.
+        screen: the output screen.
+        every: list each result, also where a table would show it.
     """
-    titles = {each.id: each.title for each in subject.project.requirements}
+    titles = {requirement.id: requirement.title for requirement in subject.project.requirements}
     if every or len(subject.marks.names) == 1:
         yield from _listed(subject, titles, screen)
     else:
@@ -107,7 +107,7 @@ def lines(subject: Subject, screen: Screen, *, every: bool) -> Iterator[Line]:
 
 
 def _situations(subject: Subject) -> Iterator[Line]:
-    """How much of the requirements the runs have exercised, and the command that says more."""
+    """Number of situations that the runs exercised, and the command that lists them."""
     _, found = of_all_runs(subject.source)
     if any(each.situations for each in found):
         printed = subject.places.evidence == "-"
@@ -133,7 +133,7 @@ def _listed(subject: Subject, titles: Mapping[str, str], screen: Screen) -> Iter
 
 
 def _estimate(one: Estimated, name: str) -> Iterator[Line]:
-    """What all runs say of a requirement with a probability, the answer in its colour."""
+    """Estimate of a requirement with a probability over all runs."""
     first, *rest = one.lines
     verdict = VERDICTS[one.answer]
     yield ((visible(f"{name} over all runs, {one.text}"), None),)
@@ -142,7 +142,7 @@ def _estimate(one: Estimated, name: str) -> Iterator[Line]:
 
 
 def summary(subject: Subject, status: int) -> dict[str, Any]:
-    """What `--notify` tells: a text for a person, and its numbers for a program."""
+    """JSON summary for `--notify`: a text and numbers."""
     last = "".join(text for text, _ in _last(subject)).rsplit("  ", 1)[0]
     worst_first = [*_first_to_look_at(subject, commands=False)]
     marks = subject.marks
@@ -157,7 +157,7 @@ def summary(subject: Subject, status: int) -> dict[str, Any]:
 
 
 def _first_to_look_at(subject: Subject, *, commands: bool = True) -> Iterator[str]:
-    """The worst result, and the commands that show more; nothing where all is shown."""
+    """The worst result, and the commands that show more; nothing if all are satisfied."""
     place = subject.marks.worst
     ((_, result),) = subject.source.details([place]) if place is not None else ((0, None),)
     refuted = next((one for one in subject.estimates if one.answer == REFUTED), None)
@@ -176,7 +176,7 @@ def _first_to_look_at(subject: Subject, *, commands: bool = True) -> Iterator[st
 
 
 def _details(result: Result, subject: Subject) -> Iterator[str]:
-    """The longest violation of a result, or the reason of another verdict."""
+    """The longest violation of a result, or the reason for another verdict."""
     violation = longest(result)
     if violation is None:
         yield result.reason
@@ -186,7 +186,7 @@ def _details(result: Result, subject: Subject) -> Iterator[str]:
 
 
 def _name(subject: Subject, id: str) -> str:
-    """Of a requirement: its title and id; its id and sentence, where it has no title."""
+    """Title and id of a requirement, or id and sentence if it has no title."""
     requirement = next((each for each in subject.project.requirements if each.id == id), None)
     if requirement is None or requirement.title:
         return requirement.name if requirement else id
@@ -194,10 +194,10 @@ def _name(subject: Subject, id: str) -> str:
 
 
 def _violation(result: Result, violation: Violation) -> Iterator[str]:
-    """When it was, what was demanded, the values then, and the limits.
+    """Time, demand, values and limits of a violation.
 
     Args:
-        result: in declared units.
+        result: result in declared units.
         violation: one of its violations.
     """
     first, start = violation.start_ns, result.start_ns or 0

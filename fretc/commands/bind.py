@@ -1,4 +1,4 @@
-"""`fretc bind`: draft bindings from a log, or check what bindings see in logs."""
+"""`fretc bind`: draft bindings from a log, or check bindings against logs."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import OF_AUDITS, list_mistaken
+from fretc.commands.opening import AUDIT_TABLES, print_requirements_with_errors
 from fretc.terminal.options import (
-    OF_LOGS,
+    LOG_EXTRAS,
     PATH,
     bindings_option,
     extras,
@@ -22,15 +22,15 @@ from fretc.terminal.options import (
     requirements_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    NOT_SHOWN,
-    SHOWN,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
     coloured,
-    deliver,
-    fail_at_the_end,
-    say,
-    say_briefly,
-    stop,
+    fail,
+    fail_at_end,
+    print_diagnostics,
+    print_project_diagnostics,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    epilog=extras(OF_LOGS),
+    epilog=extras(LOG_EXTRAS),
 )
 @click.argument("paths", nargs=-1, type=PATH, metavar="[LOG...]")
 @path_option("--from", "source", metavar="LOG", help="Draft bindings from this log.")
@@ -58,7 +58,7 @@ def bind(
     bindings: str | None,
     output: str,
     force: bool,
-    form: str,
+    output_format: str,
     jobs: int,
 ) -> None:
     """Draft bindings from a log, or check bindings against logs.
@@ -75,30 +75,36 @@ def bind(
     """
     drafts = source is not None
     if drafts == check:
-        stop(_not_one_mode())
+        fail(_not_one_mode())
     if source is not None:
         if paths:
-            stop(_second_log(paths[0]))
+            fail(_second_log(paths[0]))
         project = _project(requirements, bindings, replaced=output)
-        say([each for each in project.diagnostics if each.is_error and not _is_in(each, output)])
+        print_diagnostics(
+            [
+                diagnostic
+                for diagnostic in project.diagnostics
+                if diagnostic.is_error and not _is_in(diagnostic, output)
+            ]
+        )
         _draft(source, project, output, force=force)
     elif not paths:
-        stop(Diagnostic(Code.NOTHING_TO_DO, "no log was given to check", help="name the logs"))
+        fail(Diagnostic(Code.NOTHING_TO_DO, "no log was given to check", help="name the logs"))
     else:
         project = _project(requirements, bindings)
-        _check(paths, project, requirements, form, jobs)
+        _check(paths, project, requirements, output_format, jobs)
 
 
 def _project(requirements: str, bindings: str | None, replaced: str | None = None) -> Project:
-    """The requirements and their bindings. Mistakes fail the command in the end.
+    """The requirements and their bindings. Errors make the command exit with 2 at its end.
 
-    It stops where no part of the bindings can be used. There may be no requirements at all, unless
-    the user names where they are.
+    The command stops if no part of the bindings can be used. Requirements may be missing, unless
+    the user names their path.
 
     Args:
         requirements: a folder or a file.
-        bindings: their file; None: the one beside the requirements, if any.
-        replaced: a file that the command will write; mistakes in what it holds now do not count.
+        bindings: bindings file; None: the one beside the requirements, if any.
+        replaced: file that the command will write; errors in its present content do not count.
     """
     from compiler.project.folder import load
     from compiler.project.paths import requirement_files, sibling_path
@@ -106,19 +112,21 @@ def _project(requirements: str, bindings: str | None, replaced: str | None = Non
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         if is_given("requirements"):
-            stop(files)
+            fail(files)
         files = []
-    project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
+    project = load(
+        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
+    )
     relevant = [d for d in project.diagnostics if replaced is None or not _is_in(d, replaced)]
     if has_errors(relevant):
-        fail_at_the_end()
+        fail_at_end()
     if has_errors(each for each in project.general if each in relevant):
-        stop(*relevant)
+        fail(*relevant)
     return project
 
 
 def _is_in(diagnostic: Diagnostic, path: str) -> bool:
-    """Whether the place of the diagnostic is in this file."""
+    """Whether the diagnostic is about this file."""
     span = diagnostic.span
     return span is not None and os.path.realpath(span.source.name) == os.path.realpath(path)
 
@@ -136,24 +144,24 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
-        stop(_exists(output))
+        fail(_exists(output))
     contents = look(log, words=True)
     if isinstance(contents, Diagnostic):
-        stop(contents)
-    say(contents.recording.findings)
+        fail(contents)
+    print_diagnostics(contents.recording.findings)
     text = draft(
         contents, missing_propositions(project), durations(project), missing_signals(project)
     )
-    deliver({Path(output): text}, (log,))
-    raise SystemExit(SHOWN)
+    write_outputs({Path(output): text}, (log,))
+    raise SystemExit(EXIT_OK)
 
 
 def _exists(path: str) -> Diagnostic:
-    """F905: only `--force` writes over a file."""
+    """F905: a file exists, and `--force` is not given."""
     return Diagnostic(
         Code.NOT_WRITTEN,
         f"`{path}` already exists",
-        help="name another file with `-o`, or write over it with `--force`",
+        help="name another file with `-o`, or overwrite it with `--force`",
     )
 
 
@@ -167,10 +175,10 @@ def _not_one_mode() -> Diagnostic:
 
 
 def _second_log(path: str) -> Diagnostic:
-    """F907: a LOG beside the one of `--from`."""
+    """F907: a LOG in addition to that of `--from`."""
     return Diagnostic(
         Code.BAD_USAGE,
-        f"a draft is made from one log, and `{path}` is one more",
+        f"bindings are drafted from one log, but a second one is given: `{path}` is one more",
         help="name one log after `--from`",
     )
 
@@ -179,7 +187,7 @@ def _second_log(path: str) -> Diagnostic:
 
 
 def _check(
-    paths: tuple[str, ...], project: Project, requirements: str, form: str, jobs: int
+    paths: tuple[str, ...], project: Project, requirements: str, output_format: str, jobs: int
 ) -> None:
     from fretc.audit.bindings.coverage import coverage
     from fretc.audit.log_paths import logs as logs_of
@@ -187,23 +195,31 @@ def _check(
 
     logs = logs_of(paths)
     if isinstance(logs, Diagnostic):
-        stop(logs)
+        fail(logs)
     if project.declarations is None:
-        stop(_no_bindings())
-    plan = planned(project)  # not a plan where no requirement can be audited: bindings still can
+        fail(_no_bindings())
+    plan = planned(
+        project
+    )  # Not an audit plan: bindings can be checked even if no requirement can be audited.
     result = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
     if isinstance(result, Diagnostic):
-        stop(*([each for each in project.diagnostics if each.is_error] or [result]))
+        fail(
+            *([diagnostic for diagnostic in project.diagnostics if diagnostic.is_error] or [result])
+        )
     unbound = [each for each in _unbound(project) if each not in project.diagnostics]
     diagnostics = [*unbound, *project.diagnostics, *project.answered(result.diagnostics)]
-    say_briefly(diagnostics, requirements)
-    list_mistaken(project)
-    click.echo(result.as_json if form == "json" else coloured(result.text), nl=False)
-    raise SystemExit(BAD if has_errors(diagnostics) else SHOWN if result.shown else NOT_SHOWN)
+    print_project_diagnostics(diagnostics, requirements)
+    print_requirements_with_errors(project)
+    click.echo(result.as_json if output_format == "json" else coloured(result.text), nl=False)
+    raise SystemExit(
+        EXIT_USAGE if has_errors(diagnostics) else EXIT_OK if result.shown else EXIT_INCONCLUSIVE
+    )
 
 
 def _unbound(project: Project) -> list[Diagnostic]:
-    """Of each proposition that a requirement names and the bindings do not define.
+    """A diagnostic for each proposition that a requirement names and the bindings do not define.
+
+        Retired requirements are skipped, because no audit evaluates them.
 
     Retired requirements do not count: no audit judges them.
     """

@@ -1,4 +1,4 @@
-"""The command about a project as a whole, before any run."""
+"""`fretc check`: report errors and warnings of a project, before any run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import click
 
 from fretc.terminal.options import (
-    PATH,
     analysis_option,
     bindings_option,
     evidence_option,
@@ -17,11 +16,18 @@ from fretc.terminal.options import (
     format_option,
     hazards_option,
     is_given,
-    places,
     requirements_option,
     verification_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say_all, say_line, stop
+from fretc.terminal.output import (
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
+    fail,
+    print_diagnostic_groups,
+    print_status,
+    write_outputs,
+)
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.rendering import as_json, visible
 
@@ -33,7 +39,6 @@ if TYPE_CHECKING:
 @click.command(
     epilog=extras({"reqif": "parents in a .reqif"}),
 )
-@click.argument("folder", required=False, type=PATH, metavar="")
 @requirements_option
 @bindings_option
 @hazards_option
@@ -54,7 +59,6 @@ if TYPE_CHECKING:
 )
 @format_option()
 def check(
-    folder: str | None,
     requirements: str,
     bindings: str | None,
     hazards: str | None,
@@ -63,7 +67,7 @@ def check(
     analysis: str | None,
     analyze: bool,
     fix: bool,
-    form: str,
+    output_format: str,
 ) -> None:
     """Report errors and warnings of a project, before any run.
 
@@ -93,12 +97,11 @@ def check(
     from fretc.traceability.waivers import read as read_waivers
     from fretc.verification.reader import known as proven
 
-    (requirements,) = places([folder] if folder is not None else [], requirements)
     if fix:
         _fix(requirements)
     project = load_folder(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
-        stop(project)
+        fail(project)
     units = first_unit(project.formalized)
     diagnostics = [*project.diagnostics, *([units] if units is not None else [])]
     audited = (required_source if is_given("evidence") else source)(evidence)
@@ -136,11 +139,11 @@ def check(
     if analyze:
         diagnostics.extend(_together(project.sound, analyzed))
     diagnostics.extend(warnings(project, standings, lock, results))
-    _finish(tuple(dict.fromkeys(diagnostics)), len(project.requirements), form)
+    _finish(tuple(dict.fromkeys(diagnostics)), len(project.requirements), output_format)
 
 
 def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnostic]:
-    """F561 for each conflict, F562 where there is no answer."""
+    """F561 for each conflict, F562 if realizability is unknown."""
     from fretc.analysis.analysis import DEFAULT
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.assumptions import assumptions
@@ -164,28 +167,28 @@ def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnosti
 
 
 def _fix(folder: str) -> None:
-    """Apply the safe fixes, to all files or to none, and list each."""
+    """Apply the safe fixes to all files or to none, and list each fix."""
     from compiler.project.fixes import fixed_files
     from compiler.project.paths import requirement_files
 
     paths = requirement_files(folder)
     files = () if isinstance(paths, Diagnostic) else fixed_files(paths)
-    deliver({Path(file.path): file.text for file in files})
+    write_outputs({Path(file.path): file.text for file in files})
     for fix in (fix for file in files for fix in file.fixes):
         place = f"{fix.span.source.name}:{fix.span.line}:{fix.span.column}"
-        say_line(visible(f"fixed {place}: {fix.change}"))
+        print_status(visible(f"fixed {place}: {fix.change}"))
     if files:
-        say_line("")
+        print_status("")
 
 
-def _finish(diagnostics: tuple[Diagnostic, ...], count: int, form: str) -> None:
-    """Print them, and exit with what they mean."""
+def _finish(diagnostics: tuple[Diagnostic, ...], count: int, output_format: str) -> None:
+    """Print the diagnostics and exit with the matching status."""
     from compiler.files.templating import to_json
 
     accepted = [d for d in diagnostics if d.accepted]
     errors = sum(d.is_error for d in diagnostics)
     warnings = sum(d.is_open for d in diagnostics)
-    if form == "json":
+    if output_format == "json":
         counts = {
             "requirements": count,
             "mistakes": errors,
@@ -194,13 +197,13 @@ def _finish(diagnostics: tuple[Diagnostic, ...], count: int, form: str) -> None:
         }
         click.echo(to_json({**counts, "diagnostics": [as_json(d) for d in diagnostics]}))
     else:
-        say_all([d for d in diagnostics if not d.accepted], accepted)
+        print_diagnostic_groups([d for d in diagnostics if not d.accepted], accepted)
         if diagnostics:
-            say_line("")
-        counts_in_words = f"{_many(errors, 'mistake')}, {_many(warnings, 'warning')}"
+            print_status("")
+        counts_in_words = f"{_many(errors, 'error')}, {_many(warnings, 'warning')}"
         also = f", {len(accepted)} accepted" if accepted else ""
-        say_line(f"{_many(count, 'requirement')}: {counts_in_words}{also}")
-    raise SystemExit(BAD if errors else NOT_SHOWN if warnings else SHOWN)
+        print_status(f"{_many(count, 'requirement')}: {counts_in_words}{also}")
+    raise SystemExit(EXIT_USAGE if errors else EXIT_INCONCLUSIVE if warnings else EXIT_OK)
 
 
 def _many(count: int, what: str) -> str:

@@ -1,4 +1,4 @@
-"""The command that lets a shell complete what is typed after `fretc`."""
+"""`fretc completion`: print a completion script for a shell."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`fretc coverage`: what recorded runs have exercised of each requirement.
+"""`fretc coverage`: which situations recorded runs have exercised.
 
 `fretc.audit` reads the logs, `fretc.coverage` counts; this module reads the options and prints.
 """
@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import OF_AUDITS, plan_of
+from fretc.commands.opening import AUDIT_TABLES, plan_of
 from fretc.terminal.options import (
-    OF_LOGS,
+    LOG_EXTRAS,
     PATH,
     bindings_option,
     evidence_option,
@@ -24,13 +24,13 @@ from fretc.terminal.options import (
     tests_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    NOT_SHOWN,
-    SHOWN,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
     coloured,
-    say_also,
-    say_line,
-    stop,
+    fail,
+    print_diagnostics_below,
+    print_status,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    epilog=extras(OF_LOGS),
+    epilog=extras(LOG_EXTRAS),
 )
 @click.argument("paths", nargs=-1, type=PATH, metavar="[LOG]...")
 @requirements_option
@@ -64,7 +64,7 @@ def coverage(
     requirements: str,
     bindings: str | None,
     evidence: str,
-    form: str,
+    output_format: str,
     verbose: bool,
     tests: str | None,
     jobs: int,
@@ -86,11 +86,11 @@ def coverage(
     from fretc.coverage.directions import is_complete
 
     if paths and is_given("evidence"):
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
-                "logs and `--evidence` are both named: runs are in one of them",
-                help="leave out one of the two",
+                "logs and `--evidence` are both given, but the runs come from only one of them",
+                help="remove one of the two options",
             )
         )
     if paths:
@@ -99,31 +99,31 @@ def coverage(
         source, titles, is_bad = _recorded(evidence), {}, False
     covered = found_in(source)
     known = _directions(covered, tests)
-    if form == "json":
+    if output_format == "json":
         click.echo(record.text(covered, known), nl=False)
     else:
         found = text_output.lines(covered, titles, known, every=verbose)
         click.echo(coloured((visible(text), colour) for text, colour in found), nl=False)
     if is_bad:
-        raise SystemExit(BAD)
-    raise SystemExit(SHOWN if is_complete(covered, known) else NOT_SHOWN)
+        raise SystemExit(EXIT_USAGE)
+    raise SystemExit(EXIT_OK if is_complete(covered, known) else EXIT_INCONCLUSIVE)
 
 
 def _directions(covered: Coverage, named: str | None) -> Directions:
-    """How runs come by situations, as far as tests say; those of other sentences say nothing."""
+    """The verdicts with which tests reach situations; tests for other sentences are ignored."""
     from fretc.coverage.directions import directions
 
-    fingerprints = {each.id: each.fingerprint for each in covered.requirements}
+    fingerprints = {requirement.id: requirement.fingerprint for requirement in covered.requirements}
     suite = suite_of(named, fingerprints)
     return {} if suite is None else directions(suite, fingerprints)
 
 
 def suite_of(named: str | None, fingerprints: Mapping[str, str]) -> Suite | None:
-    """The tests that the user names, or that are there; None: there are none.
+    """The test suite of the user, or the default one if it exists; None: there is none.
 
     Args:
-        named: their file; None: the one that `fretc test` writes.
-        fingerprints: of each requirement: a line says of which of them the tests say nothing.
+        named: path of the suite; None: the default path of `fretc test`.
+        fingerprints: fingerprint of each requirement, to detect outdated tests.
     """
     from fretc.testing.reader import DEFAULT, read
 
@@ -131,12 +131,16 @@ def suite_of(named: str | None, fingerprints: Mapping[str, str]) -> Suite | None
         return None
     suite = read(named or DEFAULT)
     if isinstance(suite, Diagnostic):
-        stop(suite)
-    known = {each.id: each.fingerprint for each in suite.requirements}
+        fail(suite)
+    known = {requirement.id: requirement.fingerprint for requirement in suite.requirements}
     other = [id for id, own in fingerprints.items() if known.get(id, own) != own]
     if other:
         which = ", ".join(other)
-        say_line(visible(f"the tests are of other sentences of {which}: `fretc test` makes them"))
+        print_status(
+            visible(
+                f"the tests were generated for earlier sentences of {which}: run `fretc test` again"
+            )
+        )
     return suite
 
 
@@ -145,16 +149,16 @@ def _recorded(evidence: str) -> EvidenceSource:
 
     source = required_source(evidence)
     if isinstance(source, Diagnostic):
-        stop(source)
+        fail(source)
     return source
 
 
 def _audited(
     paths: Sequence[str], requirements: str, bindings: str | None, jobs: int
 ) -> tuple[EvidenceSource, dict[str, str], bool]:
-    """The audit of some logs, what requirements are called, and whether some input was bad.
+    """The audit of some logs, the titles of requirements, and whether some input was bad.
 
-    Nothing is written.
+    No file is written.
     """
     from fretc.audit.many_logs import local_executor
     from fretc.commands.audit_logs import selected
@@ -164,20 +168,22 @@ def _audited(
     logs, _ = selected(paths, None, None, 0)
     audit = audit_in_memory(plan, logs, local_executor(jobs))
     diagnostics = project.answered(audit.diagnostics)
-    say_also(diagnostics, project.diagnostics)
+    print_diagnostics_below(diagnostics, project.diagnostics)
     if not audit.read:
-        raise SystemExit(BAD)
-    titles = {each.id: each.name for each in project.requirements}
+        raise SystemExit(EXIT_USAGE)
+    titles = {requirement.id: requirement.name for requirement in project.requirements}
     return audit.source, titles, has_errors(diagnostics)
 
 
 def planned_project(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
-    """The project, and the plan to audit what of it can be judged."""
+    """The project, and the audit plan for its usable requirements."""
     from compiler.project.folder import load
     from compiler.project.paths import requirement_files, sibling_path
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
-        stop(files)
-    project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
+        fail(files)
+    project = load(
+        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
+    )
     return project, plan_of(project, requirements)

@@ -1,4 +1,4 @@
-"""The command that explains: a requirement by its id or file, or the code of a diagnostic."""
+"""`fretc explain`: explain a requirement, or the code of a diagnostic."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import list_refused
+from fretc.commands.opening import print_excluded
 from fretc.terminal.group import is_sentence
 from fretc.terminal.options import (
     PATH,
@@ -19,7 +19,14 @@ from fretc.terminal.options import (
     path_option,
     requirements_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, deliver, fail_at_the_end, say, stop
+from fretc.terminal.output import (
+    EXIT_INCONCLUSIVE,
+    EXIT_USAGE,
+    fail,
+    fail_at_end,
+    print_diagnostics,
+    write_outputs,
+)
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
 
 if TYPE_CHECKING:
@@ -37,7 +44,7 @@ if TYPE_CHECKING:
 @format_option()
 @path_option("--svg", "picture", help="Write the timing diagram to this file. `-` prints it.")
 def explain(
-    what: str, requirements: str, bindings: str | None, form: str, picture: str | None
+    what: str, requirements: str, bindings: str | None, output_format: str, picture: str | None
 ) -> None:
     """Explain a requirement, or the code of a message.
 
@@ -52,8 +59,14 @@ def explain(
     code = None if is_file else _code(what)
     if code is not None:
         if picture is not None:
-            stop(Diagnostic(Code.BAD_USAGE, "a code has no picture", help="leave `--svg` out"))
-        _explain_code(code, form)
+            fail(
+                Diagnostic(
+                    Code.BAD_USAGE,
+                    "`--svg` draws a requirement, not a diagnostic code",
+                    help="remove `--svg`",
+                )
+            )
+        _explain_code(code, output_format)
         return
     if is_sentence(what):
         formalized = _typed(what, requirements, bindings)
@@ -61,12 +74,12 @@ def explain(
         formalized = _rules(what, requirements, bindings, is_file=is_file)
     if picture is not None and len(formalized) > 1:
         fix = f"name one of them: `fretc explain {quote(formalized[0].id)}`"
-        stop(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=fix))
-    _explain_rules(formalized, form, picture)
+        fail(Diagnostic(Code.BAD_USAGE, f"`{what}` contains several requirements", help=fix))
+    _explain_rules(formalized, output_format, picture)
 
 
 def _is_path(what: str) -> bool:
-    """A folder is one only where it is written like a path: an id may be the name of a folder."""
+    """Whether the argument is a path; a bare word is an id, also if a folder has its name."""
     return Path(what).is_file() or (os.sep in what and Path(what).is_dir())
 
 
@@ -74,18 +87,18 @@ def _code(what: str) -> Code | None:
     return next((code for code in Code if code.number == what.upper()), None)
 
 
-def _explain_code(code: Code, form: str) -> None:
+def _explain_code(code: Code, output_format: str) -> None:
     from compiler.files.templating import to_json
     from fretish.diagnostics import explanations
 
-    if form == "json":
+    if output_format == "json":
         click.echo(to_json(explanations.as_record(code)))
     else:
         click.echo(explanations.text(code), nl=False)
 
 
 _MOST_TICKS = 100_000
-"""Of a duration: a picture has a column for each of them."""
+"""Maximum duration in a diagram, which has a column for each tick."""
 
 
 def _too_long(requirement: FormalizedRequirement) -> Diagnostic:
@@ -98,7 +111,7 @@ def _too_long(requirement: FormalizedRequirement) -> Diagnostic:
 
 
 def _explain_rules(
-    requirements: Sequence[FormalizedRequirement], form: str, picture: str | None
+    requirements: Sequence[FormalizedRequirement], output_format: str, picture: str | None
 ) -> None:
     from compiler.explanation import explain as explanation
     from compiler.explanation.drawing import svg
@@ -106,20 +119,20 @@ def _explain_rules(
 
     for requirement in requirements:
         if (requirement.ticks or 0) > _MOST_TICKS:
-            stop(_too_long(requirement))
+            fail(_too_long(requirement))
     explained = [explanation.explanation(requirement) for requirement in requirements]
     if picture != "-":
-        if form == "json":
+        if output_format == "json":
             click.echo(to_json([explanation.as_record(each) for each in explained]))
         else:
             click.echo("\n".join(map(explanation.text, explained)), nl=False)
     if picture is not None:
         sources = [requirement.entry.wording.source.name for requirement in requirements]
-        deliver({Path(picture): svg(explained[0].picture)}, protected=sources)
+        write_outputs({Path(picture): svg(explained[0].picture)}, protected=sources)
 
 
 def _typed(sentence: str, folder: str, bindings: str | None) -> list[FormalizedRequirement]:
-    """A sentence as a requirement; the clock of the project, if any, says what a second is."""
+    """A sentence as a requirement; the project's clock, if any, gives the length of a tick."""
     from compiler.formalization.binding_agreement import broken_tables
     from compiler.formalization.formalize import formalize
     from compiler.project.folder import load
@@ -130,48 +143,50 @@ def _typed(sentence: str, folder: str, bindings: str | None) -> list[FormalizedR
     project = load([], bindings or sibling_path(folder, BINDINGS), reads=())
     entry = RequirementEntry("sentence", Source("<sentence>", sentence.strip()).span())
     requirement, remarks = formalize(entry, project.declarations)
-    say([*project.diagnostics, *remarks])
+    print_diagnostics([*project.diagnostics, *remarks])
     if has_errors(project.diagnostics):
-        fail_at_the_end()
+        fail_at_end()
     if requirement is None or has_errors((*project.general, *remarks)):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     if requirement.declarations is not None and [
         *broken_tables(requirement, requirement.declarations)
     ]:
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     return [requirement]
 
 
 def _rules(
     what: str, folder: str, bindings: str | None, *, is_file: bool
 ) -> list[FormalizedRequirement]:
-    """The requirements asked for; exits where there is none."""
+    """The requirements to explain; exits if there is none."""
     from compiler.project.folder import load
     from compiler.project.paths import expanded_paths, requirement_files
 
     paths = expanded_paths([what]) if is_file else requirement_files(folder)
     if isinstance(paths, Diagnostic):
-        stop(_unknown_code(what) or paths)
+        fail(_unknown_code(what) or paths)
     project = load(paths, bindings, reads=())
     ids = [entry.id for entry in project.requirements]
     matches = ids if is_file else [id for id in ids if id.casefold() == what.casefold()]
     if not matches:
         _say_of(project, ())
-        stop(_unknown(what, ids, folder, is_file=is_file))
+        fail(_unknown(what, ids, folder, is_file=is_file))
     subjects = [r for r in project.requirements if r.id in matches]
     _say_of(project, subjects)
     requirements = [
         requirement for requirement in project.sound.formalized if requirement.id in matches
     ]
     if not requirements:
-        raise SystemExit(NOT_SHOWN)  # free text, or a mistake, which wins
+        raise SystemExit(
+            EXIT_INCONCLUSIVE
+        )  # Free text has status 3; an error has status 2 and wins.
     refused = {r.requirement.id: r.why for r in project.refused if r.requirement.id in matches}
-    list_refused(refused, len(subjects))
+    print_excluded(refused, len(subjects))
     return requirements
 
 
 def _say_of(project: Project, subjects: Sequence[RequirementEntry]) -> None:
-    """Print what there is to say of the chosen requirements and of the bindings."""
+    """Print the diagnostics of the chosen requirements and of the bindings."""
     others = {
         diagnostic
         for requirement in project.requirements
@@ -182,13 +197,13 @@ def _say_of(project: Project, subjects: Sequence[RequirementEntry]) -> None:
         and _nearest(project, diagnostic) is requirement
     }
     own = [diagnostic for diagnostic in project.diagnostics if diagnostic not in others]
-    say(own)
+    print_diagnostics(own)
     if has_errors(own):
-        fail_at_the_end()
+        fail_at_end()
 
 
 def _nearest(project: Project, diagnostic: Diagnostic) -> RequirementEntry | None:
-    """The requirement that a place in its file belongs to: the first that does not end before."""
+    """The requirement at a position in its file: the first one that does not end before it."""
     assert diagnostic.span is not None
     for requirement in project.requirements:
         wording = requirement.wording
@@ -198,23 +213,23 @@ def _nearest(project: Project, diagnostic: Diagnostic) -> RequirementEntry | Non
 
 
 def _unknown_code(what: str) -> Diagnostic | None:
-    """F515 for a word that looks like a code and is none."""
+    """F515 for an unknown diagnostic code."""
     if not re.fullmatch(r"[Ff]\d+", what):
         return None
     area = [code.number for code in Code if code.number[1] == what[1]]
     return Diagnostic(
         Code.NO_SUCH_REQUIREMENT,
-        f"no diagnostic has the code `{what.upper()}`, and no requirement that id",
+        f"`{what.upper()}` is neither a diagnostic code nor the id of a requirement",
         help=f"there are {', '.join(sorted(area))}" if area else "codes begin with F1 to F9",
     )
 
 
 def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Diagnostic:
-    """F515; a word that looks like a code is taken for one."""
+    """F515 for an unknown requirement, or F515 for an unknown code if it looks like one."""
     if is_file:
         return Diagnostic(
             Code.NO_SUCH_REQUIREMENT,
-            f"`{what}` holds no requirement",
+            f"`{what}` contains no requirement",
             help="write one: `whenever p the robot shall within 3 ticks satisfy q`",
         )
     if (unknown_code := _unknown_code(what)) is not None:
@@ -222,7 +237,7 @@ def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Di
     if any(character.isspace() for character in what):
         return Diagnostic(
             Code.NO_SUCH_REQUIREMENT,
-            f"`{what}` is no id",
+            f"`{what}` is not the id of a requirement",
             help='pipe a sentence in: `echo "the robot shall ..." | fretc explain -`',
         )
     near = suggestion(what, ids)

@@ -1,4 +1,4 @@
-"""The commands about requirements: formalize and emit, format, import."""
+"""The commands about requirement files: formalize and emit, `fmt`, `import`."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from typing import TYPE_CHECKING
 import click
 
 from compiler.emit import TARGETS
-from fretc.commands.opening import sound_part
+from fretc.commands.opening import usable_part
 from fretc.terminal.group import DEFAULT, Compile
 from fretc.terminal.options import PATH, format_option, output_option, path_option
 from fretc.terminal.output import (
-    BAD,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
     REQUIREMENTS_FOLDER,
-    SHOWN,
-    VIOLATION,
-    deliver,
-    fail_at_the_end,
-    say,
-    say_line,
-    stop,
+    fail,
+    fail_at_end,
+    print_diagnostics,
+    print_status,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
@@ -70,7 +70,7 @@ def compile_(
     kinds: tuple[str, ...],
     output: str,
     bindings: str | None,
-    form: str,
+    output_format: str,
     notation: str,
     simplify: bool,
     one_file: bool,
@@ -89,22 +89,26 @@ def compile_(
     if one_file and not any(TARGETS[kind].joins for kind in kinds):
         *most, last = (f"`--emit {name}`" for name, each in TARGETS.items() if each.joins)
         joining = f"{', '.join(most)} and {last}"
-        stop(Diagnostic(Code.BAD_USAGE, f"`--one-file` is for {joining}", help="add one of them"))
+        fail(
+            Diagnostic(
+                Code.BAD_USAGE, f"`--one-file` applies only to {joining}", help="add one of them"
+            )
+        )
     if weaken:
         _check_weaken(kinds)
     paths = expanded_paths(files)
     if isinstance(paths, Diagnostic):
-        stop(paths)
+        fail(paths)
     of_loop = any(TARGETS[kind].of_loop for kind in kinds)
     project = load(paths, bindings, reads=("interceptor", "assume") if of_loop else ())
     undecided = _undecided(project.sound.formalized)
-    say([*project.diagnostics, *project.answered(undecided)])
-    if form == "json" and set(kinds) <= {"ltl"} and not has_errors(project.general):
+    print_diagnostics([*project.diagnostics, *project.answered(undecided)])
+    if output_format == "json" and set(kinds) <= {"ltl"} and not has_errors(project.general):
         if has_errors(project.diagnostics):
-            fail_at_the_end()
+            fail_at_end()
         _deliver_formulas(project, output if kinds else "-")
         return
-    project = sound_part(project, others=any(TARGETS[kind].of_bindings for kind in kinds))
+    project = usable_part(project, others=any(TARGETS[kind].of_bindings for kind in kinds))
     from compiler.targets.target import Options
 
     free_texts = tuple(f.requirement for f in project.failed if not f.diagnostic.is_error)
@@ -124,7 +128,7 @@ def compile_(
 
 
 def _undecided(requirements: Sequence[FormalizedRequirement]) -> list[Diagnostic]:
-    """F203 for each requirement that no run decides: the same, whatever is made of it."""
+    """F203 for each requirement that no finite run decides; reported once for all targets."""
     monitor = TARGETS["monitor"]
     remarks = [
         monitor.remark(requirement)
@@ -135,15 +139,21 @@ def _undecided(requirements: Sequence[FormalizedRequirement]) -> list[Diagnostic
 
 
 def _check_weaken(kinds: Sequence[str]) -> None:
-    """F907 where no kind of file that is asked for has a weaker form."""
+    """F907 if no requested target has a weaker form."""
     weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
     if not any(TARGETS[kind].weak for kind in kinds):
-        message = f"`--weaken` is for {' and '.join(weak)}"
-        stop(Diagnostic(Code.BAD_USAGE, message, help="other files never weaken a requirement"))
+        message = f"`--weaken` applies only to {' and '.join(weak)}"
+        fail(
+            Diagnostic(
+                Code.BAD_USAGE,
+                message,
+                help="remove `--weaken`: other kinds of files never weaken a requirement",
+            )
+        )
 
 
 def _deliver_formulas(project: Project, output: str) -> None:
-    """The array of `--emit ltl --format json`, in the order of the files."""
+    """Write the JSON array of `--emit ltl --format json`, in the order of the files."""
     from compiler.emit import renamed_propositions
     from compiler.files.templating import to_json
     from compiler.formalization.record import failed, formulas
@@ -155,7 +165,7 @@ def _deliver_formulas(project: Project, output: str) -> None:
     records |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
     records |= {id(r.requirement): failed(r.requirement, r.why[0]) for r in project.refused}
     text = to_json([records[id(r)] for r in project.requirements])
-    deliver({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})
+    write_outputs({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})
 
 
 def _print_formulas(project: Project, options: Options) -> None:
@@ -173,7 +183,7 @@ def _emit(
     options: Options,
     remarks: Sequence[Diagnostic],
 ) -> None:
-    """Write whatever can be; what a target refuses is reported and keeps nothing else from it."""
+    """Write the files of all targets; a refusal of one target does not affect the others."""
     named = [TARGETS[kind] for kind in kinds]
     targets = [(options.weaken and target.weak) or target for target in named]
     outputs = [(target, *_emitted(target, project, options)) for target in targets]
@@ -181,15 +191,15 @@ def _emit(
     jobs = [
         (target, requirements) for target, requirements, _ in outputs if requirements is not None
     ]
-    say(refusals)
+    print_diagnostics(refusals)
     of_rules = [
         d
         for target, requirements in jobs
         for requirement in requirements
         if (d := target.remark(requirement))
     ]
-    say(project.answered(remark for remark in of_rules if remark not in remarks))
-    say(project.answered(d for target, _ in jobs for d in target.remarks(options)))
+    print_diagnostics(project.answered(remark for remark in of_rules if remark not in remarks))
+    print_diagnostics(project.answered(d for target, _ in jobs for d in target.remarks(options)))
     files = {
         target.name: {str(a.path): a.text for a in target.emit(requirements, options)}
         for target, requirements in jobs
@@ -198,20 +208,20 @@ def _emit(
     first_time = output != "-" and not any((Path(output) / path).exists() for path in texts)
     _deliver_all(texts, output)
     if first_time and texts:
-        say_line(
+        print_status(
             _next_steps(project, {kind: next(iter(f)) for kind, f in files.items() if f}, output)
         )
     if refusals:
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
 
 
 def _next_steps(project: Project, firsts: Mapping[str, str], output: str) -> str:
-    """What can be done with files that are made for the first time.
+    """Print the next commands for files that are written for the first time.
 
     Args:
-        project: of which they are made.
-        firsts: name of each target → the first of its files.
-        output: the folder of the files.
+        project: the project of the files.
+        firsts: target name → its first file.
+        output: folder of the files.
     """
     steps = [
         TARGETS[kind].next_step.format(quote(str(Path(output) / path)))
@@ -220,14 +230,18 @@ def _next_steps(project: Project, firsts: Mapping[str, str], output: str) -> str
     ]
     source = project.requirements[0].wording.source.name
     if source != "<stdin>":
-        steps.append(f"`fretc explain {quote(source)}` shows what is meant, with a picture")
+        steps.append(
+            f"`fretc explain {quote(source)}` explains the requirement with a timing diagram"
+        )
     return "\n".join(visible(f"next: {step}") for step in steps)
 
 
 def _emitted(
     target: Target, project: Project, options: Options
 ) -> tuple[list[FormalizedRequirement] | None, list[Diagnostic]]:
-    """The requirements that the target accepts, None: no file at all; and what it refuses.
+    """The requirements that the target accepts, or None for no file; and the refusals.
+
+        A file that combines all requirements is written for all of them or not at all.
 
     A file of all requirements is made of all of them or not at all.
     """
@@ -242,7 +256,7 @@ def _emitted(
         whole += name_collisions(requirements)
     if target.together and any(
         each.is_error and each.code is Code.BAD_SETTINGS for each in project.diagnostics
-    ):  # a package says who answers for it: the settings do
+    ):  # The settings name the maintainer of a package.
         return None, wrong
     if project.refused and not target.of_bindings and (one_file or not target.per_rule):
         whole.append(_not_of_all(target, project.refused))
@@ -253,12 +267,12 @@ def _emitted(
 
 
 def _not_of_all(target: Target, refused: Sequence[Refused]) -> Diagnostic:
-    """F618: what is made of all requirements would lack some without a word of it."""
-    ids = ", ".join(each.requirement.id for each in refused)
+    """F618: a file that combines all requirements would lack some."""
+    ids = ", ".join(refusal.requirement.id for refusal in refused)
     return Diagnostic(
         Code.NOT_OF_ALL,
-        f"`--emit {target.name}` puts all requirements together, and some have mistakes: {ids}",
-        help="correct them, or name the files of the others",
+        f"`--emit {target.name}` combines all requirements, but some have errors: {ids}",
+        help="fix them, or name only the files of the other requirements",
     )
 
 
@@ -283,21 +297,21 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
 
     paths = expanded_paths(files)
     if isinstance(paths, Diagnostic):
-        stop(paths)
+        fail(paths)
     texts, wrong = formatted_files(paths)
     if wrong:
-        stop(*wrong)
+        fail(*wrong)
     changed = [file for file in texts if file.before != file.after]
     if output == "-" or files == ("-",):
         click.echo("".join(file.after for file in texts), nl=False)
     elif check:
         for file in changed:
-            say_line(f"would change {file.path}")
-        raise SystemExit(VIOLATION if changed else SHOWN)
+            print_status(f"would change {file.path}")
+        raise SystemExit(EXIT_VIOLATION if changed else EXIT_OK)
     else:
         for file in changed:
             path = Path(file.path)
-            deliver({path: file.after})
+            write_outputs({path: file.after})
 
 
 @click.command("import")
@@ -328,32 +342,32 @@ def import_(
 
     source = read(file)
     if isinstance(source, Diagnostic):
-        stop(source)
+        fail(source)
     columns = {"id": id_column, "text": text_column, "project": project_column}
     result = read_export(source, {part: name for part, name in columns.items() if name})
-    say(result.diagnostics)
+    print_diagnostics(result.diagnostics)
     if has_errors(result.diagnostics):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     files = {str(artifact.path): artifact.text for artifact in result.artifacts}
     clashes = [path for path in files if (Path(output) / path).exists()]
     if clashes and output != "-" and not force:
-        stop(_exists(str(Path(output) / clashes[0])))
+        fail(_exists(str(Path(output) / clashes[0])))
     _deliver_all(files, output)
     counts = f"{result.requirements} requirements, {result.variables} variables"
-    say_line(f"imported {counts}")
+    print_status(f"imported {counts}")
 
 
 def _deliver_all(files: Mapping[str, str], output: str) -> None:
-    """Below the folder; or one after the other on standard output, for `-`."""
+    """Write the files below the folder, or print them one after the other for `-`."""
     if output == "-":
-        deliver({Path("-"): "".join(files.values())})
+        write_outputs({Path("-"): "".join(files.values())})
     else:
-        deliver({Path(output) / path: text for path, text in files.items()})
+        write_outputs({Path(output) / path: text for path, text in files.items()})
 
 
 def _exists(path: str) -> Diagnostic:
     return Diagnostic(
         Code.NOT_WRITTEN,
         f"`{path}` already exists",
-        help="name another folder with `-o`, or write over it with `--force`",
+        help="name another folder with `-o`, or overwrite it with `--force`",
     )

@@ -1,21 +1,21 @@
-"""The command that says what is in a log."""
+"""`fretc info`: show the topics, rates and damage of logs."""
 
 from __future__ import annotations
 
 import click
 
-from fretc.terminal.options import OF_LOGS, PATH, extras, format_option
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, say, stop
+from fretc.terminal.options import LOG_EXTRAS, PATH, extras, format_option
+from fretc.terminal.output import EXIT_INCONCLUSIVE, EXIT_OK, EXIT_USAGE, fail, print_diagnostics
 from fretish.diagnostics.diagnostic import Diagnostic
 
 
 @click.command(
-    epilog=extras(OF_LOGS),
+    epilog=extras(LOG_EXTRAS),
 )
 @click.argument("paths", nargs=-1, required=True, type=PATH, metavar="LOG...")
 @click.option("--all", "whole", is_flag=True, help="List every field that a signal can read.")
 @format_option()
-def info(paths: tuple[str, ...], whole: bool, form: str) -> None:
+def info(paths: tuple[str, ...], whole: bool, output_format: str) -> None:
     """Show the topics, rates and damage of recorded runs.
 
     LOG is an MCAP file, a ROS bag (.bag, .db3), a folder (all logs below it), a quoted pattern
@@ -33,14 +33,16 @@ def info(paths: tuple[str, ...], whole: bool, form: str) -> None:
 
     logs = logs_of(paths)
     if isinstance(logs, Diagnostic):
-        stop(logs)
+        fail(logs)
     answers = [look(log) for log in logs]
     wrong = [one for one in answers if isinstance(one, Diagnostic)]
     contents = [one for one in answers if not isinstance(one, Diagnostic)]
-    say([*wrong, *(finding for one in contents for finding in one.recording.findings)])
-    if form == "json":
+    print_diagnostics(
+        [*wrong, *(finding for one in contents for finding in one.recording.findings)]
+    )
+    if output_format == "json":
         click.echo(to_json([as_record(one) for one in contents]))
     else:
         click.echo("\n".join(text(one, whole=whole) for one in contents), nl=False)
     intact = all(one.recording.intact for one in contents)
-    raise SystemExit(BAD if wrong else SHOWN if intact else NOT_SHOWN)
+    raise SystemExit(EXIT_USAGE if wrong else EXIT_OK if intact else EXIT_INCONCLUSIVE)

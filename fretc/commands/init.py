@@ -1,4 +1,4 @@
-"""`fretc init`: begin a project with one requirement, its bindings and its hazards."""
+"""`fretc init`: create a project with one requirement, its bindings and its hazards."""
 
 from __future__ import annotations
 
@@ -8,14 +8,20 @@ from shlex import quote
 
 import click
 
-from fretc.terminal.options import OF_LOGS, PATH, extras, path_option
-from fretc.terminal.output import REQUIREMENTS_FOLDER, deliver, say, say_line, stop
+from fretc.terminal.options import LOG_EXTRAS, PATH, extras, path_option
+from fretc.terminal.output import (
+    REQUIREMENTS_FOLDER,
+    fail,
+    print_diagnostics,
+    print_status,
+    write_outputs,
+)
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import visible
 
 
 @click.command(
-    epilog=extras(OF_LOGS),
+    epilog=extras(LOG_EXTRAS),
 )
 @click.argument("folder", default=".", type=PATH, metavar="[FOLDER]")
 @path_option(
@@ -36,32 +42,34 @@ def init(folder: str, log: str | None) -> None:
 
     requirements = Path(folder) / REQUIREMENTS_FOLDER
     if os.path.lexists(requirements) and not _is_empty_folder(requirements):
-        stop(_exists(str(requirements)))
+        fail(_exists(str(requirements)))
     if log == "-":
-        stop(_standard_input())
+        fail(_standard_input())
     beginning = without_log() if log is None else from_log(log)
     if isinstance(beginning, Diagnostic):
-        stop(beginning)
-    say(beginning.findings)
+        fail(beginning)
+    print_diagnostics(beginning.findings)
     files = {requirements / name: text for name, text in beginning.files.items()}
     if not _has_settings(Path(folder)):
         files[requirements / SETTINGS] = _settings_to_fill_in()
-    deliver(files, [log] if log else [])
+    write_outputs(files, [log] if log else [])
     _say_next_commands(folder, requirements, log)
 
 
 def _say_next_commands(folder: str, requirements: Path, log: str | None) -> None:
-    """Print the commands to run next, so that they can be copied to the present shell."""
+    """Print the next commands, ready to be copied to the shell."""
     from fretc.logs.storage.log_names import shell_word
 
     option = "" if folder == "." else f" --requirements {quote(str(requirements))}"
     log_argument = "LOG" if log is None else shell_word(log)
-    say_line(visible(f"next: `fretc check{option}` says what is wrong or missing"))
-    say_line(visible(f"next: `fretc audit {log_argument}{option}` judges a log"))
+    print_status(visible(f"next: `fretc check{option}` reports what is wrong or missing"))
+    print_status(
+        visible(f"next: `fretc audit {log_argument}{option}` checks a log against the requirements")
+    )
 
 
 def _has_settings(folder: Path) -> bool:
-    """Whether settings of a folder above hold: another file would take their place."""
+    """Whether a folder above has settings that a new file would hide."""
     from compiler.files.settings import settings
 
     found = settings(str(folder))
@@ -69,7 +77,7 @@ def _has_settings(folder: Path) -> bool:
 
 
 def _settings_to_fill_in() -> str:
-    """`fretc.toml` with a comment for all that only the owner of the project knows."""
+    """`fretc.toml` with a comment for everything that only the project owner knows."""
     from compiler.files.attribution import EXAMPLE
 
     table = "".join(f"# {line}\n" for line in EXAMPLE.splitlines())
@@ -81,7 +89,7 @@ def _is_empty_folder(path: Path) -> bool:
 
 
 def _exists(path: str) -> Diagnostic:
-    """F905: the place of the requirements is taken."""
+    """F905: the requirements folder exists already."""
     return Diagnostic(
         Code.NOT_WRITTEN,
         f"`{path}` already exists",
@@ -93,6 +101,6 @@ def _standard_input() -> Diagnostic:
     """F907: `--from -`."""
     return Diagnostic(
         Code.BAD_USAGE,
-        "standard input can be read once, and a project is drafted from a log in two readings",
-        help="save the log as a file, and name that",
+        "standard input can be read only once, but drafting a project reads the log twice",
+        help="save the log to a file, and name that file",
     )

@@ -1,6 +1,6 @@
-"""`fretc mutate`: which wrong requirements recorded runs would not have noticed.
+"""`fretc mutate`: which mutants of requirements recorded runs would not detect.
 
-`fretc.coverage` answers; this module reads the options and prints.
+`fretc.coverage` computes the result; this module reads the options and prints.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import click
 
 from fretc.terminal.options import (
-    OF_LOGS,
+    LOG_EXTRAS,
     PATH,
     bindings_option,
     extras,
@@ -18,11 +18,19 @@ from fretc.terminal.options import (
     requirements_option,
     tests_option,
 )
-from fretc.terminal.output import BAD, INTERRUPTED, NOT_SHOWN, SHOWN, coloured, say_also, say_line
+from fretc.terminal.output import (
+    EXIT_INCONCLUSIVE,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
+    coloured,
+    print_diagnostics_below,
+    print_status,
+)
 
 
 @click.command(
-    epilog=extras(OF_LOGS),
+    epilog=extras(LOG_EXTRAS),
 )
 @click.argument("folder", required=False, type=PATH, metavar="[FOLDER]")
 @click.option(
@@ -47,7 +55,7 @@ def mutate(
     paths: tuple[str, ...],
     requirements: str,
     bindings: str | None,
-    form: str,
+    output_format: str,
     verbose: bool,
     tests: str | None,
     jobs: int,
@@ -78,20 +86,20 @@ def mutate(
         with shown(logs) as show:
             found = survey(asked, logs, jobs, show)
     except KeyboardInterrupt:
-        say_line("stopped")
-        raise SystemExit(INTERRUPTED) from None
-    say_also(found.diagnostics, project.diagnostics)
+        print_status("stopped")
+        raise SystemExit(EXIT_INTERRUPTED) from None
+    print_diagnostics_below(found.diagnostics, project.diagnostics)
     if not found.runs:
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     suite = suite_of(tests, {each.id: each.fingerprint for each in found.batches})
     if suite is not None:
         found = found.with_proofs(suite)
-    if form == "json":
+    if output_format == "json":
         click.echo(mutation_record.text(found), nl=False)
     else:
-        titles = {each.id: each.name for each in project.requirements}
+        titles = {requirement.id: requirement.name for requirement in project.requirements}
         all_lines = mutation_output.lines(found, titles, every=verbose)
         click.echo(coloured((visible(text), colour) for text, colour in all_lines), nl=False)
     if plan.refused or found.diagnostics:
-        raise SystemExit(BAD)
-    raise SystemExit(SHOWN if found.is_complete else NOT_SHOWN)
+        raise SystemExit(EXIT_USAGE)
+    raise SystemExit(EXIT_OK if found.is_complete else EXIT_INCONCLUSIVE)

@@ -1,6 +1,6 @@
-"""`--notify`: a summary of an audit, for a command of the user.
+"""`--notify`: give a summary of an audit to a command of the user.
 
-The command gets one JSON object on standard input; `text` is for a person, as chat hooks want it.
+The command gets one JSON object on standard input; its `text` suits chat hooks.
 """
 
 from __future__ import annotations
@@ -9,16 +9,16 @@ import shlex
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fretc.terminal.output import say, say_line, stop
+from fretc.terminal.output import fail, print_diagnostics, print_status
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import visible
 
 _PATIENCE = 60
-"""Seconds that the command may take."""
+"""Time limit for the command, in seconds."""
 
 
 def words(command: str, option: str = "--notify") -> list[str]:
-    """The words of a command, which no shell sees; stops where there are none."""
+    """The command split into words, without a shell; exits if it is empty or cannot be split."""
     try:
         found = shlex.split(command)
     except ValueError as error:
@@ -26,18 +26,18 @@ def words(command: str, option: str = "--notify") -> list[str]:
     else:
         why = "it is empty"
     if not found:
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
                 f"`{option}` names no command: {why}",
-                help="write the command with its options in one pair of quotes",
+                help="put the command and its options into one pair of quotes",
             )
         )
     return found
 
 
 def notify(command: Sequence[str], summary: Mapping[str, Any]) -> None:
-    """Give the summary to the command, and say how that ended: it changes nothing else."""
+    """Run the command with the summary, and report whether it failed; verdicts are not affected."""
     import subprocess
 
     from compiler.files.processes import isolate_imports
@@ -53,20 +53,20 @@ def notify(command: Sequence[str], summary: Mapping[str, Any]) -> None:
             check=False,
         )
     except subprocess.TimeoutExpired:
-        say([_failed(command, f"took longer than {_PATIENCE} s")])
+        print_diagnostics([_failed(command, f"took longer than {_PATIENCE} s")])
     except OSError as error:
-        say([_failed(command, f"cannot be started: {error.strerror or error}")])
+        print_diagnostics([_failed(command, f"cannot be started: {error.strerror or error}")])
     else:
         if done.returncode:
-            say([_failed(command, f"ended with exit status {done.returncode}")])
+            print_diagnostics([_failed(command, f"ended with exit status {done.returncode}")])
         else:
-            say_line(visible(f"notified by `{command[0]}`"))
+            print_status(visible(f"sent the summary to `{command[0]}`"))
 
 
 def _failed(command: Sequence[str], how: str) -> Diagnostic:
     return Diagnostic(
         Code.NOTICE_FAILED,
-        f"`{command[0]}` {how}: the summary did not arrive",
-        help="try it by hand; verdicts and exit status are as without it",
+        f"`{command[0]}` {how}: the summary was not delivered",
+        help="run it by hand to see why; verdicts and exit status are not affected",
         severity=Severity.WARNING,
     )

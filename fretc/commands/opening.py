@@ -1,7 +1,7 @@
-"""A project as commands open it: every mistake is printed, and the sound part is worked on.
+"""Load a project: print every error, and continue with the usable requirements.
 
-A mistake refuses the requirements that read it. Whatever else a command prints or makes, its exit
-status is then 2.
+An error excludes the requirements that depend on it. The exit status of the command is then 2,
+whatever else it prints or writes.
 """
 
 from __future__ import annotations
@@ -9,7 +9,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fretc.terminal.options import places
-from fretc.terminal.output import BAD, fail_at_the_end, say_also, say_briefly, say_line, stop
+from fretc.terminal.output import (
+    EXIT_USAGE,
+    fail,
+    fail_at_end,
+    print_diagnostics_below,
+    print_project_diagnostics,
+    print_status,
+)
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
 
@@ -20,20 +27,20 @@ if TYPE_CHECKING:
     from fretc.audit.plan import Plan
 
 
-OF_AUDITS = ("map", "run")
-"""The shared tables of the bindings that whatever judges logs reads."""
+AUDIT_TABLES = ("map", "run")
+"""Shared tables of the bindings that commands which evaluate logs read."""
 
 
 def project_of(
     files: Sequence[str], requirements: str, bindings: str | None, reads: Collection[str]
 ) -> tuple[Project, str]:
-    """The sound part of a project, and where it is.
+    """The usable part of a project, and its path.
 
     Args:
-        files: `.fret` files and folders of such; empty: those of `requirements`.
+        files: `.fret` files and folders; empty: those of `requirements`.
         requirements: a folder, or one file.
-        bindings: their file; None: the one beside the first of them, if any.
-        reads: the shared tables of the bindings that the command reads.
+        bindings: bindings file; None: the one beside the first requirement file, if any.
+        reads: shared tables of the bindings that the command reads.
     """
     from compiler.project.folder import load
     from compiler.project.paths import expanded_paths, requirement_files
@@ -41,66 +48,70 @@ def project_of(
     (first, *_) = places(files, requirements)
     paths = expanded_paths(files) if files else requirement_files(requirements)
     if isinstance(paths, Diagnostic):
-        stop(paths)
+        fail(paths)
     project = load(paths, bindings, reads=reads)
-    say_briefly(project.diagnostics, first)
-    return sound_part(project), first
+    print_project_diagnostics(project.diagnostics, first)
+    return usable_part(project), first
 
 
-def sound_part(project: Project, *, others: bool = False) -> Project:
-    """What no mistake reaches. The mistakes have been printed; what they refuse is listed.
+def usable_part(project: Project, *, others: bool = False) -> Project:
+    """The part of a project that no error affects; lists the excluded requirements.
 
-    The command stops where they leave nothing, unless it has something else to do.
+    Exits if nothing is left, unless the bindings alone are enough. The errors have already been
+    printed.
 
     Args:
-        project: as it was read.
-        others: whether something is made of the bindings alone.
+        project: the whole project.
+        others: whether the command can use the bindings alone.
     """
     if has_errors(project.diagnostics):
-        fail_at_the_end()
+        fail_at_end()
     sound = project.sound
     if project.refused and not sound.formalized and not (others and project.declarations):
-        raise SystemExit(BAD)
-    list_mistaken(project)
+        raise SystemExit(EXIT_USAGE)
+    print_requirements_with_errors(project)
     return sound
 
 
 def plan_of(project: Project, requirements: str) -> Plan:
-    """The plan to audit what of a project can be judged; all that keeps back the rest is printed.
+    """Audit plan for the usable requirements; prints why the others are excluded.
 
     Args:
-        project: it may have mistakes.
-        requirements: where it is, as the user names it.
+        project: the project, which may have errors.
+        requirements: its path, as named by the user.
     """
     from fretc.audit.plan import Plan, planned
 
-    say_briefly(project.diagnostics, requirements)
+    print_project_diagnostics(project.diagnostics, requirements)
     if has_errors(project.diagnostics):
-        fail_at_the_end()
+        fail_at_end()
     plan = planned(project)
     if not isinstance(plan, Plan):
-        stop(*(reason for reason in plan if reason not in project.diagnostics))
+        fail(*(reason for reason in plan if reason not in project.diagnostics))
     if plan.refused:
-        fail_at_the_end()
-    say_also(
-        [each for each in plan.refusals if each not in project.diagnostics], project.diagnostics
+        fail_at_end()
+    print_diagnostics_below(
+        [refusal for refusal in plan.refusals if refusal not in project.diagnostics],
+        project.diagnostics,
     )
-    list_refused({each.id: each.why for each in plan.refused}, len(plan.named))
+    print_excluded({refusal.id: refusal.why for refusal in plan.refused}, len(plan.named))
     return plan
 
 
-def list_mistaken(project: Project) -> None:
-    """Print which requirements in force a mistake reaches."""
-    refused = {each.requirement.id: each.why for each in project.refused if each.is_in_force}
-    list_refused(refused, len(project.requirements))
+def print_requirements_with_errors(project: Project) -> None:
+    """Print which active requirements have errors."""
+    refused = {
+        refusal.requirement.id: refusal.why for refusal in project.refused if refusal.is_in_force
+    }
+    print_excluded(refused, len(project.requirements))
 
 
-def list_refused(refused: Mapping[str, Sequence[Diagnostic]], count: int) -> None:
-    """Print which requirements are left out: first those of the mistake that reaches the most.
+def print_excluded(refused: Mapping[str, Sequence[Diagnostic]], count: int) -> None:
+    """Print which requirements are left out, the most frequent error first.
 
     Args:
-        refused: the id of each of them → its mistakes.
-        count: of all requirements.
+        refused: id of each excluded requirement → its errors.
+        count: number of all requirements.
     """
     if not refused:
         return
@@ -110,18 +121,18 @@ def list_refused(refused: Mapping[str, Sequence[Diagnostic]], count: int) -> Non
     worst = sorted(ids, key=lambda where: -len(ids[where]))[:_MOST_LINES]
     width = max(map(len, worst))
     noun = "requirement" if count == 1 else "requirements"
-    lines = [f"left out because of mistakes: {len(refused)} of {count} {noun}"]
+    lines = [f"left out because of errors: {len(refused)} of {count} {noun}"]
     lines += [f"  {where:<{width}}  {_some(ids[where])}" for where in worst]
     if len(ids) > _MOST_LINES:
-        lines.append(f"  and those of {len(ids) - _MOST_LINES} more mistakes")
-    say_line("\n" + "\n".join(map(visible, lines)))
+        lines.append(f"  and the requirements of {len(ids) - _MOST_LINES} more errors")
+    print_status("\n" + "\n".join(map(visible, lines)))
 
 
 _MOST_LINES, _MOST_IDS = 20, 8
 
 
 def _where(why: Diagnostic) -> str:
-    """Its code and its place, as they are printed with it."""
+    """Code and position of a diagnostic, as they are printed with it."""
     if why.span is None:
         return why.code.number
     place = why.span.source.name

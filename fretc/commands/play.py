@@ -1,4 +1,4 @@
-"""The command that makes a page to play with traces."""
+"""`fretc play`: make an HTML page on which traces can be edited."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from fretc.terminal.options import (
     requirements_option,
     tests_option,
 )
-from fretc.terminal.output import BAD, SHOWN, deliver, say, stop
+from fretc.terminal.output import EXIT_OK, EXIT_USAGE, fail, print_diagnostics, write_outputs
 from fretish.diagnostics.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 _SECONDS = 20
-"""Of a processor, for the search of a trace that tells two versions apart."""
+"""CPU seconds for the search of a trace that distinguishes two versions."""
 
 
 @click.command()
@@ -84,7 +84,7 @@ def play(
     now, refusals = _side(project)
     known = now.requirements
     if not known:
-        stop(*refusals)
+        fail(*refusals)
     earlier = (
         project_of((against,), requirements, bindings, ("environment",))[0]
         if against is not None
@@ -94,8 +94,8 @@ def play(
     shown = [*side_by_side(changes, known)]
     clashing = [*name_collisions(shown)]
     if clashing:
-        stop(*clashing)
-    say(refusals)
+        fail(*clashing)
+    print_diagnostics(refusals)
     recorded = [*_recorded(project, known, logs)]
     starts = [
         *(start for run in recorded for start in run.starts),
@@ -110,12 +110,12 @@ def play(
     wordings = [*project.requirements, *(earlier.requirements if earlier else ())]
     sources = [requirement.wording.source.name for requirement in wordings]
     inputs = filter(None, [bindings, tests, analysis, *logs])
-    deliver({Path(output): page}, [*sources, *companions(sources), *inputs])
-    raise SystemExit(BAD if refusals else SHOWN)
+    write_outputs({Path(output): page}, [*sources, *companions(sources), *inputs])
+    raise SystemExit(EXIT_USAGE if refusals else EXIT_OK)
 
 
 def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
-    """One version of a project, and why no monitor can be made of some sound requirements."""
+    """One version of a project, and why some requirements without errors have no monitor."""
     from compiler.targets.javascript.monitor import refuse
     from fretc.commands.analyze import active_requirements
     from fretc.play.versions import Side
@@ -127,7 +127,9 @@ def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
         if (why := refuse(requirement)) is not None
     }
     known = [requirement for requirement in requirements if requirement.id not in refused]
-    mistaken = {each.requirement.id: each.why[0] for each in project.refused if each.is_in_force}
+    mistaken = {
+        refusal.requirement.id: refusal.why[0] for refusal in project.refused if refusal.is_in_force
+    }
     reasons = {id: why.message for id, why in (mistaken | refused).items()}
     return Side(known, reasons, project.declarations), [*refused.values()]
 
@@ -135,7 +137,7 @@ def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
 def _recorded(
     project: Project, known: Sequence[FormalizedRequirement], logs: Sequence[str]
 ) -> Iterator[Recorded]:
-    """What some logs show; one that cannot be read, or judged, stops the command."""
+    """Traces from logs; exits if a log cannot be read or evaluated."""
     from fretc.audit.plan import Plan, planned
     from fretc.play.recorded import of_log
 
@@ -143,11 +145,11 @@ def _recorded(
         return
     plan = planned(project)
     if not isinstance(plan, Plan):
-        stop(*plan)
-    say([*plan.refusals])
+        fail(*plan)
+    print_diagnostics([*plan.refusals])
     for log in logs:
         found = _good(of_log(known, plan, log))
-        say(found.findings)
+        print_diagnostics(found.findings)
         yield found
 
 
@@ -157,7 +159,7 @@ def of_files(
     tests: str | None,
     analysis: str | None,
 ) -> Iterator[Start]:
-    """What other commands have found, as far as it is about the requirements as they are."""
+    """Results of other commands, as far as they are about the present requirements."""
     from fretc.analysis.evidence import default_path
     from fretc.analysis.evidence import read as read_analysis
     from fretc.play.starts import changed, of_analysis, of_suite, others, stale
@@ -169,18 +171,18 @@ def of_files(
         suite = _good(read_suite(path))
         old = changed(suite, requirements)
         if old:
-            say([stale(path, f"{', '.join(old)} changed since", "fretc test")])
+            print_diagnostics([stale(path, f"{', '.join(old)} changed since", "fretc test")])
         yield from of_suite(suite, known)
     path = analysis or default_path()
     if path is not None:
         found = _good(read_analysis(path)).document
         old = others(found, requirements)
         if old:
-            say([stale(path, f"{', '.join(old)} changed since", "fretc analyze")])
+            print_diagnostics([stale(path, f"{', '.join(old)} changed since", "fretc analyze")])
         yield from of_analysis(found, old)
 
 
 def _good(found: T | Diagnostic) -> T:
     if isinstance(found, Diagnostic):
-        stop(found)
+        fail(found)
     return found

@@ -1,4 +1,4 @@
-"""The command about everything: the traceability report, in each of its forms."""
+"""`fretc report`: the traceability report, in all formats."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from fretc.report.forms.forms import FORMS, Form, Subject
-from fretc.terminal.group import Grouped
+from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import (
     analysis_option,
     bindings_option,
@@ -24,7 +24,15 @@ from fretc.terminal.options import (
     requirements_option,
     verification_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say_briefly, stop
+from fretc.terminal.output import (
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
+    fail,
+    print_project_diagnostics,
+    write_outputs,
+)
 from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
 
 if TYPE_CHECKING:
@@ -46,7 +54,7 @@ _HEADINGS = {
         "signers",
     ),
     "Output: one format with --format and -o, or one file for each format": (
-        "form",
+        "output_format",
         "output",
         *FORMS,
     ),
@@ -54,24 +62,27 @@ _HEADINGS = {
 
 
 def _forms(command: Callable[..., None]) -> Callable[..., None]:
-    """The option of each form."""
-    for form in FORMS.values():
-        shown = form.default is not None
+    """Output option of each format."""
+    for report_format in FORMS.values():
+        shown = report_format.default is not None
         option = path_option(
-            f"--{form.name}", default=form.default, show_default=shown, help=form.help
+            f"--{report_format.name}",
+            default=report_format.default,
+            show_default=shown,
+            help=report_format.help,
         )
         command = option(command)
     return command
 
 
 @click.command(
-    cls=Grouped,
+    cls=CommandWithHeadings,
     headings=_HEADINGS,
     epilog=extras({"reqif": "--reqif", "sign": "what is signed"}),
 )
 @click.option(
     "--format",
-    "form",
+    "output_format",
     type=click.Choice([*FORMS]),
     help="Format that is printed, or written to the file of `-o`; html if only `-o` is given.",
 )
@@ -118,7 +129,7 @@ def report(
     signers: str | None,
     play: bool,
     strict: bool,
-    form: str | None,
+    output_format: str | None,
     output: str | None,
     **places: str | None,
 ) -> None:
@@ -138,19 +149,19 @@ def report(
     from fretc.verification.ajpf_results import default_paths as results
     from fretc.verification.reader import default_path
 
-    outputs = _outputs(form, output, places)
+    outputs = _outputs(output_format, output, places)
     for kind, _ in outputs:
         absent = kind.missing()
         if absent is not None:
-            stop(absent)
+            fail(absent)
     if is_given("evidence") and not os.path.lexists(evidence):
-        stop(replace(not_audited(evidence), severity=Severity.ERROR))
+        fail(replace(not_audited(evidence), severity=Severity.ERROR))
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
-        stop(files)
+        fail(files)
     project = load_folder(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
-        stop(project)
+        fail(project)
     lock = lock or sibling_path(requirements, "fretc.lock")
     waivers = waivers or sibling_path(requirements, "waivers.toml")
     signers = signers or sibling_path(requirements, SIGNERS)
@@ -167,9 +178,9 @@ def report(
         signers=signers,
         analysis=analysis,
     )
-    say_briefly([*project.diagnostics, *outcome.diagnostics], requirements)
+    print_project_diagnostics([*project.diagnostics, *outcome.diagnostics], requirements)
     if outcome.report is None or outcome.details is None:
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     inset = _inset(project, outcome.details.evidence, analysis) if play else None
     subject = Subject(outcome.report, project, outcome.details, outcome.diagnostics, inset)
     others = (bindings, hazards, verification, analysis, lock, waivers, signers)
@@ -177,12 +188,12 @@ def report(
     read = [evidence, *files, *companions(files), *inputs, *outcome.details.logs]
     _deliver(outputs, subject, read)
     if has_errors([*project.diagnostics, *outcome.diagnostics]):
-        raise SystemExit(BAD)
-    raise SystemExit(_status(outcome.report) if strict else SHOWN)
+        raise SystemExit(EXIT_USAGE)
+    raise SystemExit(_status(outcome.report) if strict else EXIT_OK)
 
 
 def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | None) -> Inset | None:
-    """The page to play with traces; None: no requirement can be on it."""
+    """The embedded page of `fretc play`; None: no requirement can be on it."""
     from compiler.formalization.formalize import name_collisions
     from compiler.targets.javascript.monitor import refuse
     from fretc.audit.plan import Plan, planned
@@ -191,7 +202,7 @@ def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | No
     from fretc.play.recorded import Recorded, of_evidence
     from fretc.play.starts import of_examples
 
-    refused = {each.requirement.id: each.why[0].message for each in project.refused}
+    refused = {refusal.requirement.id: refusal.why[0].message for refusal in project.refused}
     project = project.sound
     refused |= {
         requirement.id: said.message
@@ -214,26 +225,26 @@ def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | No
 
 
 def _outputs(
-    form: str | None, output: str | None, places: Mapping[str, str | None]
+    output_format: str | None, output: str | None, places: Mapping[str, str | None]
 ) -> list[tuple[Form, str]]:
-    """Each form that is asked for, and its place; the default one only where none is."""
+    """Each requested format and its path; the default path if none is requested."""
     named = [(kind, path) for name, kind in FORMS.items() if (path := places[name]) is not None]
-    if form is None and output is None:
+    if output_format is None and output is None:
         return named
     chosen = [(kind, path) for kind, path in named if is_given(kind.name)]
-    return [(FORMS[form or "html"], output or "-"), *chosen]
+    return [(FORMS[output_format or "html"], output or "-"), *chosen]
 
 
 def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequence[str]) -> None:
-    """Each form to its own place."""
+    """Write each format to its path."""
     from fretc.terminal.output import not_written
 
     paths: dict[Path, str | Iterable[str]] = {}
-    for form, path in outputs:
+    for report_format, path in outputs:
         if Path(path) in paths:
-            stop(not_written(path, "two outputs would go there"))
-        paths[Path(path)] = form.text(subject)
-    deliver(paths, inputs)
+            fail(not_written(path, "two outputs would go there"))
+        paths[Path(path)] = report_format.text(subject)
+    write_outputs(paths, inputs)
 
 
 def _status(whole: Report) -> int:
@@ -244,11 +255,11 @@ def _status(whole: Report) -> int:
     if any(mark.word in BROKEN or mark.suspect for mark in marks) or any(
         map(is_refuted, whole.requirements)
     ):
-        return VIOLATION
+        return EXIT_VIOLATION
     together = whole.analysis
     if whole.withdrawn or (together and (together.is_broken or together.mark.suspect)):
-        return VIOLATION
+        return EXIT_VIOLATION
     in_force = [mark for mark in marks if mark.word != RETIRED]
     shown = all(mark.shows or mark.word == WAIVED for mark in in_force)
     shown = shown and (together is None or together.is_good)
-    return SHOWN if in_force and shown else NOT_SHOWN
+    return EXIT_OK if in_force and shown else EXIT_INCONCLUSIVE

@@ -1,4 +1,4 @@
-"""The commands about reviews: accept the present state, and say what has changed since."""
+"""`fretc lock` and `fretc diff`: record reviews, and show what has changed since."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import list_refused
+from fretc.commands.opening import print_excluded
 from fretc.terminal.options import (
     PATH,
     analysis_option,
@@ -21,14 +21,14 @@ from fretc.terminal.options import (
     verification_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    NOT_SHOWN,
-    SHOWN,
-    deliver,
-    fail_at_the_end,
-    say_briefly,
-    say_line,
-    stop,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
+    fail,
+    fail_at_end,
+    print_project_diagnostics,
+    print_status,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import (
     Code,
@@ -82,7 +82,7 @@ def lock(
     path: str | None,
     key: str | None,
     accept_violations: bool,
-    form: str,
+    output_format: str,
 ) -> None:
     """Record your review of requirements in fretc.lock.
 
@@ -112,13 +112,13 @@ def lock(
 
     for name, words in (("--reviewer", reviewer), ("--role", role), ("--comment", comment)):
         if not words.strip():
-            stop(Diagnostic(Code.BAD_USAGE, f"`{name}` says nothing", help="fill it in"))
+            fail(Diagnostic(Code.BAD_USAGE, f"`{name}` says nothing", help="fill it in"))
     day = day or today()
     if not is_date(day):
-        stop(Diagnostic(Code.BAD_USAGE, f"`{day}` is no date", help="write it as `2026-11-22`"))
+        fail(Diagnostic(Code.BAD_USAGE, f"`{day}` is no date", help="write it as `2026-11-22`"))
     if is_in_future(day):
-        message = f"`{day}` is still to come, and nobody can have reviewed then"
-        stop(Diagnostic(Code.BAD_USAGE, message, help="leave `--date` out: then it is today"))
+        message = f"`{day}` is in the future: a review cannot have happened yet"
+        fail(Diagnostic(Code.BAD_USAGE, message, help="leave out `--date` to use today"))
     project, chains, refuted = _chains(requirements, evidence, verification, analysis, accept=True)
     refused = _refused(project)
     where = path or _beside(requirements)
@@ -128,31 +128,33 @@ def lock(
     chosen = _chosen(chains, ids, orphans)
     subjects = [chain for chain in chosen if chain.requirement not in refused]
     if refused and not subjects:
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     violations = () if accept_violations else unnamed_violations(subjects, refuted)
     refusals = (*outdated_results(subjects), *violations)
     if refusals:
-        stop(*refusals)
+        fail(*refusals)
     removals = {id for id in orphans if not ids or id in ids}
     reviews = {id: review for id, review in old_reviews.items() if id not in removals}
     reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in subjects}
     signatures = _signatures(where, reviews, subjects, key) if key is not None else {}
-    deliver({Path(where): text(Lock(reviews)), **signatures})
+    write_outputs({Path(where): text(Lock(reviews)), **signatures})
     counts = Acceptance.of(subjects, refuted)
-    if form == "json":
+    if output_format == "json":
         click.echo(to_json({**counts.as_record, "left_out": sorted(removals, key=natural)}))
         return
     for chain in subjects:
-        say_line(visible(f"accepted {chain.requirement}: {verdicts_of(chain)}{warnings_of(chain)}"))
+        print_status(
+            visible(f"accepted {chain.requirement}: {verdicts_of(chain)}{warnings_of(chain)}")
+        )
     for id in sorted(removals, key=natural):
-        say_line(f"left out {id}: it is not among the requirements")
-    say_line(counts.text)
+        print_status(f"left out {id}: there is no such requirement")
+    print_status(counts.text)
 
 
 def _signatures(
     path: str, reviews: Mapping[str, Review], chosen: Sequence[Chain], key: str
 ) -> dict[Path, str]:
-    """The signatures beside the lock, with one of the reviews that are accepted now."""
+    """The signatures beside the lock, with a new one for the reviews that are accepted now."""
     from fretc.commands.sign import of_reviews, private, signed
 
     mine = private(key)
@@ -173,7 +175,7 @@ def diff(
     evidence: str,
     verification: str | None,
     analysis: str | None,
-    form: str,
+    output_format: str,
 ) -> None:
     """Show what has changed since a review, verdicts included.
 
@@ -194,27 +196,27 @@ def diff(
     sound = tuple(chain for chain in chains if chain.requirement not in refused)
     base = Lock({id: review for id, review in base.reviews.items() if id not in refused})
     if refused and not sound:
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     changes = differences(standings(sound, base), base, project)
-    if form == "json":
+    if output_format == "json":
         click.echo(to_json([as_record(difference) for difference in changes]))
     else:
         for line in text(changes):
             click.echo(visible(line))
-    raise SystemExit(SHOWN if all(d.state == "same" for d in changes) else NOT_SHOWN)
+    raise SystemExit(EXIT_OK if all(d.state == "same" for d in changes) else EXIT_INCONCLUSIVE)
 
 
 def _refused(project: Project) -> Mapping[str, Sequence[Diagnostic]]:
-    """The ids of the requirements that a mistake reaches, which are listed, and the mistakes."""
+    """Ids of the requirements with errors, and the errors; the ids are also printed."""
     from compiler.project.refusals import unreviewable
 
     if not has_errors(project.diagnostics):
         return {}
-    fail_at_the_end()
+    fail_at_end()
     reached = unreviewable(project)
     refused = {r.id: reached[id(r)] for r in project.requirements if id(r) in reached}
     if len(refused) < len({requirement.id for requirement in project.requirements}):
-        list_refused(refused, len(project.requirements))
+        print_excluded(refused, len(project.requirements))
     return refused
 
 
@@ -226,14 +228,14 @@ def _chains(
     *,
     accept: bool = False,
 ) -> tuple[Project, Sequence[Chain], Collection[str]]:
-    """The project, its chains, and which requirements all runs together refute.
+    """The project, its chains, and the requirements that all runs together refute.
 
     Args:
-        requirements: their folder or file.
-        evidence: of audits.
-        verification: of proofs.
-        analysis: of the requirements together.
-        accept: all that is read will be accepted, so a store is compared with its results in full.
+        requirements: folder or file of the requirements.
+        evidence: path of the evidence.
+        verification: path of the proofs.
+        analysis: path of the analysis.
+        accept: whether the results will be accepted, so that a store is checked in full.
     """
     from compiler.project.folder import load_folder
     from fretc.analysis.evidence import known as known_analysis
@@ -245,21 +247,21 @@ def _chains(
 
     project = load_folder(requirements)
     if isinstance(project, Diagnostic):
-        stop(project)
+        fail(project)
     proofs = known(verification)
     if isinstance(proofs, Diagnostic):
-        stop(proofs)
+        fail(proofs)
     analyzed = known_analysis(analysis)
     if isinstance(analyzed, Diagnostic):
-        stop(analyzed)
+        fail(analyzed)
     read = required_source if is_given("evidence") else source
     audited = read(evidence, in_full=accept)
     if isinstance(audited, Diagnostic):
-        say_briefly([*project.diagnostics, audited], requirements)
+        print_project_diagnostics([*project.diagnostics, audited], requirements)
         if audited.is_error:
-            raise SystemExit(BAD)
+            raise SystemExit(EXIT_USAGE)
         return project, chains(project, None, proofs=proofs, analyzed=analyzed), ()
-    say_briefly(project.diagnostics, requirements)
+    print_project_diagnostics(project.diagnostics, requirements)
     refuted = {one.requirement for one in audited.probabilities if one.answer == REFUTED}
     of_all = chains(project, ResultSummaries.of(audited), proofs=proofs, analyzed=analyzed)
     return project, of_all, refuted
@@ -268,13 +270,13 @@ def _chains(
 def _chosen(
     chains: Sequence[Chain], ids: tuple[str, ...], orphans: Collection[str]
 ) -> Sequence[Chain]:
-    """The requirements that are named, or all; one that is gone may be named, to let it go."""
+    """The named requirements, or all; a removed requirement may be named, to remove its review."""
     known = [*(chain.requirement for chain in chains), *orphans]
     for id in ids:
         if id not in known:
             near = suggestion(id, known)
             fix = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
-            stop(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=fix))
+            fail(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=fix))
     return [chain for chain in chains if not ids or chain.requirement in ids]
 
 
@@ -286,12 +288,12 @@ def _beside(requirements: str) -> str:
 
 
 def _read(path: str, *, must: bool) -> Lock | None:
-    """The lock; where there is none yet, None, unless there must be one."""
+    """The lock; None if it does not exist and is not required."""
     from fretc.traceability.lock import read
 
     lock_ = read(path)
     if not isinstance(lock_, Diagnostic):
         return lock_
     if must or lock_.is_error:
-        stop(replace(lock_, severity=Severity.ERROR))
+        fail(replace(lock_, severity=Severity.ERROR))
     return None

@@ -1,4 +1,4 @@
-"""The command that says what fretc itself consists of."""
+"""`fretc sbom`: list the installed components."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from fretc.terminal.options import extras, output_option
-from fretc.terminal.output import deliver, stop
+from fretc.terminal.output import fail, write_outputs
 
 
 @click.command(
@@ -28,5 +28,5 @@ def sbom(output: str) -> None:
 
     absent = missing()
     if absent is not None:
-        stop(absent)
-    deliver({Path(output): bill()})
+        fail(absent)
+    write_outputs({Path(output): bill()})

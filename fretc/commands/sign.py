@@ -1,4 +1,4 @@
-"""The command that signs, and what others need of it: keys, and signatures that are demanded."""
+"""`fretc sign`, and shared code for keys and required signatures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,13 @@ from typing import TYPE_CHECKING
 import click
 
 from fretc.terminal.options import PATH, extras, path_option
-from fretc.terminal.output import VIOLATION, deliver, say, say_line, stop
+from fretc.terminal.output import (
+    EXIT_VIOLATION,
+    fail,
+    print_diagnostics,
+    print_status,
+    write_outputs,
+)
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.source import Source
@@ -28,17 +34,17 @@ if TYPE_CHECKING:
     from fretc.verification.reader import Proofs
 
 PASSPHRASE = "FRETC_PASSPHRASE"
-"""The environment variable with the passphrase of a key, where nobody can be asked."""
+"""Environment variable with the passphrase of a key, for use without a terminal."""
 
 
 @dataclass(frozen=True, slots=True)
 class Signable:
-    """A file that can be signed: what a statement says of it, and that in words."""
+    """A file to sign: its statement, and a summary in words."""
 
     path: str
     statement: Statement
     current: frozenset[Subject]
-    """Everything in the file that anybody can sign."""
+    """All subjects in the file that anybody can sign."""
     lines: tuple[str, ...]
 
 
@@ -71,12 +77,12 @@ def sign(files: tuple[str, ...], key: str, reviewer: str | None, verification: s
     """
     installed()
     signables = [_signable(path, key, reviewer, verification) for path in dict.fromkeys(files)]
-    for each in signables:
-        for line in each.lines:
-            say_line(visible(line))
+    for signable in signables:
+        for line in signable.lines:
+            print_status(visible(line))
     mine = private(key)
-    deliver(_merged(signed(each, mine) for each in signables), [*files, key])
-    say_line(f"signed with {mine.public.text}")
+    write_outputs(_merged(signed(signable, mine) for signable in signables), [*files, key])
+    print_status(f"signed with {mine.public.text}")
 
 
 def _merged(parts: Iterable[Mapping[Path, str]]) -> dict[Path, str]:
@@ -84,16 +90,16 @@ def _merged(parts: Iterable[Mapping[Path, str]]) -> dict[Path, str]:
 
 
 def installed() -> None:
-    """Stop where what signatures need is not installed."""
+    """Exit if the packages for signatures are not installed."""
     from fretc.attestation.signatures import missing
 
     absent = missing()
     if absent is not None:
-        stop(absent)
+        fail(absent)
 
 
 def private(path: str) -> PrivateKey:
-    """The private key of a file; its passphrase is asked for where it has one."""
+    """The private key in a file; asks for its passphrase if it has one."""
     from compiler.files.text_files import content, unreadable
 
     installed()
@@ -103,9 +109,9 @@ def private(path: str) -> PrivateKey:
     try:
         return private_key(content(path), lambda: _passphrase(path))
     except OSError as error:
-        stop(unreadable(path, error))
+        fail(unreadable(path, error))
     except UnusableKeyError as error:
-        stop(bad_key(path, error))
+        fail(bad_key(path, error))
 
 
 def _passphrase(path: str) -> str:
@@ -113,12 +119,12 @@ def _passphrase(path: str) -> str:
     if known is not None:
         return known
     if not sys.stdin.isatty():
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_KEY,
-                f"the key in `{path}` has a passphrase, and nobody can be asked for it here",
+                f"the key in `{path}` has a passphrase, but there is no terminal to ask for it",
                 Source(path, "").span(),
-                help=f"put it into the environment variable {PASSPHRASE}",
+                help=f"set the environment variable {PASSPHRASE} to the passphrase",
             )
         )
     asked: str = click.prompt(f"passphrase of {visible(path)}", hide_input=True, err=True)
@@ -126,20 +132,21 @@ def _passphrase(path: str) -> str:
 
 
 def signed(what: Signable, key: PrivateKey) -> dict[Path, str]:
-    """The file with the signatures, and one more in it."""
+    """The signature file with the new signature."""
     from fretc.attestation.keys import signed_envelope
     from fretc.attestation.signatures import appended, beside, envelope, kept, read
     from fretc.attestation.statement import text
 
     envelopes = read(what.path)
     if isinstance(envelopes, Diagnostic):
-        stop(envelopes)
+        fail(envelopes)
     new = envelope(signed_envelope(text(what.statement), key))
     omissions = len(envelopes) - len(kept(envelopes, new, what.current))
     if omissions:
         noun = "earlier signature is" if omissions == 1 else "earlier signatures are"
-        say_line(
-            f"{omissions} {noun} left out: yours of the same, or of what is not there any more"
+        print_status(
+            f"{omissions} {noun} removed: they are replaced by this signature, or sign content "
+            "that is gone"
         )
     return {Path(beside(what.path)): appended(envelopes, new, what.current)}
 
@@ -152,10 +159,10 @@ def _signable(path: str, key: str, reviewer: str | None, verification: str | Non
     if os.path.isdir(path):
         return _json(path, verification)
     if reviewer is not None and suffix not in (".lock", ".toml"):
-        stop(_usage(f"`{path}` is by no reviewer", "leave `--reviewer` out"))
+        fail(_usage(f"`{path}` is by no reviewer", "remove `--reviewer`"))
     if suffix not in (".lock", ".toml", ".json", *_REPORTS):
         fix = "name evidence (`.json`, or a store), a lock (`.lock`), waivers (`.toml`) or a report"
-        stop(_usage(f"`{path}` is nothing that fretc signs", fix))
+        fail(_usage(f"`{path}` is nothing that fretc signs", fix))
     match suffix:
         case ".lock":
             return _lock(path, key, reviewer)
@@ -175,7 +182,7 @@ def _usage(what: str, fix: str) -> Diagnostic:
 
 
 def _json(path: str, verification: str | None) -> Signable:
-    """Evidence, proofs, an analysis, or a report: they say which."""
+    """The statement of a JSON file: evidence, proofs, an analysis or a report."""
     from compiler.files.text_files import read as read_text
     from compiler.logic import claims as proved
     from fretc.analysis import evidence as analyzed
@@ -186,7 +193,7 @@ def _json(path: str, verification: str | None) -> Signable:
     if not os.path.isdir(path):
         source = read_text(path)
         if isinstance(source, Diagnostic):
-            stop(source)
+            fail(source)
         schema = _schema(source)
         if schema == proved.SCHEMA:
             return _proved(path)
@@ -196,25 +203,25 @@ def _json(path: str, verification: str | None) -> Signable:
             return _report(path)
     audited = read(path)
     if isinstance(audited, Diagnostic):
-        stop(_as_error(audited))
+        fail(_as_error(audited))
     place = verification or default_path()
     return _evidence(audited, _proofs(place) if place is not None else None)
 
 
 def _schema(source: Source) -> object:
-    """What the file says it is; whatever is wrong with it, its own reader says."""
+    """The schema that the file states; F503 if it is not JSON."""
     from compiler.files.checked_json import JsonValue, SchemaError, plain
 
     try:
         whole = JsonValue(plain(source.text))
         return whole.field("schema").value
     except SchemaError as error:
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_EVIDENCE,
                 f"`{source.name}` is nothing that fretc signs: {error}",
                 Source(source.name, "").span(),
-                help="name what `fretc audit`, `verify`, `analyze` or `report` has written",
+                help="name a file that `fretc audit`, `verify`, `analyze` or `report` has written",
             )
         )
 
@@ -232,7 +239,7 @@ def _evidence(audited: EvidenceSource, proofs: Proofs | None) -> Signable:
     place = Path(audited.file)
     _same_bytes(str(place / MANIFEST if place.is_dir() else place), audited.sha256)
     if next(audited.briefs(), None) is None:
-        stop(_usage(f"`{audited.file}` tells of no run", "audit one: `fretc audit LOG...`"))
+        fail(_usage(f"`{audited.file}` contains no run", "audit a log: `fretc audit LOG...`"))
     statement = attestation.evidence(audited, proofs)
     lines = (*_summary_of_evidence(audited), *(_summary_of_proofs(proofs) if proofs else ()))
     return Signable(audited.file, statement, statement.main, lines)
@@ -252,10 +259,10 @@ def _summary_of_evidence(audited: EvidenceSource) -> Iterator[str]:
         if audit.verdict == kernel.VIOLATED:
             yield f"  {result.requirement} is violated in {result.run}"
         if not result.log:
-            yield f"  no SHA-256 is known of {result.run}: the log itself is not signed"
+            yield f"  the SHA-256 of {result.run} is unknown: the log itself is not signed"
     for one in audited.probabilities:
         if one.answer == REFUTED:
-            yield f"  {one.requirement} is refuted by all runs"
+            yield f"  {one.requirement} is refuted over all runs"
 
 
 def _proofs(path: str) -> Proofs:
@@ -263,7 +270,7 @@ def _proofs(path: str) -> Proofs:
 
     proofs = read(path)
     if isinstance(proofs, Diagnostic):
-        stop(proofs)
+        fail(proofs)
     _same_bytes(path, proofs.sha256)
     return proofs
 
@@ -282,7 +289,7 @@ def _analyzed(path: str) -> Signable:
 
     known = read(path)
     if isinstance(known, Diagnostic):
-        stop(known)
+        fail(known)
     _same_bytes(path, known.sha256)
     found = known.document.analysis
     lines = (
@@ -306,17 +313,16 @@ def _summary_of_proofs(proofs: Proofs) -> Iterator[str]:
 
 
 def _same_bytes(path: str, sha256: str) -> None:
-    """What was read, and what everybody else hashes, are the same."""
+    """Exit unless the bytes that were read have this SHA-256."""
     from compiler.files.text_files import file_sha256
 
     if file_sha256(path) != sha256:
-        stop(
+        fail(
             Diagnostic(
                 Code.UNREADABLE,
-                f"`{path}` is no plain file of UTF-8 without a mark at its start, or is being "
-                "written to",
+                f"`{path}` is not UTF-8 text without a byte order mark, or it is being written",
                 Source(path, "").span(),
-                help="wait until it is complete, or make it again",
+                help="wait until it is complete, or create it again",
             )
         )
 
@@ -327,7 +333,7 @@ def _report(path: str) -> Signable:
 
     digest = file_sha256(path)
     if digest is None:
-        stop(unreadable(path, FileNotFoundError()))
+        fail(unreadable(path, FileNotFoundError()))
     statement = attestation.report(path, digest)
     return Signable(path, statement, statement.main, (f"report {path}",))
 
@@ -337,14 +343,14 @@ def _lock(path: str, key: str, reviewer: str | None) -> Signable:
 
     lock = read(path)
     if isinstance(lock, Diagnostic):
-        stop(_as_error(lock))
-    names = _names(path, [each.reviewer for each in lock.reviews.values()], key, reviewer)
-    mine = [each for each in lock.reviews.values() if each.reviewer in names]
+        fail(_as_error(lock))
+    names = _names(path, [review.reviewer for review in lock.reviews.values()], key, reviewer)
+    mine = [review for review in lock.reviews.values() if review.reviewer in names]
     return of_reviews(path, mine, lock.reviews.values())
 
 
 def of_reviews(path: str, mine: Iterable[Review], all_: Iterable[Review]) -> Signable:
-    """Some of the reviews of a lock."""
+    """The statement of some reviews of a lock."""
     from fretc.attestation import statement as attestation
 
     chosen = sorted(mine, key=lambda review: natural(review.requirement))
@@ -365,10 +371,10 @@ def _waivers(path: str, key: str, reviewer: str | None) -> Signable:
     from fretc.traceability.waivers import read
 
     waivers, wrong = read(path, None, today())
-    if any(each.is_error for each in wrong):
-        stop(*wrong)
-    names = _names(path, [each.by for each in waivers.values()], key, reviewer)
-    mine = [each for each in waivers.values() if each.by in names]
+    if any(mutant.is_error for mutant in wrong):
+        fail(*wrong)
+    names = _names(path, [waiver.by for waiver in waivers.values()], key, reviewer)
+    mine = [waiver for waiver in waivers.values() if waiver.by in names]
     return Signable(
         path,
         attestation.waivers(mine),
@@ -383,22 +389,24 @@ def _waiver_line(waiver: Waiver) -> str:
 
 
 def _names(path: str, written: Sequence[str], key: str, reviewer: str | None) -> Sequence[str]:
-    """By whom the reviews or waivers are that are to be signed."""
+    """Names of the people whose reviews or waivers are signed."""
     names = list(dict.fromkeys(written))
     authors = ", ".join(f"`{name}`" for name in names) or "nobody"
     if reviewer is not None:
         if reviewer not in names:
-            stop(_usage(f"nothing in `{path}` is by `{reviewer}`", f"it is by {authors}"))
+            fail(
+                _usage(f"no review or waiver in `{path}` is by `{reviewer}`", f"it is by {authors}")
+            )
         return [reviewer]
     mine = _by_key(path, names, key) if len(names) > 1 else names
     if not mine:
-        what = f"`{path}` does not say what is yours: it is by {authors}"
-        stop(_usage(what, "add `--reviewer NAME`"))
+        what = f"`{path}` names several people, and it is not clear who signs: {authors}"
+        fail(_usage(what, "add `--reviewer NAME`"))
     return mine
 
 
 def _by_key(path: str, names: Sequence[str], key: str) -> Sequence[str]:
-    """Those of the names that the list of signers gives to the key."""
+    """The names that the list of signers gives to the key."""
     from fretc.attestation.signatures import SIGNERS
     from fretc.attestation.signers import read
 
@@ -408,18 +416,18 @@ def _by_key(path: str, names: Sequence[str], key: str) -> Sequence[str]:
         return []
     signers, mine = read(str(place)), _public(str(public))
     if isinstance(signers, Diagnostic):
-        stop(signers)
+        fail(signers)
     own = [signer for signer in signers.signers if signer.key.fingerprint == mine]
     return [name for name in names if any(signer.goes_by(name) for signer in own)]
 
 
 def _public(path: str) -> str:
-    """The fingerprint of a public key."""
+    """Fingerprint of a public key."""
     from fretc.attestation.signers import trusted
 
     found = trusted(path)
     if isinstance(found, Diagnostic):
-        stop(found)
+        fail(found)
     return next((signer.key.fingerprint for signer in found.signers), "")
 
 
@@ -427,13 +435,13 @@ def _public(path: str) -> str:
 
 
 def require(evidence: EvidenceSource, by: str, others: Mapping[str, str | None]) -> None:
-    """Stop, with exit status 1, where a key has not signed exactly this evidence.
+    """Exit with status 1 unless a trusted key has signed exactly this evidence.
 
     Args:
-        evidence: as it was read.
-        by: path of the public key, or of a list of signers, that the user trusts.
-        others: kind of other files (`report`, `proofs`, `analysis`) → path, where they must be
-            signed, too.
+        evidence: the evidence that was read.
+        by: path of the trusted public key, or of a list of signers.
+        others: kind of another file (`report`, `proofs`, `analysis`) → path; these must be signed
+            too.
     """
     from compiler.files.text_files import file_sha256
     from fretc.attestation.signatures import book
@@ -443,11 +451,11 @@ def require(evidence: EvidenceSource, by: str, others: Mapping[str, str | None])
 
     keys = trusted(by)
     if isinstance(keys, Diagnostic):
-        stop(keys)
+        fail(keys)
     companions = {kind: path for kind, path in others.items() if path is not None}
     signatures = book([evidence.file, *companions.values()], keys)
     if isinstance(signatures, Diagnostic):
-        stop(signatures)
+        fail(signatures)
     mistakes = list(signatures.diagnostics())
     signature = signatures.agreed(evidence)
     if not signature.is_good:
@@ -456,10 +464,10 @@ def require(evidence: EvidenceSource, by: str, others: Mapping[str, str | None])
         one = signatures.of_file(kind, file_sha256(path) or "")
         if not one.is_good:
             mistakes.append(_unsigned(path, by, one.text))
-    say(mistakes)
-    if any(each.is_error for each in mistakes):
-        raise SystemExit(VIOLATION)
-    say_line(visible(f"{evidence.file} is {signature.text}"))
+    print_diagnostics(mistakes)
+    if any(diagnostic.is_error for diagnostic in mistakes):
+        raise SystemExit(EXIT_VIOLATION)
+    print_status(visible(f"{evidence.file} is {signature.text}"))
 
 
 def _unsigned(path: str, by: str, why: str) -> Diagnostic:
@@ -468,5 +476,5 @@ def _unsigned(path: str, by: str, why: str) -> Diagnostic:
         Code.NOT_SIGNED,
         f"`{path}` is not signed as `{by}` asks for: {why}",
         Source(path, "").span(),
-        help=f"have it signed as it is now: `fretc sign {path} --key KEY`",
+        help=f"sign its present content: `fretc sign {path} --key KEY`",
     )

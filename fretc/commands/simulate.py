@@ -1,4 +1,4 @@
-"""The command about simulated missions: record one, or count many."""
+"""`fretc simulate`: record a simulated mission, or run a campaign of many."""
 
 from __future__ import annotations
 
@@ -14,14 +14,20 @@ import click
 
 from fretc.terminal.options import (
     PATH,
-    Renamed,
     extras,
     format_option,
     jobs_option,
     output_option,
     path_option,
 )
-from fretc.terminal.output import SHOWN, VIOLATION, deliver, not_written, say_line, stop
+from fretc.terminal.output import (
+    EXIT_OK,
+    EXIT_VIOLATION,
+    fail,
+    not_written,
+    print_status,
+    write_outputs,
+)
 from fretc.terminal.progress import progress
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import missing_extra
@@ -32,12 +38,10 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    epilog=extras({"sim": "all but --list"}),
+    epilog=extras({"sim": "everything except --list"}),
 )
 @click.argument("scenarios", nargs=-1, type=PATH, metavar="[SCENARIO]...")
 @output_option(
-    cls=Renamed,
-    earlier="--out",
     help="MCAP file of the recording; with --campaign, folder for all recordings.",
 )
 @click.option(
@@ -80,7 +84,7 @@ def simulate(
     gif: str | None,
     campaign: int | None,
     jobs: int,
-    form: str,
+    output_format: str,
     listing: bool,
 ) -> None:
     """Simulate a robot's mission and record it as a log.
@@ -96,11 +100,20 @@ def simulate(
         for name in names():
             click.echo(f"{name:<16} {load(name).title}")
         return
-    demand_simulation()
+    require_simulation()
     if campaign is not None:
         if png or gif or duration is not None or encoding != "ros2":
-            raise click.UsageError("a campaign takes no --png, --gif, --duration or --encoding")
-        _count([_scenario(n) for n in scenarios or names()], seed, campaign, jobs, output, form)
+            raise click.UsageError(
+                "--campaign cannot be combined with --png, --gif, --duration or --encoding"
+            )
+        _count(
+            [_scenario(n) for n in scenarios or names()],
+            seed,
+            campaign,
+            jobs,
+            output,
+            output_format,
+        )
     if len(scenarios) > 1:
         raise click.UsageError("several scenarios need --campaign")
     if output is None:
@@ -109,13 +122,13 @@ def simulate(
     _record(scenario, output, seed, duration, encoding, {"png": png, "gif": gif})
 
 
-def demand_simulation() -> None:
-    """Stop where what the simulated robot needs is not installed."""
+def require_simulation() -> None:
+    """Exit if the packages for the simulation are not installed."""
     from simulation import missing
 
     absent = missing()
     if absent:
-        stop(missing_extra("the simulated robot needs", absent, "sim"))
+        fail(missing_extra("the simulated robot needs", absent, "sim"))
 
 
 def _scenario(name: str) -> Scenario:
@@ -127,14 +140,17 @@ def _scenario(name: str) -> Scenario:
         possible(scenario)
         _known(scenario)
     except OSError as error:
-        stop(_bad_scenario(name, error.strerror or str(error)))
+        fail(_bad_scenario(name, error.strerror or str(error)))
     except (ScenarioError, ValueError) as error:
-        stop(_bad_scenario(name, str(error)))
+        fail(_bad_scenario(name, str(error)))
     return scenario
 
 
 def _known(scenario: Scenario) -> None:
-    """Whether there are the requirements of which it says how they come out.
+    """Check that the requirements with expected verdicts exist.
+
+    Raises:
+        ScenarioError: one does not exist.
 
     Raises:
         ScenarioError: one is not there.
@@ -151,7 +167,7 @@ def _known(scenario: Scenario) -> None:
 
 
 def _place(name: str, why: str) -> Span | None:
-    """Where the key stands that the text names first; the file's start where it cannot be found."""
+    """Position of the first key in the message; the start of the file if it is not found."""
     from compiler.files.text_files import read
 
     source = read(name) if name.endswith(".toml") else None
@@ -171,32 +187,32 @@ def _bad_scenario(name: str, why: str) -> Diagnostic:
         Code.BAD_SCENARIO,
         f"the scenario `{name}` cannot be run: {why}",
         _place(name, why),
-        help="`fretc simulate --list` names those that come with fretc",
+        help="`fretc simulate --list` lists the scenarios that come with fretc",
     )
 
 
 def _file(out: str) -> Path:
-    """Where a file is to go, if it can."""
+    """Output path of a file; exits if it cannot be written."""
     from compiler.files.text_files import destination
 
     try:
         path = destination(Path(out))
     except OSError as error:
-        stop(not_written(out, error.strerror or str(error)))
+        fail(not_written(out, error.strerror or str(error)))
     if out == "-":
-        stop(not_written(out, "it is a file of its own"))
+        fail(not_written(out, "a recording cannot be printed"))
     if path.exists() and not path.is_file():
-        stop(not_written(out, "it is not a regular file"))
+        fail(not_written(out, "it is no regular file"))
     _folder(path.parent, out)
     return path
 
 
 def _folder(folder: Path, out: str) -> None:
-    """Make it, with those that it lies in."""
+    """Create the folder and its parents."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        stop(not_written(out, error.strerror or str(error)))
+        fail(not_written(out, error.strerror or str(error)))
 
 
 def _record(
@@ -214,12 +230,12 @@ def _record(
     from simulation.recording import Encoding
 
     path = _file(out)
-    images = {form: _file(name) for form, name in pictures.items() if name is not None}
+    images = {kind: _file(name) for kind, name in pictures.items() if name is not None}
     if len({path, *images.values()}) <= len(images):
-        stop(not_written(out, "two outputs would go there"))
+        fail(not_written(out, "two outputs would go there"))
     limit = scenario.duration if duration is None else duration
     if not math.isfinite(limit):
-        stop(not_written(out, "a mission ends"))
+        fail(not_written(out, "the duration of a mission must be finite"))
     decision = safety_function(scenario.safety.threshold)
     with progress(int(limit), "simulating") as show:
         try:
@@ -235,13 +251,13 @@ def _record(
                 {"fretc": __version__},
             )
         except OSError as error:
-            stop(not_written(out, error.strerror or str(error)))
-    say_line(f"wrote {out}")
+            fail(not_written(out, error.strerror or str(error)))
+    print_status(f"wrote {out}")
     if images:
         from simulation.picture import animate, draw
 
         painters = {"png": draw, "gif": animate}
-        deliver({Path(str(pictures[form])): painters[form](mission) for form in images})
+        write_outputs({Path(str(pictures[kind])): painters[kind](mission) for kind in images})
     click.echo(
         f"{scenario.name}, seed {mission.seed}: {mission.duration:.1f} s, "
         f"{mission.goals_reached} of {mission.goals_total} goals, {len(mission.stops)} stops, "
@@ -251,14 +267,19 @@ def _record(
 
 
 def _count(
-    scenarios: Sequence[Scenario], seed: int, count: int, jobs: int, out: str | None, form: str
+    scenarios: Sequence[Scenario],
+    seed: int,
+    count: int,
+    jobs: int,
+    out: str | None,
+    output_format: str,
 ) -> None:
     """Run the campaign and exit."""
     from fretc.campaigns.campaign import campaign, table
 
     called = [scenario.name for scenario in scenarios]
     if len(set(called)) < len(called):
-        raise click.UsageError("two of the scenarios have the same name")
+        raise click.UsageError("two scenarios have the same name")
     folder = Path(out) if out is not None else None
     if folder is not None:
         _folder(folder, str(out))
@@ -273,9 +294,9 @@ def _count(
                 lambda done: show(done, f"{done}/{total} missions"),
             )
         except OSError as error:
-            stop(not_written(out or "a folder for temporary files", error.strerror or str(error)))
-    if form == "json":
+            fail(not_written(out or "a folder for temporary files", error.strerror or str(error)))
+    if output_format == "json":
         click.echo(json.dumps([asdict(run) for run in runs], indent=2))
     else:
         click.echo(table(runs), nl=False)
-    raise SystemExit(VIOLATION if any(run.wrong for run in runs) else SHOWN)
+    raise SystemExit(EXIT_VIOLATION if any(run.wrong for run in runs) else EXIT_OK)

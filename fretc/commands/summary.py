@@ -1,4 +1,4 @@
-"""`fretc audit --summary`: what a table of many runs says, for a person or as JSON."""
+"""`fretc audit --summary` and `--query`: aggregated results of many runs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from fretc.terminal.output import NOT_SHOWN, SHOWN, VIOLATION, say, stop
+from fretc.terminal.output import (
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_VIOLATION,
+    fail,
+    print_diagnostics,
+)
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import visible
 
@@ -17,33 +23,35 @@ if TYPE_CHECKING:
     from fretc.audit.outputs.summary import Answer, Summary
 
 
-def summarize(paths: Sequence[str], query: str | None, form: str) -> NoReturn:
-    """Print what tables or evidence say, or the answer to a query; exit as their audit did."""
+def summarize(paths: Sequence[str], query: str | None, output_format: str) -> NoReturn:
+    """Print a summary of evidence, or the result of a query; exit with the status of the audit."""
     from fretc.audit.outputs.summary import run_query, summarize
     from fretc.audit.outputs.table import read
 
-    if form not in ("text", "json"):
-        stop(_no_form(form))
+    if output_format not in ("text", "json"):
+        fail(_no_form(output_format))
     table = read(paths)
     if isinstance(table, Diagnostic):
-        stop(table)
+        fail(table)
     if query is not None:
         answer = run_query(table, query)
         if isinstance(answer, Diagnostic):
-            stop(answer)
-        click.echo(_json(answer.records) if form == "json" else _listed(answer), nl=False)
-        raise SystemExit(SHOWN)
+            fail(answer)
+        click.echo(_json(answer.records) if output_format == "json" else _listed(answer), nl=False)
+        raise SystemExit(EXIT_OK)
     summary = summarize(table)
-    say(summary.remarks)
-    click.echo(_json(summary.as_record) if form == "json" else _text(summary), nl=False)
-    raise SystemExit(VIOLATION if summary.violated else SHOWN if summary.shown else NOT_SHOWN)
+    print_diagnostics(summary.remarks)
+    click.echo(_json(summary.as_record) if output_format == "json" else _text(summary), nl=False)
+    raise SystemExit(
+        EXIT_VIOLATION if summary.violated else EXIT_OK if summary.shown else EXIT_INCONCLUSIVE
+    )
 
 
-def _no_form(form: str) -> Diagnostic:
+def _no_form(output_format: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
-        f"a summary cannot be printed as `{form}`",
-        help="it can as `text` or `json`",
+        f"a summary has no output format `{output_format}`",
+        help="use `text` or `json`",
     )
 
 
@@ -52,7 +60,7 @@ def _json(value: object) -> str:
 
 
 def _plain(value: object) -> object:
-    """Without what JSON has no word for: NaN and the infinities."""
+    """The value with NaN and infinities replaced by None, which JSON can hold."""
     match value:
         case dict():
             return {str(key): _plain(item) for key, item in value.items()}
@@ -125,13 +133,13 @@ def _slowest(summary: Summary) -> tuple[list[str], list[list[str]]]:
 
 
 def _listed(answer: Answer) -> str:
-    """A query's answer: its columns, then its rows."""
+    """Lines of a query result: its columns, then its rows."""
     rows = [["" if value is None else str(value) for value in row] for row in answer.rows]
     return "".join(f"{line}\n" for line in _aligned(list(answer.columns), rows))
 
 
 def _aligned(head: list[str], rows: list[list[str]]) -> Iterator[str]:
-    """Columns of one width each, numbers to the right."""
+    """Lines with aligned columns, numbers to the right."""
     cells = [[visible(cell) for cell in row] for row in (head, *rows)]
     columns = list(zip(*cells, strict=True))
     widths = [max(map(len, column)) for column in columns]

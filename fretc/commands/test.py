@@ -1,6 +1,6 @@
-"""`fretc test`: few short runs that show whether a requirement is right, each with its verdict.
+"""`fretc test`: generate short test traces from requirements, each with its verdict.
 
-`fretc.testing` makes them; this module reads the options, prints and writes.
+`fretc.testing` generates them; this module reads the options, prints and writes.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import OF_AUDITS, project_of
+from fretc.commands.opening import AUDIT_TABLES, project_of
 from fretc.terminal.options import (
     PATH,
     SECONDS,
@@ -22,15 +22,15 @@ from fretc.terminal.options import (
     requirements_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    INTERRUPTED,
-    NOT_SHOWN,
-    SHOWN,
+    EXIT_INCONCLUSIVE,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
     coloured,
-    deliver,
-    say_briefly,
-    say_line,
-    stop,
+    fail,
+    print_project_diagnostics,
+    print_status,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
 from fretish.diagnostics.rendering import visible
@@ -118,7 +118,7 @@ def test(
     line_time: float,
     requirements: str,
     bindings: str | None,
-    form: str,
+    output_format: str,
     output: str | None,
 ) -> None:
     """Generate tests from requirements: short traces, each with its expected verdict.
@@ -144,26 +144,26 @@ def test(
     from fretc.commands import test_against, test_staging
     from fretc.commands.analyze import active_requirements
 
-    project, first = project_of(files, requirements, bindings, ("environment", *OF_AUDITS))
+    project, first = project_of(files, requirements, bindings, ("environment", *AUDIT_TABLES))
     formalized = active_requirements(project, component)
     if show is not None:
         _check_shown(show, [requirement.id for requirement in formalized])
     assumed, remarks = assumptions(formalized, project.declarations)
-    say_briefly(remarks, first)
+    print_project_diagnostics(remarks, first)
     if has_errors(remarks):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     sources = [entry.wording.source.name for entry in project.requirements]
     protected = [*sources, *companions(sources), *filter(None, [bindings])]
     if languages and emitted != "pytest":
-        why = "`--language` is about the tests of `--emit pytest`"
-        stop(Diagnostic(Code.BAD_USAGE, why, help="ask for these, or leave it out"))
+        why = "`--language` needs `--emit pytest`"
+        fail(Diagnostic(Code.BAD_USAGE, why, help="add `--emit pytest`, or remove `--language`"))
     if against is not None:
         if emitted is not None or show is not None:
-            clash = "`--against` tests a program, and makes no tests to emit or show"
-            stop(Diagnostic(Code.BAD_USAGE, clash, help="ask for one of them"))
+            clash = "`--against` tests a program; it cannot be combined with `--emit` or `--show`"
+            fail(Diagnostic(Code.BAD_USAGE, clash, help="remove one of them"))
         place = output or "build/tests/conformance.json"
         test_against.against(
-            against, formalized, assumed, seconds, line_time, form, place, protected
+            against, formalized, assumed, seconds, line_time, output_format, place, protected
         )
     output = output or "build/tests/suite.json"
     on_stage = emitted if emitted in test_staging.FORMS else None
@@ -176,8 +176,8 @@ def test(
     )
     text = f"{to_json(plain(suite))}\n"
     if emitted is not None and emit_to == "-":
-        pass  # what is printed is the tests
-    elif output == "-" or form == "json":
+        pass  # Standard output then holds the tests.
+    elif output == "-" or output_format == "json":
         click.echo(text, nl=False)
     else:
         found = _lines(suite, formalized, show, of_file=saved is not None)
@@ -186,43 +186,43 @@ def test(
     outputs: dict[Path, str] = {} if saved or output == "-" else {Path(output): text}
     if emitted is not None and on_stage is None:
         outputs |= _files(suite, formalized, emitted, emit_to, languages)
-    deliver(outputs, protected)
+    write_outputs(outputs, protected)
     if stopped:
-        raise SystemExit(INTERRUPTED)
+        raise SystemExit(EXIT_INTERRUPTED)
     if on_stage is not None:
-        status = test_staging.staged(project, suite, on_stage, emit_to, runs, jobs)
-        if status != SHOWN:
+        status = test_staging.write_simulated_tests(project, suite, on_stage, emit_to, runs, jobs)
+        if status != EXIT_OK:
             raise SystemExit(status)
-    raise SystemExit(SHOWN if saved or suite.is_complete else NOT_SHOWN)
+    raise SystemExit(EXIT_OK if saved or suite.is_complete else EXIT_INCONCLUSIVE)
 
 
 def _check_shown(id: str, known: Sequence[str]) -> None:
     if id not in known:
         near = suggestion(id, known)
         hint = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
-        stop(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=hint))
+        fail(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=hint))
 
 
 def _of(path: str, requirements: Sequence[FormalizedRequirement]) -> Suite:
-    """The suite of a file, as far as it is about requirements as they are."""
+    """The tests of a file that are about the present requirements."""
     from fretc.testing.exports.saved import WrongError
     from fretc.testing.exports.saved import saved as checked
     from fretc.testing.reader import read
 
     suite = read(path)
     if isinstance(suite, Diagnostic):
-        stop(suite)
-    again = "make it again: `fretc test`"
+        fail(suite)
+    again = "generate it again: `fretc test`"
     try:
         found = checked(suite, requirements)
     except WrongError as error:
-        stop(Diagnostic(Code.BAD_EVIDENCE, f"`{path}`: {error}", help=again))
+        fail(Diagnostic(Code.BAD_EVIDENCE, f"`{path}`: {error}", help=again))
     if found.others:
         others = ", ".join(found.others)
-        say_line(visible(f"left out, because they are other requirements now: {others}"))
+        print_status(visible(f"left out, because the requirements have changed: {others}"))
     if not found.suite.tests:
-        why = f"`{path}` has no test of a requirement as it is"
-        stop(Diagnostic(Code.NOTHING_TO_DO, why, help=again))
+        why = f"`{path}` has no test of a current requirement"
+        fail(Diagnostic(Code.NOTHING_TO_DO, why, help=again))
     return found.suite
 
 
@@ -231,17 +231,17 @@ def _made(
     assumed: Sequence[FormalizedRequirement],
     seconds: float,
 ) -> tuple[Suite, bool]:
-    """The suite, and whether Ctrl-C has stopped it."""
-    from fretc.analysis.worker import Stopped, findings
-    from fretc.terminal.progress import at_work
+    """The test suite, and whether Ctrl-C has stopped the search."""
+    from fretc.analysis.worker import Interrupted, findings
+    from fretc.terminal.progress import print_activity
     from fretc.testing.assembly import jobs, suite
 
     found = []
     stopped = False
     try:
-        for each in findings(jobs(requirements, assumed, seconds), at_work):
+        for each in findings(jobs(requirements, assumed, seconds), print_activity):
             found.append(each)
-    except Stopped:
+    except Interrupted:
         stopped = True
     return suite(requirements, assumed, found), stopped
 
@@ -253,25 +253,25 @@ def _files(
     output: str,
     languages: Sequence[str],
 ) -> dict[Path, str]:
-    """The tests as files; those that cannot be written so are named."""
-    from fretc.testing.exports.files import Form, files
+    """The files of the tests; tests without a file are reported."""
+    from fretc.testing.exports.files import SuiteFormat, files
     from fretc.testing.exports.pytest_file import Language
 
     chosen = [each for each in Language if each in languages] or [Language.PYTHON]
-    artifacts, left = files(suite, requirements, Form(emitted), chosen)
+    artifacts, left = files(suite, requirements, SuiteFormat(emitted), chosen)
     for why in dict.fromkeys(left.values()):
         names = [name for name in left if left[name] == why]
         more = f" and {len(names) - 1} more" if len(names) > 1 else ""
-        say_line(visible(f"not written: {names[0]}{more}: {why}"))
+        print_status(visible(f"not written: {names[0]}{more}: {why}"))
     if output == "-":
-        return {Path("-"): "".join(each.text for each in artifacts)}
-    return {Path(output) / emitted / each.path: each.text for each in artifacts}
+        return {Path("-"): "".join(artifact.text for artifact in artifacts)}
+    return {Path(output) / emitted / artifact.path: artifact.text for artifact in artifacts}
 
 
 def _lines(
     suite: Suite, requirements: Sequence[FormalizedRequirement], show: str | None, *, of_file: bool
 ) -> Iterator[Line]:
-    from fretc.testing.bench import demands
+    from fretc.testing.requirement_model import demands
     from fretc.testing.text_output import lines, lines_of_file, shown
     from fretish.bindings.declarations import Role
 

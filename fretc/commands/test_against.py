@@ -1,6 +1,6 @@
-"""`fretc test --against`: whether a program keeps requirements, whatever happens to it.
+"""`fretc test --against`: test whether a program satisfies requirements.
 
-`fretc.testing.conformance` drives it; this module reads the command, prints and writes.
+`fretc.testing.conformance` runs the program; this module reads the command, prints and writes.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from fretc.terminal.output import (
-    BAD,
-    INTERRUPTED,
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
+    EXIT_INCONCLUSIVE,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
     coloured,
-    deliver,
-    say,
-    stop,
+    fail,
+    print_diagnostics,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
@@ -36,28 +36,28 @@ def against(
     assumed: Sequence[FormalizedRequirement],
     seconds: float,
     line_time: float,
-    form: str,
+    output_format: str,
     output: str,
     protected: Iterable[str],
 ) -> NoReturn:
-    """Test a program, print what was seen, and exit.
+    """Test a program, print the result, and exit.
 
     Args:
-        command: the program and its arguments, as a shell would read them.
+        command: the program and its arguments, in shell syntax.
         requirements: the requirements.
-        assumed: what its environment keeps.
-        seconds: of a processor, for the strategy towards each situation.
-        line_time: seconds that the program may take for a line.
-        form: text or json.
-        output: where the evidence goes; `-` prints it.
-        protected: files that are read.
+        assumed: the assumptions about the environment.
+        seconds: CPU seconds for the strategy towards each situation.
+        line_time: time limit for each line of the program, in seconds.
+        output_format: text or json.
+        output: path of the result; `-` prints it.
+        protected: input files, which no output may replace.
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
     from fretc.analysis.arena.budget import OutOfTimeError
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.arena.variables import UnsupportedError
-    from fretc.terminal.progress import at_work
+    from fretc.terminal.progress import print_activity
     from fretc.testing.conformance.conformance_run import ConformanceRun
     from fretc.testing.conformance.program import Program, ProgramError
     from fretc.testing.conformance.text_output import lines
@@ -65,32 +65,38 @@ def against(
     words = _words(command)
     chosen = roles([*requirements, *assumed])
     if isinstance(chosen, tuple):
-        stop(*chosen)
+        fail(*chosen)
     wrong: Diagnostic | None = None
     stopped = False
     try:
         campaign = ConformanceRun(requirements, assumed, chosen, seconds)
         oracle = campaign.oracle
         try:
-            campaign.run(lambda: Program(words, oracle.inputs, oracle.outputs, line_time), at_work)
+            campaign.run(
+                lambda: Program(words, oracle.inputs, oracle.outputs, line_time), print_activity
+            )
         except ProgramError as error:
             wrong = error.diagnostic
         except KeyboardInterrupt:
             stopped = True
     except (UnsupportedError, OutOfTimeError) as error:
-        stop(Diagnostic(Code.BAD_USAGE, f"no program can be tested against these: {error}"))
+        fail(
+            Diagnostic(
+                Code.BAD_USAGE, f"no program can be tested against these requirements: {error}"
+            )
+        )
     found = campaign.findings(words)
     evidence = f"{to_json(plain(found))}\n"
-    if output == "-" or form == "json":
+    if output == "-" or output_format == "json":
         click.echo(evidence, nl=False)
     else:
         click.echo(coloured([*lines(found, chosen)]), nl=False)
     if output != "-":
-        deliver({Path(output): evidence}, protected)
+        write_outputs({Path(output): evidence}, protected)
     if wrong is not None:
-        say([wrong])
+        print_diagnostics([wrong])
     if stopped:
-        raise SystemExit(INTERRUPTED)
+        raise SystemExit(EXIT_INTERRUPTED)
     raise SystemExit(_status(found, wrong))
 
 
@@ -99,9 +105,9 @@ def _words(command: str) -> list[str]:
     try:
         words = shlex.split(command)
     except ValueError as error:
-        stop(_no_command(command, str(error).lower()))
+        fail(_no_command(command, str(error).lower()))
     if not words:
-        stop(_no_command(command, "it is empty"))
+        fail(_no_command(command, "it is empty"))
     return words
 
 
@@ -110,13 +116,14 @@ def _no_command(command: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
         f"`--against {shlex.quote(command)}` names no program: {why}",
-        help='write the program and its arguments in one word: `--against "python3 program.py"`',
+        help='put the program and its arguments into one pair of quotes: `--against "python3 '
+        'program.py"`',
     )
 
 
 def _status(found: Conformance, wrong: Diagnostic | None) -> int:
     if found.failures:
-        return VIOLATION
+        return EXIT_VIOLATION
     if wrong is not None:
-        return BAD
-    return SHOWN if found.is_complete else NOT_SHOWN
+        return EXIT_USAGE
+    return EXIT_OK if found.is_complete else EXIT_INCONCLUSIVE

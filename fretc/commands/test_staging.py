@@ -1,4 +1,4 @@
-"""`fretc test --emit mcap|scenario`: tests as logs, and missions that show what tests ask for."""
+"""`fretc test --emit mcap|scenario`: tests as logs, or as simulated missions."""
 
 from __future__ import annotations
 
@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.terminal.output import BAD, INTERRUPTED, SHOWN, deliver, not_written, stop
+from fretc.terminal.output import (
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
+    fail,
+    not_written,
+    write_outputs,
+)
 from fretc.terminal.progress import progress
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -16,26 +23,28 @@ from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from compiler.project.project import Project
-    from fretc.testing.log_synthesis.logs import StagedTest
+    from fretc.testing.log_synthesis.logs import LogTestResult
     from fretc.testing.log_synthesis.scenarios import Aim, Found
     from fretc.testing.suite import Suite
 
 FORMS = ("mcap", "scenario")
-"""Of `--emit`: what is staged, and not only written."""
+"""Values of `--emit` that need the simulated robot."""
 
 
 def check(emitted: str, emit_to: str) -> None:
-    """Stop where it cannot be written: without its libraries, or to standard output."""
-    from fretc.commands.simulate import demand_simulation
+    """Exit if the files cannot be written: without the packages, or to standard output."""
+    from fretc.commands.simulate import require_simulation
 
     if emit_to == "-":
-        message = f"`--emit {emitted}` writes many files, which `-` cannot hold"
-        stop(Diagnostic(Code.BAD_USAGE, message, help="name a folder"))
-    demand_simulation()
+        message = f"`--emit {emitted}` writes several files, which cannot be printed with `-`"
+        fail(Diagnostic(Code.BAD_USAGE, message, help="name a folder"))
+    require_simulation()
 
 
-def staged(project: Project, suite: Suite, emitted: str, emit_to: str, runs: int, jobs: int) -> int:
-    """Stage a suite and say what came of it; the exit status."""
+def write_simulated_tests(
+    project: Project, suite: Suite, emitted: str, emit_to: str, runs: int, jobs: int
+) -> int:
+    """Write a suite as logs or scenarios and print the result; returns the exit status."""
     folder = Path(emit_to) / emitted
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -43,7 +52,7 @@ def staged(project: Project, suite: Suite, emitted: str, emit_to: str, runs: int
             return _logs(project, suite, folder)
         return _scenarios(project, suite, folder, runs, jobs)
     except OSError as error:
-        stop(not_written(str(folder), error.strerror or str(error)))
+        fail(not_written(str(folder), error.strerror or str(error)))
 
 
 # Logs -------------------------------------------------------------------------------------------
@@ -52,7 +61,7 @@ def staged(project: Project, suite: Suite, emitted: str, emit_to: str, runs: int
 def _logs(project: Project, suite: Suite, folder: Path) -> int:
     from fretc.testing.log_synthesis.logs import logs
 
-    done: list[StagedTest] = []
+    done: list[LogTestResult] = []
     interrupted = False
     try:
         with progress(len(suite.tests), "logs") as tell:
@@ -62,22 +71,23 @@ def _logs(project: Project, suite: Suite, folder: Path) -> int:
         interrupted = True
     confirmed = [one for one in done if one.outcome == "confirmed"]
     wrong = [one for one in done if one.outcome == "not confirmed"]
-    refused = [one for one in done if one.outcome == "cannot be staged"]
+    refused = [one for one in done if one.outcome == "cannot be recorded"]
     sign = signs.BAD if wrong else signs.GOOD
     click.echo(
-        f"{sign.glyph} {len(confirmed)} of {len(suite.tests)} tests are logs in {folder}: the "
+        f"{sign.glyph} {len(confirmed)} of {len(suite.tests)} tests are written as logs in "
+        f"{folder}: the "
         "audit of each gives the verdict that the test expects"
     )
     for one in wrong:
         click.echo(f"{signs.BAD.glyph} {one.test.name} is not written: {visible(one.why)}")
-    _listed("cannot be staged", ((one.why, one.test.name) for one in refused))
+    _listed("cannot be recorded", ((refusal.why, refusal.test.name) for refusal in refused))
     if interrupted:
-        return INTERRUPTED
-    return BAD if wrong else SHOWN
+        return EXIT_INTERRUPTED
+    return EXIT_USAGE if wrong else EXIT_OK
 
 
 def _listed(what: str, reasons: Iterable[tuple[str, str]]) -> None:
-    """Each reason once, with all that it is the reason of."""
+    """Each reason once, with everything that has this reason."""
     by_reason: dict[str, list[str]] = {}
     for why, name in reasons:
         by_reason.setdefault(why, []).append(name)
@@ -91,9 +101,9 @@ def _listed(what: str, reasons: Iterable[tuple[str, str]]) -> None:
 
 
 def _scenarios(project: Project, suite: Suite, folder: Path, runs: int, jobs: int) -> int:
-    from fretc.testing.log_synthesis.scenarios import Found, search, stageable
+    from fretc.testing.log_synthesis.scenarios import Found, realizable_goals, search
 
-    aims, why = stageable(suite, project)
+    aims, why = realizable_goals(suite, project)
     found, interrupted = Found(), False
     try:
         with progress(runs, "missions") as tell:
@@ -102,19 +112,22 @@ def _scenarios(project: Project, suite: Suite, folder: Path, runs: int, jobs: in
     except KeyboardInterrupt:
         interrupted = True
     except RuntimeError as error:
-        stop(Diagnostic(Code.PROCESS_KILLED, str(error)))
-    words = {(one.requirement, one.situation, one.polarity): one.words for one in suite.obligations}
+        fail(Diagnostic(Code.PROCESS_KILLED, str(error)))
+    words = {
+        (obligation.requirement, obligation.situation, obligation.polarity): obligation.words
+        for obligation in suite.obligations
+    }
     unlike = _written(project, found, folder, words)
     _say(found, aims, why, words, folder, unlike)
     if interrupted:
-        return INTERRUPTED
-    return BAD if unlike else SHOWN
+        return EXIT_INTERRUPTED
+    return EXIT_USAGE if unlike else EXIT_OK
 
 
 def _written(
     project: Project, found: Found, folder: Path, words: Mapping[Aim, str]
 ) -> Collection[str]:
-    """Write what does not come with fretc; what shows something else again is not written."""
+    """Write the new scenarios; one that does not reproduce its result is not written."""
     from fretc.testing.log_synthesis.scenarios import confirmed, text
     from simulation.world.scenario import names
 
@@ -128,7 +141,7 @@ def _written(
                 files[folder / f"{name}.toml"] = written
             else:
                 unlike.append(name)
-    deliver(files)
+    write_outputs(files)
     return unlike
 
 
@@ -154,9 +167,11 @@ def _say(
     for name in found.scenarios:
         click.echo(f"  {name:<16} {len(found.new(name))} not shown before")
     for name in unlike:
-        click.echo(f"{signs.BAD.glyph} {name} is not written: its file does not show the same")
+        click.echo(
+            f"{signs.BAD.glyph} {name} is not written: its file does not reproduce the result"
+        )
     for id, reason in why.items():
-        click.echo(f"{signs.OPEN.glyph} {id} cannot be staged: {visible(reason)}")
+        click.echo(f"{signs.OPEN.glyph} {id} cannot be recorded: {visible(reason)}")
     missing = [aim for aim in aims if aim not in good]
     _listed(
         f"not shown in {found.runs} missions",

@@ -1,4 +1,4 @@
-"""The command about many audits: what is new, fixed, flaky or worse between them."""
+"""`fretc trends`: changes between many audits."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import click
 
 from fretc.terminal.options import PATH, format_option, path_option
 from fretc.terminal.output import (
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
-    deliver,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_VIOLATION,
+    fail,
     painted,
+    print_diagnostics,
     protect,
-    say,
-    stop,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
@@ -39,7 +39,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 @format_option()
 @path_option("--html", metavar="FILE", help="Also write an HTML page with charts.")
 def trends(
-    evidence: tuple[str, ...], by: str | None, level: float, form: str, html: str | None
+    evidence: tuple[str, ...], by: str | None, level: float, output_format: str, html: str | None
 ) -> None:
     """Compare audits: what is newly violated, fixed, flaky or worse.
 
@@ -63,19 +63,19 @@ def trends(
     sources = [required_source(path) for path in dict.fromkeys(evidence)]
     wrong = [each for each in sources if isinstance(each, Diagnostic)]
     if wrong:
-        stop(*wrong)
+        fail(*wrong)
     good = [each for each in sources if not isinstance(each, Diagnostic)]
     try:
         known = trends_of(good, by, level)
     except StoreError as error:
-        stop(error.diagnostic)
+        fail(error.diagnostic)
     if isinstance(known, Diagnostic):
-        stop(known)
+        fail(known)
     if html is not None:
         from fretc.trends.page import html as page
 
-        deliver({Path(html): page(known)}, evidence)
-    if form == "json":
+        write_outputs({Path(html): page(known)}, evidence)
+    if output_format == "json":
         from fretc.trends.json_form import text
 
         click.echo(text(known), nl=False)
@@ -85,16 +85,16 @@ def trends(
 
         click.echo(painted(lines(known, screen())), nl=False)
     if not known.has_pairs:
-        say([_nothing_to_compare()])
-    worse = VIOLATION if known.is_worse else None
-    raise SystemExit(worse or (SHOWN if known.is_comparable else NOT_SHOWN))
+        print_diagnostics([_nothing_to_compare()])
+    worse = EXIT_VIOLATION if known.is_worse else None
+    raise SystemExit(worse or (EXIT_OK if known.is_comparable else EXIT_INCONCLUSIVE))
 
 
 def _nothing_to_compare() -> Diagnostic:
     return Diagnostic(
         Code.NOT_COMPARABLE,
-        "nothing can be compared: no requirement was judged in one scenario in two rounds",
-        help="name an earlier evidence, too; label runs with `scenario`, or give logs of one "
-        "scenario one name",
+        "nothing can be compared: no requirement was evaluated in the same scenario in two rounds",
+        help="also name earlier evidence; label runs with `scenario`, or name all logs of a "
+        "scenario alike",
         severity=Severity.WARNING,
     )

@@ -1,4 +1,4 @@
-"""Trends for a person, on one screen: what is left out is counted, and red comes first."""
+"""Text output of `fretc trends`, on one screen: worst changes first, further ones counted."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from fretish.diagnostics.status_symbols import StatusSymbol
 Line = tuple[Piece, ...]
 _BLANK: Line = (("", None),)
 _MARKS = 12
-"""Rounds whose marks are shown, the newest ones."""
+"""Number of newest rounds whose symbols are shown."""
 _NAME, _ID = 22, 12
-"""The widest column of scenarios, and of ids."""
+"""Maximum columns of scenario names and of ids."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class _Section:
     kinds: tuple[Change, ...]
     sign: StatusSymbol
     most: int
-    """Lines of it."""
+    """Maximum number of lines."""
 
 
 _SECTIONS = (
@@ -142,7 +142,7 @@ def _line(item: Item, screen: Screen) -> Line:
 
 
 def _mark(round_outcome: RoundOutcome | None, verdicts: Sequence[str]) -> Piece:
-    """The sign of a round: of an open one that of its worst verdict."""
+    """The symbol of a round; for an open round that of its worst verdict."""
     if round_outcome is None:
         return " ", None
     word = min(verdicts, key=severity)
@@ -155,7 +155,7 @@ def _column(text: str, columns: int, screen: Screen) -> str:
 
 
 def _words(item: Item) -> str:
-    """How many runs of the newest round, and what else there is to know."""
+    """Number of runs in the newest round, and further information."""
     now = item.rounds[-1] or next((r for r in reversed(item.rounds) if r), ())
     verdicts = [f"{now.count(word)} {word}" for word in dict.fromkeys(sorted(now))]
     if len(verdicts) == 1:
@@ -165,13 +165,15 @@ def _words(item: Item) -> str:
 
 
 def _flaky(trends: Trends, screen: Screen) -> Iterator[Line]:
-    """Those that no other list has."""
+    """Flaky requirements that no other section lists."""
     listed = {Change.NEW, Change.FIRST_VIOLATED, Change.STILL, Change.LOST, Change.FIXED}
     items = [item for item in trends.items if item.flaky and item.change not in listed]
     if not items:
         return
     yield _BLANK
-    yield _title(signs.OPEN, len(items), "flaky: violated now and then, and not now")
+    yield _title(
+        signs.OPEN, len(items), "flaky: violated in some earlier rounds, not in the newest"
+    )
     for item in items[:4]:
         yield _line(item, screen)
     yield from _more(items[4:])

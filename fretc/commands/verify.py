@@ -1,6 +1,6 @@
-"""`fretc verify`: prove that monitors, interceptors and agents keep the requirements.
+"""`fretc verify`: prove that monitors, interceptors and agents satisfy the requirements.
 
-`fretc.verification` proves; this module reads the options, prints the proofs and writes them.
+`fretc.verification` proves; this module reads the options, prints and writes the proofs.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import click
 
 from compiler.logic.claims import PROVERS, Layer
-from fretc.commands.opening import list_refused, project_of
-from fretc.terminal.group import Grouped
+from fretc.commands.opening import print_excluded, project_of
+from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import (
     PATH,
     extras,
@@ -24,15 +24,15 @@ from fretc.terminal.options import (
     requirements_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
     coloured,
-    deliver,
-    fail_at_the_end,
-    say,
-    stop,
+    fail,
+    fail_at_end,
+    print_diagnostics,
+    write_outputs,
 )
 from fretc.verification.layers.languages import language_of
 from fretc.verification.layers.table import OF_MONITOR, in_words
@@ -58,9 +58,9 @@ _HEADINGS = {
         "percepts",
         "ajpf",
     ),
-    "Output": ("form", "every_claim", "output", "traces"),
+    "Output": ("output_format", "every_claim", "output", "traces"),
 }
-"""The names of the parameters of `verify`, under the headings of its help."""
+"""Names of the parameters of `verify`, under the headings of its help."""
 _HELP = f"""Prove that monitors, interceptors and agents do what the requirements say.
 
 FILE is a requirement file, or a folder of them; it replaces `--requirements`.
@@ -75,7 +75,7 @@ Example: fretc verify requirements/r1.fret --monitor
 
 
 @click.command(
-    cls=Grouped,
+    cls=CommandWithHeadings,
     headings=_HEADINGS,
     help=_HELP,
     epilog=extras({"crosshair": "--with crosshair"}),
@@ -145,14 +145,14 @@ def verify(
     requirements: str,
     bindings: str | None,
     limit: int,
-    form: str,
+    output_format: str,
     output: str,
     every_claim: bool,
     traces: str | None,
 ) -> None:
     """The command; its help is `_HELP`."""
     from compiler.project.paths import companions
-    from fretc.terminal.progress import at_work
+    from fretc.terminal.progress import print_activity
     from fretc.verification.ajpf_results import default_paths
     from fretc.verification.engines.sandbox import Limits
     from fretc.verification.layers.request import Request
@@ -160,7 +160,7 @@ def verify(
     from fretc.verification.verify import missing_prover, refusals
 
     if (agent is None) != (properties is None):
-        stop(_half_an_agent(agent))
+        fail(_half_an_agent(agent))
     demanded = _demanded(layers, monitor=monitor, monitor_file=monitor_file)
     layer_names = demanded or tuple(Layer)
     if agent is not None:
@@ -179,24 +179,24 @@ def verify(
         percepts=percepts,
         provers=provers,
         ajpf=_ajpf_proofs(project, results),
-        progress=at_work,
+        progress=print_activity,
     )
     absent = missing_prover(request)
     if absent is not None:
-        stop(absent)
+        fail(absent)
     refused = refusals(project, request)
     if refused:
-        say([*refused.values()])
-        fail_at_the_end()
+        print_diagnostics([*refused.values()])
+        fail_at_end()
     proofs = _proofs(project, request)
     if refused and not proofs:
-        raise SystemExit(BAD)
-    list_refused({id: (why,) for id, why in refused.items()}, len(project.formalized))
+        raise SystemExit(EXIT_USAGE)
+    print_excluded({id: (why,) for id, why in refused.items()}, len(project.formalized))
     own = header.name if header else None
     options = (monitor_file, own, interceptor, agent, properties, bindings, *results)
     sources = [requirement.wording.source.name for requirement in project.requirements]
     inputs = [*sources, *companions(sources), *(name for name in options if name is not None)]
-    texts = [*lines(proofs, every_claim=every_claim)] if form == "text" else None
+    texts = [*lines(proofs, every_claim=every_claim)] if output_format == "text" else None
     _print_and_write(proofs, texts, output, traces, inputs)
     raise SystemExit(_status(proofs))
 
@@ -204,13 +204,12 @@ def verify(
 def _demanded(
     layers: Sequence[str], *, monitor: bool, monitor_file: str | None
 ) -> tuple[Layer, ...]:
-    """The layers that the options name, each once; none: each layer is examined where it applies.
+    """The requested layers, each once; empty: every layer that applies.
 
     Args:
-        layers: of `--layer`.
+        layers: values of `--layer`.
         monitor: whether `--monitor` is given.
-        monitor_file: of `--file`. Who gives a monitor and names no layer asks about that monitor
-            alone.
+        monitor_file: value of `--file`. Without a layer, only the layer `monitor` is used.
     """
     names = dict.fromkeys((*map(Layer, layers), *([Layer.MONITOR] if monitor else [])))
     if not names and monitor_file is not None:
@@ -219,13 +218,13 @@ def _demanded(
 
 
 def _ajpf_proofs(project: Project, results: Sequence[str]) -> Sequence[Proof]:
-    """The proofs that files of results of AJPF hold; an error in one stops the command."""
+    """The proofs in result files of AJPF; exits if a file has an error."""
     from fretc.verification.ajpf_results import ajpf_proofs
 
     proofs, diagnostics = ajpf_proofs(project.formalized, results)
-    say(diagnostics)
+    print_diagnostics(diagnostics)
     if has_errors(diagnostics):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     return proofs
 
 
@@ -234,53 +233,53 @@ def _half_an_agent(agent: str | None) -> Diagnostic:
     present, missing = ("properties", "agent") if agent is None else ("agent", "properties")
     return Diagnostic(
         Code.BAD_USAGE,
-        f"`--{present}` is of no use without `--{missing}`",
+        f"`--{present}` needs `--{missing}`",
         help="name both: `--agent FILE.gwen --properties FILE.psl`",
     )
 
 
 def _project(files: Sequence[str], requirements: str, bindings: str | None) -> Project:
-    """The sound part of the project, which has a requirement at least; else the command stops."""
+    """The usable part of the project; exits if it has no requirement."""
     project, _ = project_of(files, requirements, bindings, ("interceptor", "assume"))
     if not project.formalized:
-        stop(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to verify"))
+        fail(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to verify"))
     return project
 
 
 def _read(path: str | None) -> Source | None:
-    """The text of a file that an option names; None where the option is not given."""
+    """Text of a file that an option names; None if the option is not given."""
     from compiler.files.text_files import read
 
     if path is None:
         return None
     source = read(path)
     if isinstance(source, Diagnostic):
-        stop(source)
+        fail(source)
     return source
 
 
 def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
-    """The header that a monitor in C includes, from its folder; None: it is not in C."""
+    """Header of a monitor in C, from its folder; None: the monitor is not in C."""
     language = language_of(monitor.name) if monitor else None
     if monitor is None or language is None:
         return None
     others = [name for name in layers if name in OF_MONITOR and name != Layer.MONITOR]
     if others:
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
-                f"`--layer {others[0]}` takes a monitor in Python",
-                help=f"ask about `{monitor.name}` with `--layer monitor`",
+                f"`--layer {others[0]}` needs a monitor in Python",
+                help=f"verify `{monitor.name}` with `--layer monitor`",
             )
         )
     if language.name != "C":
         return None
     included = re.search(r'^#include "(\w+\.h)"$', monitor.text, re.MULTILINE | re.ASCII)
     if included is None:
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_MONITOR,
-                f"`{monitor.name}` is no generated monitor: it includes no header of its own",
+                f"`{monitor.name}` is not a generated monitor: it does not include its header",
                 monitor.span(0, 0),
                 help="name a file that `--emit c` wrote",
             )
@@ -289,7 +288,7 @@ def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
 
 
 def _proofs(project: Project, request: Request) -> Sequence[Proof]:
-    """All proofs; a text of the request that cannot be used stops the command."""
+    """All proofs; exits if a given file cannot be used."""
     from fretc.verification.monitor.verifying import NotAMonitorError
     from fretc.verification.verify import prove
 
@@ -298,16 +297,16 @@ def _proofs(project: Project, request: Request) -> Sequence[Proof]:
     except NotAMonitorError as error:
         assert request.monitor is not None
         language = language_of(request.monitor.name)
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_MONITOR,
-                f"`{request.monitor.name}` is no generated monitor: {error}",
+                f"`{request.monitor.name}` is not a generated monitor: {error}",
                 request.monitor.span(0, 0),
                 help=f"name a file that `--emit {language.emit if language else 'monitor'}` wrote",
             )
         )
     if isinstance(proofs, Diagnostic):
-        stop(proofs)
+        fail(proofs)
     return proofs
 
 
@@ -320,13 +319,13 @@ def _print_and_write(
 ) -> None:
     """Print the proofs, and write them as JSON and their counterexamples as tables.
 
-    `--output -` prints the JSON in the place of the text.
+    `--output -` prints the JSON instead of the text.
 
     Args:
-        proofs: all of them.
-        text: the lines to print; None: the JSON is printed.
-        output: the file for the JSON.
-        traces: the folder for the tables; None: none are written.
+        proofs: all proofs.
+        text: lines to print; None: the JSON is printed.
+        output: path of the JSON.
+        traces: folder for the tables; None: none are written.
         inputs: files that no output may replace.
     """
     from compiler.files.build_id import __version__
@@ -340,18 +339,18 @@ def _print_and_write(
         click.echo(document, nl=False)
     elif output != "-":
         click.echo(coloured(text), nl=False)
-    if text is not None or output != "-":  # else it has just been printed
+    if text is not None or output != "-":  # Otherwise the JSON was printed.
         files[Path(output)] = document
     if traces is not None:
         files.update(_trace_files(proofs, Path(traces)))
-    deliver(files, inputs)
+    write_outputs(files, inputs)
 
 
 def _trace_files(proofs: Sequence[Proof], folder: Path) -> dict[Path, str]:
-    """A CSV file for each run that a monitor can step: `<requirement>_<layer>_<number>.csv`.
+    """A CSV file for each counterexample: `<requirement>_<layer>_<number>.csv`.
 
-    Its columns are propositions alone. A run of a closed loop has others behind them, for which
-    a monitor has no place.
+    The columns are propositions. Further columns of a closed loop are left out, because monitors do
+    not read them.
     """
     from fretc.verification.loop.replay import EXTRA
     from fretc.verification.text_output import as_csv
@@ -369,7 +368,9 @@ def _trace_files(proofs: Sequence[Proof], folder: Path) -> dict[Path, str]:
 
 
 def _status(proofs: Sequence[Proof]) -> int:
-    """The exit status, as the help says it.
+    """The exit status, as stated in the help.
+
+        A stop that is never released violates no requirement: it gives 3, not 1.
 
     That a stop is never released breaks no requirement: it is 3, and not 1.
     """
@@ -378,6 +379,6 @@ def _status(proofs: Sequence[Proof]) -> int:
 
     refuted = (proof.claim for proof in proofs if proof.result is Result.COUNTEREXAMPLE)
     if any(claim != RELEASED for claim in refuted):
-        return VIOLATION
+        return EXIT_VIOLATION
     fine = (Result.PROVED, Result.NOT_APPLICABLE)
-    return SHOWN if all(proof.result in fine for proof in proofs) else NOT_SHOWN
+    return EXIT_OK if all(proof.result in fine for proof in proofs) else EXIT_INCONCLUSIVE

@@ -1,4 +1,4 @@
-"""The command about evidence: whether it still stands."""
+"""`fretc verify-evidence`: recompute evidence and compare."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import click
 from fretc.commands.opening import plan_of
 from fretc.commands.sign import installed, require
 from fretc.terminal.options import (
-    OF_LOGS,
+    LOG_EXTRAS,
     PATH,
     analysis_option,
     bindings_option,
-    evidence_place,
+    evidence_path,
     extras,
     format_option,
     jobs_option,
@@ -26,14 +26,14 @@ from fretc.terminal.options import (
     verification_option,
 )
 from fretc.terminal.output import (
-    BAD,
-    INTERRUPTED,
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
+    EXIT_INCONCLUSIVE,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
     coloured,
-    say,
-    stop,
+    fail,
+    print_diagnostics,
 )
 from fretish.diagnostics.diagnostic import (
     Code,
@@ -62,7 +62,7 @@ if TYPE_CHECKING:
 
 @click.command(
     "verify-evidence",
-    epilog=extras({**OF_LOGS, "sign": "what is signed"}),
+    epilog=extras({**LOG_EXTRAS, "sign": "what is signed"}),
 )
 @click.argument("file", type=PATH, required=False, metavar="[FILE]")
 @requirements_option
@@ -98,7 +98,7 @@ if TYPE_CHECKING:
 @click.option(
     "--strict",
     is_flag=True,
-    help="Demand a manifest, and signatures of FILE, of each review, and of the report, proofs "
+    help="Require a manifest, and signatures of FILE, of each review, and of the report, proofs "
     "and analysis if they exist. Signers are those of --signed-by, else those of "
     "allowed_signers beside the requirements, which also says which key belongs to which "
     "reviewer.",
@@ -131,7 +131,7 @@ def verify_evidence(
     labels: tuple[str, ...],
     limit: int,
     jobs: int,
-    form: str,
+    output_format: str,
 ) -> None:
     """Recompute evidence and compare it with what is written.
 
@@ -149,10 +149,10 @@ def verify_evidence(
     from fretc.audit.store.anywhere import required
     from fretc.verification.reader import default_path
 
-    file = evidence_place(file)
+    file = evidence_path(file)
     evidence = required(file)
     if isinstance(evidence, Diagnostic):
-        stop(evidence)
+        fail(evidence)
     whole = evidence.document
     if signed_by is not None:
         others = {"report": report, "proofs": verification, "analysis": analysis}
@@ -175,7 +175,7 @@ def verify_evidence(
     sources = (file, verification, analysis, requirements)
     same = _report(project, report, *sources) if report is not None else None
     against = _against(scope, requirements, manifest)
-    if form == "json":
+    if output_format == "json":
         _print_json(results, same, scope, against)
     else:
         _print(results, same, against)
@@ -185,10 +185,10 @@ def verify_evidence(
 def _status(results: Sequence[Recheck], same: bool | None, scope: Scope) -> int:
     from fretc.reproduction.outcome import Finding
 
-    kinds = {one.finding for one in results}
+    kinds = {result.finding for result in results}
     if Finding.DIFFERS in kinds or same is False:
-        return VIOLATION
-    return NOT_SHOWN if Finding.UNKNOWN in kinds or scope.part else SHOWN
+        return EXIT_VIOLATION
+    return EXIT_INCONCLUSIVE if Finding.UNKNOWN in kinds or scope.part else EXIT_OK
 
 
 def _runs(whole: Document) -> list[str]:
@@ -201,15 +201,15 @@ def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tup
 
     given_labels = given(labels)
     if isinstance(given_labels, Diagnostic):
-        stop(given_labels)
+        fail(given_labels)
     project = load_folder(requirements, bindings)
     if isinstance(project, Diagnostic):
-        stop(project)
+        fail(project)
     return project, replace(plan_of(project, requirements), labels=given_labels)
 
 
 def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict[str, str]:
-    """Run → where its log is, of those that may be opened; of the others it is said."""
+    """Run → path of its log, for logs that may be opened; others are reported."""
     from fretc.logs.storage.log_names import is_url, name_of
     from fretc.logs.storage.places import AllowedLocations
     from fretc.reproduction.results import located
@@ -217,8 +217,8 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
     folders = [name for name in named if not is_url(name)]
     for folder in folders:
         if not Path(folder).is_dir():
-            fix = "name the folder that the logs are in"
-            stop(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=fix))
+            fix = "name the folder of the logs"
+            fail(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=fix))
     places: dict[str, str] = {}
     for folder in folders:
         places = {**located(runs, folder), **places}
@@ -226,8 +226,8 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
         places = {**located(runs, None), **places}
     policy = AllowedLocations(named, offline)
     refusals = {run: why for run, place in places.items() if (why := policy.refusal(place))}
-    fix = "name its folder, or the beginning of its URL, with `--logs`, if you trust it"
-    say(
+    fix = "if you trust it, name its folder or URL prefix with `--logs`"
+    print_diagnostics(
         [
             Diagnostic(
                 Code.FOREIGN_PLACE,
@@ -255,7 +255,7 @@ def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
         if name not in claims:
             near = suggestion(name, claims)
             fix = f"did you mean `{near}`?" if near else f"there are {', '.join(claims)}"
-            stop(Diagnostic(Code.BAD_USAGE, f"no requirement `{name}` is in force", help=fix))
+            fail(Diagnostic(Code.BAD_USAGE, f"no requirement `{name}` is in force", help=fix))
     return Scope(ids, _lock(requirements), part=True)
 
 
@@ -266,7 +266,7 @@ def _lock(requirements: str) -> Lock | None:
     path = sibling_path(requirements, NAME)
     lock = read(path) if path is not None else None
     if isinstance(lock, Diagnostic):
-        stop(lock)
+        fail(lock)
     return lock
 
 
@@ -277,7 +277,7 @@ def _manifest(path: str | None) -> Manifest | None:
         return None
     manifest = read(path)
     if not isinstance(manifest, Manifest):
-        stop(*manifest)
+        fail(*manifest)
     return manifest
 
 
@@ -286,7 +286,7 @@ def _proofs(path: str | None) -> Proofs | None:
 
     proofs = read(path) if path is not None else None
     if isinstance(proofs, Diagnostic):
-        stop(proofs)
+        fail(proofs)
     return proofs
 
 
@@ -295,18 +295,18 @@ def _analyzed(path: str | None) -> AnalyzedSet | None:
 
     known = read(path) if path is not None else None
     if isinstance(known, Diagnostic):
-        stop(known)
+        fail(known)
     return known
 
 
 def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
-    """What was asked, in words: nothing that was not asked is said to stand."""
+    """The extent of the check in words, so that nothing unchecked seems confirmed."""
     count = len(scope.claimed)
     whole = f"{count} requirement{'' if count == 1 else 's'} of `{requirements}`"
     extent = f"only {', '.join(scope.claimed)}, a part" if scope.part else whole
     lock = "`fretc.lock`" if scope.lock is not None else ""
     naming = " and ".join(filter(None, (lock, f"`{manifest}`" if manifest else "")))
-    runs = f"runs by {naming}" if naming else "no lock and no manifest says which runs there are"
+    runs = f"runs by {naming}" if naming else "neither a lock nor a manifest lists the runs"
     return f"{extent}; {runs}"
 
 
@@ -318,7 +318,7 @@ def _unmet(
     others: Mapping[str, str | None],
     manifest: Manifest | None,
 ) -> Sequence[Recheck]:
-    """What `--strict` demands and is missing."""
+    """What `--strict` requires and is missing."""
     from compiler.project.paths import sibling_path
     from fretc.attestation.signatures import SIGNERS
     from fretc.reproduction.strictness import unmet_demands
@@ -334,20 +334,20 @@ def _unmet(
 
 
 def _signatures(files: Sequence[str], signers: str | None) -> SignatureBook:
-    """The signatures of files; those that do not verify end the command."""
+    """The signatures of files; exits if one is invalid."""
     from fretc.attestation.signatures import book
     from fretc.attestation.signers import trusted
 
     known = trusted(signers) if signers is not None else None
     if isinstance(known, Diagnostic):
-        stop(known)
+        fail(known)
     signatures = book(files, known)
     if isinstance(signatures, Diagnostic):
-        stop(signatures)
+        fail(signatures)
     broken = list(signatures.diagnostics())
-    say(broken)
+    print_diagnostics(broken)
     if has_errors(broken):
-        raise SystemExit(BAD)
+        raise SystemExit(EXIT_USAGE)
     return signatures
 
 
@@ -367,7 +367,7 @@ def _rechecked(
 
     results = recheck(whole, plan, places, local_executor(jobs), scope, manifest)
     if isinstance(results, Diagnostic):
-        stop(results)
+        fail(results)
     return results
 
 
@@ -376,24 +376,24 @@ def _reproved(
 ) -> Sequence[Recheck]:
     from fretc.reproduction.outcome import PROOFS, unknown
     from fretc.reproduction.proofs import prove_again, unproved_plans
-    from fretc.terminal.progress import at_work
+    from fretc.terminal.progress import print_activity
     from fretc.verification.engines.sandbox import Limits
 
     missing = tuple(unproved_plans(project, proofs.proofs if proofs else (), scope.claimed))
     if proofs is None:
         return missing
     if skip:
-        return (unknown(PROOFS, "", "no proof was made again: `--no-proofs`"), *missing)
-    results = prove_again(project, proofs, Limits(seconds=limit), scope.claimed, at_work)
+        return (unknown(PROOFS, "", "the proofs were not repeated: `--no-proofs`"), *missing)
+    results = prove_again(project, proofs, Limits(seconds=limit), scope.claimed, print_activity)
     if isinstance(results, Diagnostic):
-        stop(results)
+        fail(results)
     return (*results, *missing)
 
 
 def _asked_again(
     project: Project, known: AnalyzedSet, scope: Scope, *, skip: bool
 ) -> Sequence[Recheck]:
-    """Whether the requirements of an analysis can be kept together, asked again."""
+    """The repeated analysis of the requirement set, compared with the stored one."""
     from fretc.analysis.analysis import Options
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.assumptions import assumptions
@@ -403,7 +403,7 @@ def _asked_again(
     from fretc.reproduction.sets import compared
 
     if skip or scope.part:
-        why = f"nothing was analyzed again: `{'--no-analysis' if skip else '--only'}`"
+        why = f"the analysis was not repeated: `{'--no-analysis' if skip else '--only'}`"
         return (unknown(TOGETHER, "", why),)
     document = known.document
     in_force = [
@@ -415,17 +415,17 @@ def _asked_again(
     assumed, remarks = assumptions(in_force, project.declarations)
     chosen = roles([*requirements, *assumed])
     if has_errors(remarks):
-        stop(*remarks)
+        fail(*remarks)
     if isinstance(chosen, tuple):
-        stop(*chosen)
+        fail(*chosen)
     now, stopped = asked(requirements, assumed, chosen, Options(as_fret=document.as_fret))
     if stopped:
-        raise SystemExit(INTERRUPTED)
+        raise SystemExit(EXIT_INTERRUPTED)
     old = [differs(TOGETHER, "", why) for why in changes(document, requirements, assumed)]
     others = (
         requirement.id for requirement in in_force if requirement not in requirements
-    )  # of another `--component`, or new
-    new = [unknown(TOGETHER, id, "it was no part of the set") for id in others]
+    )  # A requirement outside `--component`, or a new one.
+    new = [unknown(TOGETHER, id, "it was not part of the set") for id in others]
     return (*old, *new, *compared(document, now))
 
 
@@ -437,7 +437,7 @@ def _report(
     analysis: str | None,
     requirements: str,
 ) -> bool:
-    """Whether the report that is made now is the one in the file, byte for byte."""
+    """Whether the report that is made now equals the file, byte for byte."""
     from compiler.files.text_files import read
     from compiler.project.paths import sibling_path
     from fretc.attestation.signatures import SIGNERS
@@ -445,7 +445,7 @@ def _report(
 
     source = read(path)
     if isinstance(source, Diagnostic):
-        stop(source)
+        fail(source)
     names = [sibling_path(requirements, name) for name in ("fretc.lock", "waivers.toml", SIGNERS)]
     current = make(
         project,
@@ -463,7 +463,7 @@ def _print(results: Sequence[Recheck], same: bool | None, against: str) -> None:
     from fretc.reproduction.outcome import SIGNS, Finding
 
     lines: list[tuple[str, str | None]] = []
-    width = max((len(one.requirement) for one in results), default=0)
+    width = max((len(result.requirement) for result in results), default=0)
     run = None
     for one in results:
         if one.run != run:
@@ -474,7 +474,7 @@ def _print(results: Sequence[Recheck], same: bool | None, against: str) -> None:
         lines.append((f"  {sign.glyph} {one.requirement:<{width}}  {text}", sign.colour))
     if same is not None:
         sign = SIGNS[Finding.STANDS if same else Finding.DIFFERS]
-        text = "the same, byte for byte" if same else "another one is made now"
+        text = "the same, byte for byte" if same else "the report made now is different"
         lines.append((f"{sign.glyph} report  {text}", sign.colour))
     totals = ", ".join(f"{finding} {count}" for finding, count in _counts(results, same).items())
     lines.append((f"{totals} ({against})", None))
@@ -482,7 +482,7 @@ def _print(results: Sequence[Recheck], same: bool | None, against: str) -> None:
 
 
 def _counts(results: Sequence[Recheck], same: bool | None) -> dict[str, int]:
-    """How many of each finding, the report among them."""
+    """Number of each finding, including the report."""
     from fretc.reproduction.outcome import Finding, counts
 
     totals = {str(finding): count for finding, count in counts(results).items()}
@@ -497,7 +497,7 @@ def _print_json(results: Sequence[Recheck], same: bool | None, scope: Scope, aga
     from compiler.files.templating import to_json
 
     record = {
-        "results": [asdict(one) for one in results],
+        "results": [asdict(result) for result in results],
         "report_is_the_same": same,
         "counts": _counts(results, same),
         "only": list(scope.claimed) if scope.part else None,

@@ -1,4 +1,4 @@
-"""The command that watches a robot that runs."""
+"""`fretc watch`: check a running robot against the requirements."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import OF_AUDITS, plan_of
-from fretc.terminal.group import Grouped
+from fretc.commands.opening import AUDIT_TABLES, plan_of
+from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import PATH, bindings_option, extras, path_option, requirements_option
 from fretc.terminal.output import (
-    BAD,
-    NOT_SHOWN,
-    SHOWN,
-    VIOLATION,
-    deliver,
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
+    EXIT_VIOLATION,
+    fail,
     not_written,
+    print_diagnostics_below,
+    print_status,
     protect,
-    say_also,
-    say_line,
-    stop,
+    write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
@@ -35,13 +35,13 @@ if TYPE_CHECKING:
 
 _WATCH = {
     "Input": ("requirements", "bindings", "follow"),
-    "Output": ("form", "record", "evidence"),
+    "Output": ("output_format", "record", "evidence"),
     "Actions": ("publish", "command"),
 }
 
 
 @click.command(
-    cls=Grouped,
+    cls=CommandWithHeadings,
     headings=_WATCH,
     epilog=extras({"live": "dds, foxglove and --publish"}),
 )
@@ -51,7 +51,7 @@ _WATCH = {
 @click.option("--follow", is_flag=True, help="Wait for more data at the end of the MCAP file.")
 @click.option(
     "--format",
-    "form",
+    "output_format",
     type=click.Choice(("text", "jsonl")),
     default="text",
     show_default=True,
@@ -82,7 +82,7 @@ def watch(
     requirements: str,
     bindings: str | None,
     follow: bool,
-    form: str,
+    output_format: str,
     record: str | None,
     evidence: str | None,
     publish: tuple[str, ...],
@@ -110,86 +110,88 @@ def watch(
     from fretc.watch.watch import Watch
 
     if evidence is not None and record is None:
-        stop(_needs_recording())
+        fail(_needs_recording())
     reaction = None if command is None else Reaction(notify.words(command, "--on-violation"))
     source = chosen(words, follow=follow)
     if isinstance(source, Diagnostic):
-        stop(source)
+        fail(source)
     project, plan, inputs = _planned(requirements, bindings)
     outputs = [Path(name) for name in (record, evidence) if name is not None and name != "-"]
     protect(outputs, [*inputs, *words])
     if record == evidence and record is not None:
-        stop(not_written(record, "two outputs would go there"))
+        fail(not_written(record, "two outputs would go there"))
     if record == "-":
-        stop(not_written(record, "a recording is a file"))
+        fail(not_written(record, "a recording cannot be printed"))
     for path in outputs:
-        if path.is_dir():  # not after a night of watching
-            stop(not_written(str(path), "it is a folder"))
+        if path.is_dir():  # Checked before the watch, which may take all night.
+            fail(not_written(str(path), "it is a folder"))
     publishers = _opened(publish, source)
     try:
         followed = source.name if isinstance(source, Log) else None
         run = Watch(plan, Path(record) if record is not None else None, followed)
     except OSError as error:
-        stop(not_written(str(record), error.strerror or str(error)))
+        fail(not_written(str(record), error.strerror or str(error)))
     titles = {requirement.id: requirement.entry.title for requirement in project.formalized}
-    shown = outputs_of(form, titles)
+    shown = outputs_of(output_format, titles)
     with until_stopped() as stopped:
         watched(run, source, shown, reaction, Publishing(publishers), stopped)
-    status = BAD if run.failed else _status(run.runs)
+    status = EXIT_USAGE if run.failed else _status(run.runs)
     if evidence is not None:
         status = max(status, _audited(plan, run.recordings, evidence, inputs, project))
     raise SystemExit(status)
 
 
 def _opened(words: Sequence[str], source: Source) -> Sequence[Publisher]:
-    """Where verdicts go; where a server is, is said."""
+    """The publishers of verdicts; prints the address of a server."""
     if not words:
         return ()
     from fretc.watch.publishing.choice import addresses, chosen
 
     publishers = chosen(words, source)
     if isinstance(publishers, Diagnostic):
-        stop(publishers)
+        fail(publishers)
     for address in addresses(publishers):
-        say_line(f"publishes at {address}: open it in Foxglove")
+        print_status(f"publishes at {address}: open it in Foxglove")
     return publishers
 
 
 def _planned(requirements: str, bindings: str | None) -> tuple[Project, Plan, Sequence[str]]:
-    """The plan, which is that of an audit, and the files that it is made of."""
+    """The audit plan, and its input files."""
     from compiler.project.folder import load
     from compiler.project.paths import companions, requirement_files, sibling_path
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
-        stop(files)
-    project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
+        fail(files)
+    project = load(
+        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
+    )
     plan = plan_of(project, requirements)
     if plan.declarations.clock.effective_lateness is None:
-        stop(_needs_lateness(plan))
+        fail(_needs_lateness(plan))
     return project, plan, (*files, *companions(files), *([bindings] if bindings else []))
 
 
 def _status(runs: Sequence[RunEnded]) -> int:
     verdicts = {verdict for run in runs for verdict in run.verdicts.values()}
     if "violated" in verdicts:
-        return VIOLATION
-    return SHOWN if verdicts == {"satisfied"} else NOT_SHOWN
+        return EXIT_VIOLATION
+    return EXIT_OK if verdicts == {"satisfied"} else EXIT_INCONCLUSIVE
 
 
 def _audited(
     plan: Plan, logs: Sequence[str], evidence: str, inputs: Sequence[str], project: Project
 ) -> int:
-    """Write what an audit says of the recordings, through its own door."""
+    """Audit the recordings and write the evidence."""
     from fretc.audit.many_logs import local_executor
     from fretc.commands.audit_progress import audit_in_memory
 
     if not logs:
-        stop(Diagnostic(Code.NOTHING_TO_DO, "nothing was recorded: there is no evidence"))
+        fail(Diagnostic(Code.NOTHING_TO_DO, "nothing was recorded: there is no evidence"))
     result = audit_in_memory(plan, logs, local_executor(1))
-    say_also(project.answered(result.diagnostics), ())
-    deliver({Path(evidence): result.evidence}, [*inputs, *logs])
-    return SHOWN if result.read == len(logs) else BAD
+    print_diagnostics_below(project.answered(result.diagnostics), ())
+    write_outputs({Path(evidence): result.evidence}, [*inputs, *logs])
+    return EXIT_OK if result.read == len(logs) else EXIT_USAGE
 
 
 def _needs_lateness(plan: Plan) -> Diagnostic:
@@ -197,16 +199,16 @@ def _needs_lateness(plan: Plan) -> Diagnostic:
     start = source.text.find("[clock]")
     return Diagnostic(
         Code.NO_LATENESS,
-        f"the clock goes by `{plan.declarations.clock.time}`, and nothing says how late messages "
-        "may arrive",
+        f"the clock uses `{plan.declarations.clock.time}`, but the bindings do not say how late "
+        "messages may arrive",
         source.span(start, start + len("[clock]")) if start >= 0 else None,
-        'add `lateness = "50 ms"` under `[clock]`: what messages of the robot take at most',
+        'add `lateness = "50 ms"` under `[clock]`: the longest delay of a message',
     )
 
 
 def _needs_recording() -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
-        "`--evidence` is what an audit says of the recording, and nothing is recorded",
+        "`--evidence` needs a recording, and nothing is recorded",
         help="add `--record run.mcap`",
     )

@@ -1,4 +1,4 @@
-"""A watch, shown: on a screen that is drawn anew, as lines, or as lines of JSON."""
+"""Output of `fretc watch`: a screen, lines of text, or lines of JSON."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import Protocol
 
 import click
 
-from fretc.terminal.output import coloured, painted, say
+from fretc.terminal.output import coloured, painted, print_diagnostics
 from fretc.terminal.screen import screen
 from fretc.watch.events import DiagnosticEvent, StateChange, WatchEvent
 from fretc.watch.json_lines import line as json_line
@@ -27,48 +27,48 @@ from fretc.watch.watch import Watch
 from fretish.diagnostics.rendering import visible
 
 _PERIOD = 0.2
-"""Seconds from one drawing of the screen to the next."""
+"""Seconds between two updates of the screen."""
 
 
 class Output(Protocol):
-    """Where a watch is shown."""
+    """Output of a watch."""
 
     def tell(self, news: WatchEvent, session: Session) -> None:
-        """Something has happened."""
+        """Show an event."""
 
     def refresh(self, session: Session) -> None:
-        """Time has passed."""
+        """Update the output after some time."""
 
     def end(self, session: Session) -> None:
-        """Nothing more comes."""
+        """End the output."""
 
 
 class JsonLines:
-    """An object for each piece of news."""
+    """JSON lines: an object for each event."""
 
     def tell(self, news: WatchEvent, session: Session) -> None:
-        """A line, at once."""
+        """Print the event as a line, at once."""
         click.echo(json.dumps(json_line(news), sort_keys=True))
         sys.stdout.flush()
 
     def refresh(self, session: Session) -> None:
-        """Nothing: only news is reported."""
+        """Nothing: only events are printed."""
 
     def end(self, session: Session) -> None:
-        """Nothing more."""
+        """Nothing."""
 
 
 class Lines:
-    """A line for each piece of news, where there is no terminal."""
+    """Text lines: a line for each event, without a terminal."""
 
     def __init__(self) -> None:
         self._start: int | None = None
 
     def tell(self, news: WatchEvent, session: Session) -> None:
-        """What there is to say of it."""
+        """Print the event."""
         self._start = self._start if self._start is not None else session.first_tick
         if isinstance(news, DiagnosticEvent):
-            say([news.diagnostic])
+            print_diagnostics([news.diagnostic])
             return
         text = line(news, self._start)
         if text is not None:
@@ -76,34 +76,34 @@ class Lines:
             sys.stdout.flush()
 
     def refresh(self, session: Session) -> None:
-        """Nothing: only news is reported."""
+        """Nothing: only events are printed."""
 
     def end(self, session: Session) -> None:
-        """Nothing more."""
+        """Nothing."""
 
 
 class Board:
-    """A screen that is drawn anew, below the news."""
+    """Screen with a row for each requirement below the scrolling events."""
 
     def __init__(self, titles: Mapping[str, str]) -> None:
-        """Nothing is drawn yet; `titles` are those of the requirements."""
+        """An empty screen; `titles` are those of the requirements."""
         self._titles, self._lines = titles, Lines()
         self._height, self._drawn = 0, 0.0
 
     def tell(self, news: WatchEvent, session: Session) -> None:
-        """News scrolls by above the rows; what the rows show is no news."""
+        """Print an event above the rows; changes that the rows show are not printed."""
         if isinstance(news, StateChange) and news.before is None:
             return
         self._clear()
         self._lines.tell(news, session)
 
     def refresh(self, session: Session) -> None:
-        """Draw the rows, if it is time."""
+        """Draw the rows, if an update is due."""
         if time.monotonic() - self._drawn >= _PERIOD:
             self._draw(session)
 
     def end(self, session: Session) -> None:
-        """The rows stay as they are at the end."""
+        """Leave the final rows on the screen."""
         self._draw(session)
         self._height = 0
 
@@ -120,16 +120,16 @@ class Board:
             self._height = 0
 
 
-def outputs_of(form: str, titles: Mapping[str, str]) -> Output:
-    """Where a watch is shown."""
-    if form == "jsonl":
+def outputs_of(output_format: str, titles: Mapping[str, str]) -> Output:
+    """The outputs of a watch."""
+    if output_format == "jsonl":
         return JsonLines()
     return Board(titles) if sys.stdout.isatty() else Lines()
 
 
 @contextmanager
 def until_stopped() -> Iterator[Flag]:
-    """A flag that Ctrl-C and SIGTERM set: what is being done is ended in order.
+    """Yield a flag that Ctrl-C and SIGTERM set, so that the current work is finished.
 
     A second Ctrl-C interrupts at once.
     """
@@ -156,7 +156,10 @@ def watched(
     publishing: Publishing,
     stopped: Flag,
 ) -> None:
-    """Watch until the source ends or the user stops it; the recording is whole afterwards.
+    """Watch until the source ends or the user stops it; then the recording is complete.
+
+    Raises:
+        OSError: standard output was closed.
 
     Raises:
         OSError: nobody reads any more what is shown.

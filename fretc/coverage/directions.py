@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from fretc.coverage.coverage import Coverage, CoverageStatus
-from fretc.testing.suite import Met, Obligation, Polarity, Repeat, Suite, Test
+from fretc.testing.suite import GoalResult, GoalStatus, Polarity, Repeat, Suite, Test
 from fretish.bindings.amounts import seconds
 from fretish.units import nanoseconds
 
@@ -54,12 +54,10 @@ def directions(suite: Suite, fingerprints: Mapping[str, str]) -> Directions:
         if fingerprints.get(requirement.id) == requirement.fingerprint
     }
     tests = {test.name: test for test in suite.tests}
-    groups: dict[tuple[str, str], dict[Polarity, Obligation]] = {}
-    for obligation in suite.obligations:
-        if obligation.requirement in current:
-            groups.setdefault((obligation.requirement, obligation.situation), {})[
-                obligation.polarity
-            ] = obligation
+    groups: dict[tuple[str, str], dict[Polarity, GoalResult]] = {}
+    for one in suite.obligations:
+        if one.requirement in current:
+            groups.setdefault((one.requirement, one.situation), {})[one.polarity] = one
     found = {
         key: _direction(both, tests, current[key[0]], nanoseconds(suite.clock))
         for key, both in groups.items()
@@ -68,19 +66,19 @@ def directions(suite: Suite, fingerprints: Mapping[str, str]) -> Directions:
 
 
 def _direction(
-    both: Mapping[Polarity, Obligation],
+    both: Mapping[Polarity, GoalResult],
     tests: Mapping[str, Test],
     sentence: str,
     tick: int | None,
 ) -> Direction | None:
     for polarity, way in ((Polarity.KEPT, Way.KEPT), (Polarity.BROKEN, Way.BROKEN)):
         one = both.get(polarity)
-        if one is None or one.outcome is Met.NOT_SEARCHED:
+        if one is None or one.outcome is GoalStatus.NOT_SEARCHED:
             return None
-        if one.outcome is Met.MET:
+        if one.outcome is GoalStatus.MET:
             known = [tests[name] for name in one.tests if name in tests]
             return Direction(way, steps(known[0], sentence, tick)) if known else None
-    excluded = any(one.outcome is Met.EXCLUDED for one in both.values())
+    excluded = any(one.outcome is GoalStatus.EXCLUDED for one in both.values())
     return Direction(Way.EXCLUDED if excluded else Way.NONE, "")
 
 

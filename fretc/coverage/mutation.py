@@ -24,7 +24,7 @@ from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.traces import Trace, trace
 from fretc.logs.storage.log_names import STDIN, name_of
-from fretc.testing.suite import Fate, Suite
+from fretc.testing.suite import MutantStatus, Suite
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors import kernel
@@ -246,9 +246,9 @@ class MutationResult:
         current = {batch.id for batch in self.batches if known.get(batch.id) == batch.fingerprint}
         keys = {(batch.id, one.key) for batch in self.batches for one in _all(batch)}
         proved = {
-            (mutant.requirement, mutant.key)
-            for mutant in suite.mutants
-            if mutant.outcome is Fate.EQUIVALENT and mutant.requirement in current
+            (each.requirement, each.key)
+            for each in suite.mutants
+            if each.outcome is MutantStatus.EQUIVALENT and each.requirement in current
         }
         return replace(self, equivalent=frozenset(proved & keys - self.noticed.keys()))
 

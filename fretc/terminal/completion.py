@@ -1,4 +1,4 @@
-"""Completion in a shell: the script that it loads, and the answers to what the script asks.
+"""Shell completion: the script that a shell loads, and the answers to its queries.
 
 The script runs `fretc` with `_FRETC_COMPLETE` in its environment. Source: click's documentation,
 Shell Completion.
@@ -16,15 +16,15 @@ _NAME, _VARIABLE = "fretc", "_FRETC_COMPLETE"
 
 
 def script(command: click.Command, shell: str) -> str:
-    """What the shell is to load; `shell` is one of `SHELLS`."""
+    """The completion script; `shell` is one of `SHELLS`."""
     kind = get_completion_class(shell)
     assert kind is not None
-    # The source of bash alone would first run `bash`, to warn of an old one.
+    # `source` of bash alone would run `bash` to warn about old versions.
     return ShellComplete.source(kind(command, {}, _NAME, _VARIABLE))
 
 
-def answered(command: click.Command) -> bool:
-    """Whether it was a shell that asked; what may follow is then printed."""
+def answer_query(command: click.Command) -> bool:
+    """Whether this run is a completion query; if so, the completions are printed."""
     question = os.environ.get(_VARIABLE)
     if question is None:
         return False

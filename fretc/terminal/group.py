@@ -1,4 +1,4 @@
-"""`fretc FILE...` and `fretc COMMAND ...`: which is which."""
+"""The command group: `fretc FILE...` and `fretc COMMAND ...`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from fretc.terminal.options import PATH
-from fretc.terminal.output import stop
+from fretc.terminal.output import fail
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 
 _OWN = ("-h", "--help", "--version", "--parents")
@@ -22,10 +22,10 @@ DEFAULT = "compile"
 
 
 class Registry(MutableMapping[str, click.Command]):
-    """Commands by their names. A module is imported when its command is looked up."""
+    """Commands by name; a command's module is imported when it is looked up."""
 
     def __init__(self, places: Mapping[str, str]) -> None:
-        """Nothing is imported yet; a place is `module:attribute`."""
+        """The registry of `module:attribute` paths; nothing is imported."""
         self._places = places
         self._commands: dict[str, click.Command] = {}
 
@@ -52,10 +52,10 @@ class Registry(MutableMapping[str, click.Command]):
 
 
 class Commands(click.Group):
-    """Sub-commands, and `FILE...` without one; a word that is neither gets a suggestion.
+    """Group of commands with a default command; an unknown command gets a suggestion.
 
     Args:
-        summaries: a line for each command, under headings.
+        summaries: heading → command → its line in the help.
     """
 
     def __init__(self, *, summaries: Mapping[str, Mapping[str, str]], **attributes: Any) -> None:
@@ -63,51 +63,51 @@ class Commands(click.Group):
         self._summaries = summaries
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """All commands under their headings; no command is imported for its line."""
+        """Write all commands under their headings, without importing them."""
         width = max(len(name) for lines in self._summaries.values() for name in lines)
         for heading, lines in self._summaries.items():
             with formatter.section(heading):
                 formatter.write_dl([(name.ljust(width), text) for name, text in lines.items()])
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Put the default command before a file."""
+        """Insert the default command before a file."""
         if args and args[0] not in self.commands and args[0].partition("=")[0] not in _OWN:
             named = args[0].startswith("-") or _is_path(args[0])
-            if not named and not ctx.resilient_parsing:  # a shell asks what could come next
-                stop(_unknown_command(args[0], [*self.commands]))
+            if not named and not ctx.resilient_parsing:  # A shell asks for completions.
+                fail(_unknown_command(args[0], [*self.commands]))
             args = [DEFAULT, *args]
         return super().parse_args(ctx, args)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem[Any]]:
-        """Commands, own options, and files: these first, for bash forgets what comes before."""
+        """Complete files, commands and options; files first, because bash drops earlier ones."""
         return [*PATH.files(incomplete), *super().shell_complete(ctx, incomplete)]
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """All commands that have a name."""
+        """All named commands."""
         return [name for name in self.commands if name != DEFAULT]
 
     def format_usage(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Both forms."""
+        """Write both forms of the usage."""
         formatter.write_usage("fretc", "FILE... [--emit KIND]\n       fretc COMMAND ...", "Usage: ")
 
 
 class Compile(click.Command):
-    """The default command: it has no name of its own."""
+    """The default command, which has no name."""
 
     def format_usage(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """As it is typed."""
+        """Write the usage as it is typed."""
         formatter.write_usage("fretc", "FILE... [OPTIONS]")
 
 
-class Grouped(click.Command):
-    """A command with many options: its help shows them under headings."""
+class CommandWithHeadings(click.Command):
+    """Command with many options: its help shows them under headings."""
 
     def __init__(self, *, headings: Mapping[str, Sequence[str]], **attributes: Any) -> None:
         super().__init__(**attributes)
         self._headings = headings
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """The options under each heading in its order; those under none come last."""
+        """Write the options under their headings; others come last."""
         options = {o.name: o for o in self.get_params(ctx) if isinstance(o, click.Option)}
         named = {heading: [options.pop(n) for n in ns] for heading, ns in self._headings.items()}
         for heading, some in (*named.items(), ("Other", [*options.values()])):
@@ -116,7 +116,7 @@ class Grouped(click.Command):
 
 
 def is_sentence(words: str) -> bool:
-    """Whether it is a requirement itself, perhaps misspelt, and not the name of something."""
+    """Whether the argument is a requirement sentence, perhaps misspelt, and not a file."""
     shall = any(suggestion(word, ("shall", "should", "must"), 0.8) for word in words.split()[1:])
     return shall and not Path(words).exists()
 
@@ -131,13 +131,13 @@ def _unknown_command(word: str, commands: Sequence[str]) -> Diagnostic:
     if is_sentence(word):
         return Diagnostic(
             Code.UNKNOWN_COMMAND,
-            "a sentence is neither a command of fretc nor a file",
-            help=f"type `fretc explain {quote(word)}`, or `fretc -` and then the sentence",
+            "the argument is a sentence, not a command or a file",
+            help=f"use `fretc explain {quote(word)}`, or pipe the sentence into `fretc -`",
         )
     near = suggestion(word, [c for c in commands if c != DEFAULT])
     names = ", ".join(c for c in commands if c != DEFAULT)
     return Diagnostic(
         Code.UNKNOWN_COMMAND,
-        f"`{word}` is no command of fretc, and no file",
-        help=f"did you mean `fretc {near}`?" if near else f"there are {names}; or name a file",
+        f"`{word}` is neither a command of fretc nor a file",
+        help=f"did you mean `fretc {near}`?" if near else f"commands: {names}; or name a file",
     )

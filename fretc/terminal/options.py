@@ -1,4 +1,4 @@
-"""Options that several commands have: one spelling, one meaning, one help."""
+"""Options that several commands share: one spelling, meaning and help for each."""
 
 from __future__ import annotations
 
@@ -10,42 +10,42 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
-from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE, stop
+from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE, fail
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 Command = Callable[..., Any]
-OF_LOGS = {
+LOG_EXTRAS = {
     "bags": "bags (.bag, .db3) and messages defined in IDL",
     "protobuf": "messages in Protobuf",
     "remote": "URLs",
 }
-"""What a command that reads logs needs extras for."""
+"""Extras for commands that read logs, and what needs them."""
 
 
 def extras(needed: Mapping[str, str]) -> str:
-    """The end of a help.
+    """Last paragraph of a help: the optional packages.
 
     Args:
-        needed: of each extra, what needs it.
+        needed: extra → what needs it.
     """
     parts = "; ".join(f"`{name}` for {what}" for name, what in needed.items())
     return f"Optional packages (`pip install 'fretc[NAME]'`): {parts}."
 
 
 class _Path(click.ParamType[str]):
-    """The name of a file or folder, which a shell can complete; its reader checks it."""
+    """Parameter type: path of a file or folder, with shell completion."""
 
     name = "path"
 
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem[Any]]:
-        """Let the shell look for files."""
+        """Let the shell complete file names."""
         return self.files(incomplete)
 
     @staticmethod
     def files(incomplete: str) -> list[CompletionItem[Any]]:
-        """What tells a shell to complete the name of a file."""
+        """The item that makes a shell complete file names."""
         return [CompletionItem(incomplete, type="file")]
 
 
@@ -53,13 +53,13 @@ PATH = _Path()
 
 
 class _Seconds(click.FloatRange):
-    """A time that passes: more than 0, and a number (a search ends at no time that is none)."""
+    """Parameter type: a duration above 0 in seconds; NaN is rejected."""
 
     def __init__(self) -> None:
         super().__init__(min=0, min_open=True)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """As of a range; no comparison excludes what is not a number."""
+        """Convert as for a range; NaN is rejected because no comparison excludes it."""
         seconds = super().convert(value, param, ctx)
         if math.isnan(seconds):
             self.fail(f"{value} is not a number of seconds", param, ctx)
@@ -69,34 +69,21 @@ class _Seconds(click.FloatRange):
 SECONDS = _Seconds()
 
 
-class Renamed(click.Option):
-    """An option with an earlier spelling, which still works and stands in no help."""
-
-    def __init__(self, *spellings: Any, earlier: str, **attributes: Any) -> None:
-        super().__init__(*spellings, **attributes)
-        self._earlier = earlier
-
-    def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
-        """Take both spellings."""
-        super().add_to_parser(parser, ctx)
-        parser.add_option(obj=self, opts=[self._earlier], dest=self.name, action="store")
-
-
 def path_option(*spellings: str, **attributes: Any) -> Callable[[Command], Command]:
     """An option that names a file or folder."""
     return click.option(*spellings, type=PATH, **attributes)
 
 
 def output_option(**attributes: Any) -> Callable[[Command], Command]:
-    """`-o`, `--output`: where the main thing goes that the command makes."""
+    """`-o`, `--output`: path of the command's main output."""
     return path_option("-o", "--output", **attributes)
 
 
 def format_option(*others: str, text: str = "Output format.") -> Callable[[Command], Command]:
-    """`--format`: text for a person, JSON for a program, and perhaps others."""
+    """`--format`: text, JSON, and perhaps other formats."""
     return click.option(
         "--format",
-        "form",
+        "output_format",
         type=click.Choice(("text", "json", *others)),
         default="text",
         show_default=True,
@@ -118,16 +105,17 @@ hazards_option = path_option(
 )
 
 
-def evidence_place(named: str | None) -> str:
-    """Where evidence is: where the user says, else the file or the store that is there."""
+def evidence_path(named: str | None) -> str:
+    """Path of the evidence: the user's, or else the existing default file or store."""
     if named is not None:
         return named
     if os.path.lexists(EVIDENCE) and os.path.lexists(STORE):
-        stop(
+        fail(
             Diagnostic(
                 Code.TWO_EVIDENCES,
-                f"evidence is in `{EVIDENCE}` and in `{STORE}`: one of them is of an earlier audit",
-                help="remove the one that you do not mean, or name the other",
+                f"evidence is in `{EVIDENCE}` and in `{STORE}`: one of them is from an earlier "
+                "audit",
+                help="remove the old one, or name the one to use",
             )
         )
     return STORE if os.path.lexists(STORE) else EVIDENCE
@@ -135,7 +123,7 @@ def evidence_place(named: str | None) -> str:
 
 evidence_option = path_option(
     "--evidence",
-    callback=lambda _context, _option, named: evidence_place(named),
+    callback=lambda _context, _option, named: evidence_path(named),
     help=f"Evidence, as `fretc audit` writes it.  [default: {EVIDENCE} or {STORE}]",
 )
 verification_option = path_option(
@@ -175,15 +163,15 @@ limit_option = click.option(
 
 
 def is_given(name: str) -> bool:
-    """Whether the user has typed this parameter of the present command."""
+    """Whether the user gave this parameter on the command line."""
     source = click.get_current_context().get_parameter_source(name)
     return source is click.core.ParameterSource.COMMANDLINE
 
 
 def places(arguments: Sequence[str], requirements: str) -> list[str]:
-    """Where requirements are: what the arguments name, else `--requirements`; never both."""
+    """Paths of requirements: the arguments, or else `--requirements`; F907 for both."""
     if arguments and is_given("requirements"):
-        stop(
+        fail(
             Diagnostic(
                 Code.BAD_USAGE,
                 f"requirements are named twice: `{arguments[0]}` and `--requirements`",

@@ -1,4 +1,4 @@
-"""What the commands print, write and exit with."""
+"""Terminal output of the commands, their output files and exit status."""
 
 from __future__ import annotations
 
@@ -18,63 +18,63 @@ from fretish.diagnostics.rendering import Part, plain, render_all, visible
 from fretish.reading.natural_order import by_place
 
 Piece = tuple[str, str | None]
-"""A text of a line, with its colour if it has one."""
+"""Text of a line, and its colour or None."""
 REQUIREMENTS_FOLDER = "requirements"
-"""Where the requirements of a project are, if nobody says otherwise."""
+"""Default path of requirements."""
 EVIDENCE, STORE = "build/evidence.json", "build/evidence"
-"""Where evidence of one log is, and of several, if nobody says otherwise."""
-SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
-"""Exit status: all shown, a violation, bad use or input, something not shown, Ctrl-C."""
+"""Default paths of evidence: of one log, and of several."""
+EXIT_OK, EXIT_VIOLATION, EXIT_USAGE, EXIT_INCONCLUSIVE, EXIT_INTERRUPTED = 0, 1, 2, 3, 130
+"""Exit status: all satisfied, a violation, bad usage or input, inconclusive, Ctrl-C."""
 
 
-def stop(*diagnostics: Diagnostic) -> NoReturn:
-    """Say it and exit with 2."""
-    say(diagnostics)
-    raise SystemExit(BAD)
+def fail(*diagnostics: Diagnostic) -> NoReturn:
+    """Print the diagnostics and exit with 2."""
+    print_diagnostics(diagnostics)
+    raise SystemExit(EXIT_USAGE)
 
 
 _FAILED = "fretc.failed"
 
 
-def fail_at_the_end() -> None:
-    """Let the present command exit with 2 in the end, whatever it says of the rest of its input."""
+def fail_at_end() -> None:
+    """Make the present command exit with 2 at its end, whatever the results of its other input."""
     click.get_current_context().meta[_FAILED] = True
 
 
 def final_status(context: click.Context, status: int) -> int:
-    """The exit status of a command that ends with this one: bad input wins over all but Ctrl-C."""
-    failed = _FAILED in context.meta and status != INTERRUPTED
-    return BAD if failed else status
+    """Exit status at the end of a command: bad input wins over all but Ctrl-C."""
+    failed = _FAILED in context.meta and status != EXIT_INTERRUPTED
+    return EXIT_USAGE if failed else status
 
 
 _ACCEPTED = "fretc.accepted"
 
 
-def say(diagnostics: Sequence[Diagnostic]) -> None:
-    """Print them on standard error; those that are accepted are counted at the end of the command.
+def print_diagnostics(diagnostics: Sequence[Diagnostic]) -> None:
+    """Print diagnostics on standard error, ordered by position; accepted ones are only counted.
 
-    They are ordered by their places, and in colours where it is a terminal.
+    The output is coloured if standard error is a terminal.
     """
-    say_all([diagnostic for diagnostic in diagnostics if not diagnostic.accepted])
+    print_diagnostic_groups([diagnostic for diagnostic in diagnostics if not diagnostic.accepted])
     accepted = {diagnostic for diagnostic in diagnostics if diagnostic.accepted}
     if accepted:
         click.get_current_context().meta.setdefault(_ACCEPTED, set()).update(accepted)
 
 
-def say_accepted(context: click.Context) -> None:
-    """Print how many warnings of a command are accepted, if any are."""
+def print_accepted_count(context: click.Context) -> None:
+    """Print the number of accepted warnings of a command, if any."""
     count = len(context.meta.get(_ACCEPTED, ()))
     if count:
         what = "1 warning is" if count == 1 else f"{count} warnings are"
-        say_line(f"{what} accepted: `fretc check` lists the reasons")
+        print_status(f"{what} accepted: `fretc check` lists the reasons")
 
 
-def say_all(*groups: Sequence[Diagnostic]) -> None:
-    """Print groups of diagnostics on standard error, each ordered by their places."""
+def print_diagnostic_groups(*groups: Sequence[Diagnostic]) -> None:
+    """Print groups of diagnostics on standard error, each ordered by position."""
     paint = _painted if _has_colours(sys.stderr) else plain
     blocks = [render_all(by_place(group), paint) for group in groups if group]
     if blocks:
-        say_line("\n\n".join(blocks))
+        print_status("\n\n".join(blocks))
 
 
 _STYLES: Mapping[Part, Mapping[str, Any]] = {
@@ -92,58 +92,60 @@ def _painted(text: str, part: Part) -> str:
 
 
 def _has_colours(stream: TextIO) -> bool:
-    """Whether it is a terminal that shows colours, and the user wants them (no-color.org)."""
+    """Whether the stream is a terminal with colours, and the user wants them (no-color.org)."""
     return stream.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
 
 
-def say_briefly(diagnostics: Sequence[Diagnostic], requirements: str) -> None:
-    """Print them, with one line for all warnings about sentences: those are `check`'s matter.
+def print_project_diagnostics(diagnostics: Sequence[Diagnostic], requirements: str) -> None:
+    """Print diagnostics of a project, with one line for all warnings about sentences.
 
     Args:
-        diagnostics: of a project.
-        requirements: where its requirements are, as the user names it.
+        diagnostics: diagnostics of the project.
+        requirements: its path, as named by the user.
     """
-    warnings = [each for each in diagnostics if _is_about_a_sentence(each)]
-    others = [each for each in diagnostics if each not in warnings]
-    say(others)
+    warnings = [diagnostic for diagnostic in diagnostics if _is_about_a_sentence(diagnostic)]
+    others = [diagnostic for diagnostic in diagnostics if diagnostic not in warnings]
+    print_diagnostics(others)
     if not warnings:
         return
-    counts = Counter(each.code.number for each in warnings)
+    counts = Counter(warning.code.number for warning in warnings)
     codes = ", ".join(f"{count} {code}" for code, count in sorted(counts.items()))
     noun = "warning about a sentence" if len(warnings) == 1 else "warnings about sentences"
     place = "" if requirements == REQUIREMENTS_FOLDER else f" --requirements {quote(requirements)}"
     if others:
-        say_line("")
-    say_line(visible(f"{len(warnings)} {noun} ({codes}): see `fretc check{place}`"))
+        print_status("")
+    print_status(visible(f"{len(warnings)} {noun} ({codes}): see `fretc check{place}`"))
 
 
 def _is_about_a_sentence(diagnostic: Diagnostic) -> bool:
-    """Whether it warns of what a sentence means; it is the same whatever is bound or recorded."""
+    """Whether the diagnostic warns about the meaning of a sentence."""
     about_meaning = diagnostic.code.number.startswith("F2")
     return about_meaning and diagnostic.is_open
 
 
-def say_also(diagnostics: Sequence[Diagnostic], earlier: Sequence[Diagnostic]) -> None:
-    """Print them below others, if any of both there are."""
+def print_diagnostics_below(
+    diagnostics: Sequence[Diagnostic], earlier: Sequence[Diagnostic]
+) -> None:
+    """Print `diagnostics`, preceded by a blank line if `earlier` is not empty."""
     if diagnostics and earlier:
-        say_line("")
-    say(diagnostics)
+        print_status("")
+    print_diagnostics(diagnostics)
 
 
-def say_line(text: str) -> None:
-    """Print a line on standard error; where that cannot be, the exit status still tells."""
+def print_status(text: str) -> None:
+    """Print a line on standard error; a closed stream is ignored."""
     with suppress(OSError):
         click.echo(text, err=True)
 
 
-def deliver(
+def write_outputs(
     files: Mapping[Path, str | bytes | Iterable[str]], protected: Iterable[str] = ()
 ) -> None:
-    """Write the texts, whole or in pieces, all or none, and name them.
+    """Write output files, all or none, and print their paths.
 
     Args:
-        files: where each text goes; `-` prints it.
-        protected: files that are read, which no output may replace.
+        files: path → content, whole or in pieces; `-` prints the content.
+        protected: input files, which no output may replace.
     """
     from compiler.files.text_files import write
 
@@ -151,48 +153,48 @@ def deliver(
     targets = [os.path.realpath(path) for path in files]
     for path, target in zip(files, targets, strict=True):
         if targets.count(target) > 1:
-            stop(not_written(str(path), "two outputs would go there"))
+            fail(not_written(str(path), "two outputs would go there"))
     printed = files.get(Path("-"))
     for piece in (printed,) if isinstance(printed, str | bytes) else printed or ():
         click.echo(piece, nl=False)
     written = {path: text for path, text in files.items() if path != Path("-")}
     wrong = write(written)
     if wrong is not None:
-        stop(wrong)
+        fail(wrong)
     _name(written)
 
 
 def _name(written: Collection[Path]) -> None:
-    """Say what was written; of many files how many there are in each folder."""
+    """Print the paths of written files; of a folder with many files, only their number."""
     folders = Counter(path.parent for path in written)
     for folder, count in folders.items():
         if count > _MOST_NAMED:
-            say_line(visible(f"wrote {count} files in {folder}"))
+            print_status(visible(f"wrote {count} files in {folder}"))
     for path in written:
         if folders[path.parent] <= _MOST_NAMED:
-            say_line(visible(f"wrote {path}"))
+            print_status(visible(f"wrote {path}"))
 
 
 _MOST_NAMED = 40
-"""Files of a folder that are named one by one."""
+"""Maximum number of files of a folder that are named."""
 
 
 def protect(outputs: Iterable[Path], protected: Iterable[str]) -> None:
-    """Stop where an output would replace a file that is read."""
+    """Exit if an output would replace an input."""
     inputs = {os.path.realpath(path): path for path in protected if path != "-"}
     for path in outputs:
         target = os.path.realpath(path)
         if path != Path("-") and target in inputs:
-            stop(not_written(str(path), f"it is `{inputs[target]}`, which is read"))
+            fail(not_written(str(path), f"it is `{inputs[target]}`, which is an input"))
 
 
 def coloured(lines: Iterable[Piece]) -> str:
-    """The lines, each in its colour where standard output is a terminal that wants colours."""
+    """Lines, each in its colour if standard output is a terminal with colours."""
     return painted((line,) for line in lines)
 
 
 def painted(lines: Iterable[Sequence[Piece]]) -> str:
-    """Lines of several colours; signs that standard output cannot write are letters."""
+    """Lines with several colours each; symbols that standard output cannot write become letters."""
     from fretc.terminal.screen import screen
 
     colours, signs = _has_colours(sys.stdout), screen().signs
@@ -207,7 +209,7 @@ def _styled(text: str, colour: str | None) -> str:
 
 
 def not_written(path: str, why: str) -> Diagnostic:
-    """F905."""
+    """F905: a file cannot be written."""
     return Diagnostic(
         Code.NOT_WRITTEN, f"`{path}` cannot be written: {why}", help="name another file"
     )

@@ -1,4 +1,4 @@
-"""How far a command is, and at what, on standard error, where that is a terminal."""
+"""Progress of a command on standard error, if that is a terminal."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import click
 
 @contextmanager
 def progress(length: int, label: str) -> Iterator[Callable[[int, str], None]]:
-    """A bar with the time that is left, as long as the context lasts.
+    """Progress bar with the remaining time, for the duration of the context.
 
     Args:
-        length: of the whole, in any unit.
-        label: what is being done.
+        length: the total, in any unit.
+        label: the name of the activity.
 
     Yields:
-        Tells how much of the whole is done, in that unit, and the same in words.
+        A function of the finished amount, in that unit, and a text.
     """
     if length <= 0 or not sys.stderr.isatty():
         yield lambda done, words: None
@@ -29,7 +29,7 @@ def progress(length: int, label: str) -> Iterator[Callable[[int, str], None]]:
         yield lambda done, words: bar.update(done - bar.pos, words)
 
 
-def at_work(words: str) -> None:
-    """A line with what is being worked on."""
+def print_activity(words: str) -> None:
+    """Print the current activity."""
     if sys.stderr.isatty():
         click.echo(words, err=True)

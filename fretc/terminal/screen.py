@@ -1,4 +1,4 @@
-"""Where standard output is shown: how wide it is, what it can write, how wide a text is there.
+"""Properties of standard output: width and encoding; and the width of a text.
 
 The only module that imports wcwidth.
 """
@@ -14,11 +14,11 @@ from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.status_symbols import STATUS_SYMBOLS
 
 _WIDTH = 80
-"""Where standard output is no terminal."""
+"""Width if standard output is not a terminal."""
 NARROWEST = 40
-"""A narrower terminal is taken for one of this width."""
+"""Minimum width; a narrower terminal is treated as this wide."""
 _SHORTEST = 8
-"""Columns of a title that still says something."""
+"""Minimum number of columns of a useful title."""
 _LETTERS = {"\N{MULTIPLICATION SIGN}": "x", "\N{HORIZONTAL ELLIPSIS}": "."} | {
     sign.glyph: sign.letter for sign in STATUS_SYMBOLS
 }
@@ -26,17 +26,17 @@ _LETTERS = {"\N{MULTIPLICATION SIGN}": "x", "\N{HORIZONTAL ELLIPSIS}": "."} | {
 
 @dataclass(frozen=True, slots=True)
 class Screen:
-    """The place where a person reads."""
+    """Width and encoding of the output."""
 
     width: int = _WIDTH
     encoding: str = "utf-8"
 
     def text(self, text: str) -> str:
-        """The text, with escapes for what cannot be written here, and for what moves the cursor."""
+        """The text with escapes for control characters and characters outside the encoding."""
         return visible(text).encode(self.encoding, "backslashreplace").decode(self.encoding)
 
     def signs(self, text: str) -> str:
-        """The text of fretc itself, with letters for the signs that cannot be written here."""
+        """Text of fretc with letters in place of symbols outside the encoding."""
         return "".join(
             character if self._has(character) else _LETTERS.get(character, character)
             for character in text
@@ -51,7 +51,7 @@ class Screen:
 
 
 def screen() -> Screen:
-    """That of standard output."""
+    """The screen of standard output."""
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     try:
         columns = os.get_terminal_size(sys.stdout.fileno()).columns
@@ -61,7 +61,7 @@ def screen() -> Screen:
 
 
 def width(text: str) -> int:
-    """The columns that a text without control characters takes."""
+    """Number of columns of a text without control characters."""
     if text.isascii() and text.isprintable():
         return len(text)
     from wcwidth import wcswidth
@@ -70,10 +70,10 @@ def width(text: str) -> int:
 
 
 def fitted(text: str, columns: int) -> str:
-    """The text in so many columns at most: of a longer one the beginning and, more of it, the end.
+    """The text shortened to `columns`: its beginning and a longer part of its end.
 
     Args:
-        text: without control characters.
+        text: text without control characters.
         columns: 3 or more.
     """
     if len(text) <= 4 * columns and width(text) <= columns:
@@ -84,12 +84,12 @@ def fitted(text: str, columns: int) -> str:
 
 
 def titled(id: str, title: str, columns: int) -> str:
-    """A title, cut off where it is too long, and the id; the id alone where no title has room.
+    """Title and id in `columns`: the title is shortened, or left out if there is no room.
 
     Args:
-        id: without control characters, as the title.
-        title: empty: there is none.
-        columns: of all; an id that is longer is fitted.
+        id: text without control characters.
+        title: text without control characters; empty: no title.
+        columns: total width; a longer id is shortened.
     """
     room = columns - width(id) - len(" ()")
     if not title or room < _SHORTEST:
@@ -100,7 +100,7 @@ def titled(id: str, title: str, columns: int) -> str:
 
 
 def _longest(characters: Iterable[str], columns: int) -> str:
-    """As many of the characters as fit, and not a hundred marks upon one of them."""
+    """The longest prefix that fits; combining marks are limited."""
     taken = ""
     for character in characters:
         if len(taken) >= 2 * columns or width(taken + character) > columns:
@@ -110,5 +110,5 @@ def _longest(characters: Iterable[str], columns: int) -> str:
 
 
 def padded(text: str, columns: int) -> str:
-    """The text with blanks up to so many columns."""
+    """The text padded with blanks to `columns`."""
     return f"{text}{' ' * (columns - width(text))}"

@@ -1,5 +1,5 @@
 """Tests from requirements: short runs, each with its expected verdict and the reason.
 
-Input is `FormalizedRequirement`s. Output is a suite of tests, and which situations and mutants it
-covers.
+Input is `FormalizedRequirement`s. Output is a suite of tests, with the situations and mutants that
+it covers.
 """

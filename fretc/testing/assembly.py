@@ -1,4 +1,4 @@
-"""The suite of a project: one job for each requirement, and all of their tests in one value."""
+"""The test suite of a project: one job for each requirement, and all tests in one value."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def jobs(
     assumptions: Sequence[FormalizedRequirement],
     seconds: float,
 ) -> tuple[Job[Batch], ...]:
-    """The tests of each requirement, in the order of the files.
+    """Jobs that generate the tests of each requirement, in the order of the files.
 
     Args:
         requirements: the requirements.
-        assumptions: what the environment keeps.
-        seconds: of a processor, for each of them.
+        assumptions: the assumptions about the environment.
+        seconds: CPU seconds for each requirement.
     """
     roles = {
         name: Role.OUTPUT
@@ -55,7 +55,7 @@ def suite(
     assumptions: Sequence[FormalizedRequirement],
     found: Iterable[Batch],
 ) -> Suite:
-    """All tests as one value; their names become unique."""
+    """All tests as one suite with unique names."""
     made = tuple(_renamed(found))
     names = dict.fromkeys(
         name for requirement in (*requirements, *assumptions) for name in requirement.variables
@@ -84,7 +84,7 @@ def suite(
 
 
 def _renamed(found: Iterable[Batch]) -> Iterator[Batch]:
-    """The same with a number behind each name that is there already."""
+    """The batch with a number appended to each name that is already used."""
     seen: set[str] = set()
     for each in found:
         names: dict[str, str] = {}

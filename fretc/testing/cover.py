@@ -1,7 +1,7 @@
-"""The fewest, shortest runs that show all that is to be shown: a greedy cover.
+"""Greedy set cover: few and short runs that cover all goals.
 
-Source: Chvatal, A greedy heuristic for the set-covering problem, Mathematics of Operations
-Research 4 (1979).
+Source: Chvatal, A greedy heuristic for the set-covering problem, Mathematics of Operations Research
+4 (1979).
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ N = TypeVar("N", bound=Hashable)
 
 
 def cover(shown: Mapping[R, Collection[N]], rank: Mapping[R, Any]) -> dict[R, tuple[N, ...]]:
-    """Some of the runs that show together what all show, and for what each was taken.
+    """Selected runs that together cover all goals, each with the goals it was selected for.
 
     Args:
-        shown: by each run, in a fixed order.
-        rank: of runs that show as much, the one with the lowest is taken.
+        shown: goals that each run covers, in a fixed order.
+        rank: of runs that cover equally many goals, the one with the lowest rank is selected.
     """
     open_ = dict.fromkeys(need for needs in shown.values() for need in needs)
     chosen: dict[R, tuple[N, ...]] = {}

@@ -1,4 +1,4 @@
-"""The tests of one requirement: each situation met by a shortest run, each mutant told apart."""
+"""Test generation for one requirement: a shortest run for each situation and each mutant."""
 
 from __future__ import annotations
 
@@ -12,10 +12,19 @@ from compiler.situations.mutants import Mutant, mutants
 from compiler.situations.situations import Situation, situations
 from compiler.targets.python import monitor as emitted
 from fretc.analysis.arena.variables import UnsupportedError
-from fretc.testing.bench import Ids
 from fretc.testing.cover import cover
+from fretc.testing.requirement_model import Ids
 from fretc.testing.runs import Absence, Answer, Need, Run, Runs
-from fretc.testing.suite import Fate, Met, Mutated, Obligation, Polarity, Test, Tested, unused
+from fretc.testing.suite import (
+    GoalResult,
+    GoalStatus,
+    MutantResult,
+    MutantStatus,
+    Polarity,
+    Test,
+    Tested,
+    unused,
+)
 from fretc.testing.words import Expected, expected, undecided
 from fretish.printer import sentence as printed
 from fretish.reading.recursion import with_recursion_limit
@@ -25,12 +34,12 @@ from monitors.loading import load
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """What was made of one requirement."""
+    """Tests, situations and mutants of one requirement."""
 
     tested: Tested
     tests: tuple[Test, ...]
-    obligations: tuple[Obligation, ...]
-    mutants: tuple[Mutated, ...]
+    obligations: tuple[GoalResult, ...]
+    mutants: tuple[MutantResult, ...]
 
 
 @with_recursion_limit
@@ -41,9 +50,9 @@ def batch(
 
     Args:
         requirement: the requirement.
-        others: requirements and assumptions whose variables hang together with its own; its tests
-            keep them.
-        seconds: of a processor.
+        others: requirements and assumptions that share variables with it, directly or indirectly;
+            its tests satisfy them.
+        seconds: CPU seconds.
     """
     try:
         return _Generation(Runs(requirement, others, seconds)).batch()
@@ -52,17 +61,18 @@ def batch(
 
 
 def lost(requirement: FormalizedRequirement, why: str) -> Batch:
-    """What stands there where nothing could be searched, for a reason."""
+    """The batch of a requirement without a search, with the reason."""
     return Batch(
         _tested(requirement, (), ""),
         (),
         tuple(
-            _obligation(requirement, each, polarity, Met.NOT_SEARCHED, why=why)
+            _obligation(requirement, each, polarity, GoalStatus.NOT_SEARCHED, why=why)
             for each in situations(requirement)
             for polarity in _polarities(each)
         ),
         tuple(
-            _mutated(requirement, each, Fate.NOT_SEARCHED, why=why) for each in mutants(requirement)
+            _mutated(requirement, each, MutantStatus.NOT_SEARCHED, why=why)
+            for each in mutants(requirement)
         ),
     )
 
@@ -77,13 +87,13 @@ def _obligation(
     requirement: FormalizedRequirement,
     situation: Situation,
     polarity: Polarity,
-    outcome: Met,
+    outcome: GoalStatus,
     *,
     tests: Ids = (),
     by: Ids = (),
     why: str = "",
-) -> Obligation:
-    return Obligation(
+) -> GoalResult:
+    return GoalResult(
         requirement.id, situation.key, situation.words, polarity, outcome, tests, by, why
     )
 
@@ -91,13 +101,13 @@ def _obligation(
 def _mutated(
     requirement: FormalizedRequirement,
     mutant: Mutant,
-    outcome: Fate,
+    outcome: MutantStatus,
     *,
     tests: Ids = (),
     by: Ids = (),
     why: str = "",
-) -> Mutated:
-    return Mutated(
+) -> MutantResult:
+    return MutantResult(
         requirement.id,
         mutant.key,
         mutant.words,
@@ -110,7 +120,7 @@ def _mutated(
 
 
 def _polarities(situation: Situation) -> tuple[Polarity, ...]:
-    """How a situation is to be shown."""
+    """Polarities of the tests of a situation."""
     if situation.unknown is not None:
         return (Polarity.UNKNOWN,)
     return Polarity.KEPT, Polarity.BROKEN
@@ -121,14 +131,14 @@ def _polarities(situation: Situation) -> tuple[Polarity, ...]:
 
 @dataclass(frozen=True, slots=True)
 class _Purpose:
-    """What a run was chosen for."""
+    """Goal for which a run was selected."""
 
     key: str
     words: str
 
 
 class _Generation:
-    """What is made of the runs of one requirement."""
+    """Generation of a batch from the runs of one requirement."""
 
     def __init__(self, runs: Runs) -> None:
         self._runs, self._rule = runs, runs.requirement
@@ -136,7 +146,7 @@ class _Generation:
         self._monitor = load(f"{self._rule.id}.py", emitted.text(self._rule))
 
     def batch(self) -> Batch:
-        """All of it."""
+        """The whole batch."""
         met = {
             (each.key, polarity): self._runs.meeting(each, polarity)
             for each in self._situations
@@ -157,7 +167,7 @@ class _Generation:
     # Choices
 
     def _meeting_all(self, met: Mapping[Need, Answer]) -> dict[Run, _Purpose]:
-        """Runs as short as those that were found, one for several needs; and what each is for."""
+        """Runs as short as the found ones, one for several goals; each with its goals."""
         found = {need: run for need, run in met.items() if isinstance(run, Run)}
         shown = {
             run: [need for need, shortest in found.items() if _serves(run, need, shortest)]
@@ -169,23 +179,25 @@ class _Generation:
         return {special[need]: self._purpose(*need) for need in met if need in special}
 
     def _purpose(self, key: str, polarity: Polarity) -> _Purpose:
-        words = next(each.words for each in self._situations if each.key == key)
+        words = next(situation.words for situation in self._situations if situation.key == key)
         return _Purpose(key if polarity is Polarity.UNKNOWN else f"{key}-{polarity}", words)
 
     def _telling_apart(
         self, told: Mapping[str, Answer], runs: Collection[Run]
     ) -> dict[Run, _Purpose]:
-        """Runs for the mutants that those do not kill."""
-        alive = {each.key for each in self._wrong}.difference(*(run.kills for run in runs))
+        """Runs for the mutants that the given runs do not kill."""
+        alive = {mutant.key for mutant in self._wrong}.difference(*(run.kills for run in runs))
         shown = {
-            run: [each.key for each in self._wrong if each.key in run.kills & alive]
+            run: [mutant.key for mutant in self._wrong if mutant.key in run.kills & alive]
             for run in told.values()
             if isinstance(run, Run)
         }
         chosen = cover(shown, {run: run.rank for run in shown})
-        words = {each.key: each.words for each in self._wrong}
+        words = {mutant.key: mutant.words for mutant in self._wrong}
         return {
-            run: _Purpose(f"unlike-{key}", f"tells {self._rule.id} from the same with {words[key]}")
+            run: _Purpose(
+                f"unlike-{key}", f"distinguishes {self._rule.id} from its mutant with {words[key]}"
+            )
             for run, (key, *_) in chosen.items()
         }
 
@@ -205,12 +217,14 @@ class _Generation:
             decided=says.decided,
             first_violation=says.first_violation,
             because=says.because,
-            situations=tuple(each.key for each in self._situations if each.key in run.situations),
-            kills=tuple(each.key for each in self._wrong if each.key in run.kills),
+            situations=tuple(
+                situation.key for situation in self._situations if situation.key in run.situations
+            ),
+            kills=tuple(mutant.key for mutant in self._wrong if mutant.key in run.kills),
         )
 
     def _outcome(self, polarity: Polarity, verdict: Verdict) -> Iterator[str]:
-        """What the run makes of the requirement; nothing broken where only its end says no."""
+        """Verdict and violation of a run; no violation if only its end is wrong."""
         if polarity is Polarity.BROKEN and verdict == Verdict.INCONCLUSIVE:
             yield f"the run ends while {self._rule.id} is not met"
         elif polarity is not Polarity.UNKNOWN:
@@ -219,7 +233,11 @@ class _Generation:
     def _expected(self, run: Run) -> Expected:
         requirement, monitor = self._rule, self._monitor
         if run.polarity is Polarity.UNKNOWN:
-            atom = next(each.unknown for each in self._situations if each.key in run.situations)
+            atom = next(
+                situation.unknown
+                for situation in self._situations
+                if situation.key in run.situations
+            )
             assert atom is not None
             return undecided(requirement, monitor, run.word, atom)
         found = expected(requirement, monitor, run.word)
@@ -228,45 +246,51 @@ class _Generation:
 
     def _obligations(
         self, met: Mapping[Need, Answer], made: Mapping[Run, Test]
-    ) -> Iterator[Obligation]:
-        for each in self._situations:
-            for polarity in _polarities(each):
-                found = met[each.key, polarity]
+    ) -> Iterator[GoalResult]:
+        for situation in self._situations:
+            for polarity in _polarities(situation):
+                found = met[situation.key, polarity]
                 if isinstance(found, Run):
                     runs = [run for run in made if run.polarity is polarity]
-                    tests = _names(made, [run for run in runs if each.key in run.situations])
-                    yield _obligation(self._rule, each, polarity, Met.MET, tests=tests)
+                    tests = _names(made, [run for run in runs if situation.key in run.situations])
+                    yield _obligation(self._rule, situation, polarity, GoalStatus.MET, tests=tests)
                 else:
-                    outcome = found.outcome(Met.IMPOSSIBLE, Met.EXCLUDED, Met.NOT_SEARCHED)
+                    outcome = found.outcome(
+                        GoalStatus.IMPOSSIBLE, GoalStatus.EXCLUDED, GoalStatus.NOT_SEARCHED
+                    )
                     yield _obligation(
-                        self._rule, each, polarity, outcome, by=found.by, why=found.why
+                        self._rule, situation, polarity, outcome, by=found.by, why=found.why
                     )
 
-    def _mutants(self, told: Mapping[str, Answer], made: Mapping[Run, Test]) -> Iterator[Mutated]:
-        for each in self._wrong:
-            found = told.get(each.key)
+    def _mutants(
+        self, told: Mapping[str, Answer], made: Mapping[Run, Test]
+    ) -> Iterator[MutantResult]:
+        for mutant in self._wrong:
+            found = told.get(mutant.key)
             if isinstance(found, Absence):
-                outcome = found.outcome(Fate.EQUIVALENT, Fate.EXCLUDED, Fate.NOT_SEARCHED)
-                yield _mutated(self._rule, each, outcome, by=found.by, why=found.why)
+                outcome = found.outcome(
+                    MutantStatus.EQUIVALENT, MutantStatus.EXCLUDED, MutantStatus.NOT_SEARCHED
+                )
+                yield _mutated(self._rule, mutant, outcome, by=found.by, why=found.why)
             else:
-                tests = _names(made, [run for run in made if each.key in run.kills])
+                tests = _names(made, [run for run in made if mutant.key in run.kills])
                 assert tests
-                yield _mutated(self._rule, each, Fate.KILLED, tests=tests)
+                yield _mutated(self._rule, mutant, MutantStatus.KILLED, tests=tests)
 
     def _telling(self, chosen: Iterable[Run]) -> dict[str, Answer]:
-        """Of each mutant that no chosen run kills: a shortest run that does, one for several."""
+        """A shortest run for each mutant that no selected run kills, one for several mutants."""
         found: dict[str, Answer] = {}
         runs = list(chosen)
-        for each in self._wrong:
-            if not any(each.key in run.kills for run in runs):
-                answer = found[each.key] = self._runs.telling(each)
+        for mutant in self._wrong:
+            if not any(mutant.key in run.kills for run in runs):
+                answer = found[mutant.key] = self._runs.telling(mutant)
                 if isinstance(answer, Run):
                     runs.append(answer)
         return found
 
 
 def _serves(run: Run, need: Need, shortest: Run) -> bool:
-    """Whether a run meets a need as well as the one that was found for it."""
+    """Whether a run serves a goal as well as the run that was found for it."""
     key, polarity = need
     met = run.early if key in shortest.early else run.situations
     same = run.polarity is polarity and run.word.ticks == shortest.word.ticks
@@ -274,5 +298,5 @@ def _serves(run: Run, need: Need, shortest: Run) -> bool:
 
 
 def _names(made: Mapping[Run, Test], runs: Iterable[Run]) -> Ids:
-    """Of the tests of some runs, the shortest first."""
+    """Names of the tests of some runs, the shortest first."""
     return tuple(made[run].name for run in sorted(runs, key=lambda run: run.rank))

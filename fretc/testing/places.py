@@ -1,7 +1,7 @@
-"""Numbers at thresholds as atoms of letters: a situation asks for one at the tick that it is about.
+"""Numbers at thresholds as atoms: a situation requires a number at its tick.
 
-Such an atom belongs to a sentence that only carries it, formalized as any other: so names, units
-and signals are read as in requirements.
+Such an atom belongs to an auxiliary sentence, which is formalized like a requirement, so that
+names, units and signals are read in the same way.
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ class Places:
         self._rule = requirement
         self._found: dict[e.Expression, FormalizedRequirement | None] = {}
         self.pinned: defaultdict[str, set[f.Formula]] = defaultdict(set)
-        """Of a signal what says its number, and that propositions agree with it."""
+        """Signal → formulas that fix its number, and that propositions agree with it."""
 
     @property
     def carriers(self) -> Iterator[FormalizedRequirement]:
-        """The sentences of all atoms that were asked for."""
+        """Auxiliary sentences of all atoms so far."""
         return (each for each in self._found.values() if each is not None)
 
     def formula(self, situation: Situation) -> f.Formula:
-        """What a situation asks for, its number included.
+        """Formula of a situation, with its number.
 
         Raises:
-            UnsupportedError: the number cannot be said of signals.
+            UnsupportedError: the number cannot be written over signals.
         """
         place = situation.place
         if place is None:
@@ -53,14 +53,16 @@ class Places:
         return f.and_(situation.formula, pinned)
 
     def _agreements(self, signals: set[str]) -> Iterator[f.Formula]:
-        """What propositions over these signals are, where each tick has one sample."""
+        """Formulas of the propositions over these signals, for ticks with one sample."""
         declared = self._rule.declarations
         for name in self._rule.watched:
             bound = declared.propositions.get(name) if declared else None
             if bound is None or signals.isdisjoint(bound.signals):
                 continue
             expression = bound.expression
-            if isinstance(expression, e.Persistence):  # true for a while: so it is true here
+            if isinstance(
+                expression, e.Persistence
+            ):  # It has held for some time, so it holds here.
                 yield f.implies(f.Atom(name), self._carried(expression.arg))
             elif any(isinstance(each, e.Persistence) for each in e.parts(expression)):
                 raise UnsupportedError(f"`{name}` looks at more than one tick")
@@ -68,12 +70,12 @@ class Places:
                 yield f.iff(f.Atom(name), self._carried(expression))
 
     def _carried(self, expression: e.Expression) -> f.Formula:
-        """An expression over the atoms of a sentence that has it as its response."""
+        """Expression over the atoms of a sentence with it as response."""
         if expression not in self._found:
             self._found[expression] = self._carrier(expression)
         carrier = self._found[expression]
         if carrier is None or ticks_back(expression):
-            raise UnsupportedError("its number can be said in no sentence")
+            raise UnsupportedError("its number cannot be written in a sentence")
         return boolean(carrier.sentence.response, Uninterpreted().alone())
 
     def _carrier(self, expression: e.Expression) -> FormalizedRequirement | None:
@@ -92,11 +94,11 @@ class Places:
 
 
 _CALLS = {"abs": "absReal", "min": "minReal", "max": "maxReal"}
-"""What functions of bindings are called in sentences."""
+"""Function names of bindings → names in sentences."""
 
 
 def _as_written(expression: e.Expression) -> e.Expression:
-    """An expression of bindings as a sentence has it."""
+    """Expression of bindings in the syntax of sentences."""
     parts = [_as_written(each) for each in e.children(expression)]
     if isinstance(expression, e.Call):
         return replace(

@@ -1,6 +1,6 @@
-"""The suite in a file of `fretc test`.
+"""Reader of the suite in a file of `fretc test`.
 
-Nothing in the file is trusted: what its types (`fretc.testing.suite`) do not have is F503.
+The file is not trusted: values outside the types of `fretc.testing.suite` are F503.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
 DEFAULT = "build/tests/suite.json"
-"""Where `fretc test` writes."""
+"""Default path of the output of `fretc test`."""
 
 
 def read(path: str) -> Suite | Diagnostic:
@@ -38,5 +38,5 @@ def _wrong(source: Source, what: str) -> Diagnostic:
         Code.BAD_EVIDENCE,
         f"`{source.name}` {what}",
         Source(source.name, "").span(),
-        help=f"make it again: `fretc test -o {source.name}`",
+        help=f"generate it again: `fretc test -o {source.name}`",
     )

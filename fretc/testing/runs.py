@@ -1,4 +1,4 @@
-"""The runs of one requirement, while they are gathered: searched for, judged, each kept once."""
+"""Runs of one requirement: searched for, evaluated, and stored without duplicates."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from compiler.situations.situations import Situation, situations
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.games.cores import minimal
-from fretc.testing.bench import Bench, Ids, demands
 from fretc.testing.places import Places
+from fretc.testing.requirement_model import Ids, RequirementModel, demands
 from fretc.testing.search import Letter
 from fretc.testing.suite import Polarity
 from fretc.testing.words import Naming, Word, blotted, is_killed, judged, word
@@ -30,32 +30,32 @@ F = TypeVar("F")
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A word, and what the sentence, the situations and the mutants make of it."""
+    """A run, with its results for the sentence, the situations and the mutants."""
 
     word: Word
     polarity: Polarity
     early: frozenset[str]
-    """The situations that it comes by up to where the sentence is broken first."""
+    """Situations that it covers up to the first violation."""
     situations: frozenset[str]
     kills: frozenset[str]
 
     @property
     def rank(self) -> tuple[int, int]:
-        """Shorter words are better, and of these the ones with fewer changes."""
+        """Sort key: shorter runs first, then runs with fewer changes."""
         return self.word.ticks, len(self.word.rows)
 
 
 @dataclass(frozen=True, slots=True)
 class Absence:
-    """There is no run."""
+    """There is no run with the required properties."""
 
     by: Ids = ()
-    """A minimal set of others without which there is one; empty: there is none at all."""
+    """Minimal set of other requirements that exclude such a run; empty: there is none at all."""
     why: str = ""
-    """Why nothing is known; empty: it is proved."""
+    """Why the absence is unknown; empty: it is proved."""
 
     def outcome(self, none: T, excluded: T, unknown: T) -> T:
-        """What it is called."""
+        """Name of the outcome."""
         if self.why:
             return unknown
         return excluded if self.by else none
@@ -63,14 +63,14 @@ class Absence:
 
 Answer = Run | Absence
 Find = Callable[[Ids], F | None]
-"""What is found among the runs that keep some others."""
+"""Search among the runs that satisfy some other requirements."""
 Need = tuple[str, Polarity]
 _LONG = 64
-"""Ticks of a bound that is worth an order of variables of its own."""
+"""Bound in ticks from which a better variable order is built."""
 
 
 class Runs:
-    """The runs of one requirement that were found so far.
+    """Runs of one requirement that were found so far.
 
     Raises:
         UnsupportedError: the requirement has no counter.
@@ -86,20 +86,20 @@ class Runs:
         self.situations, self.mutants = situations(requirement), mutants(requirement)
         places = Places(requirement)
         self._formulas: dict[str, Formula | Absence] = {}
-        for each in self.situations:
+        for situation in self.situations:
             try:
-                self._formulas[each.key] = places.formula(each)
+                self._formulas[situation.key] = places.formula(situation)
             except UnsupportedError as error:
-                self._formulas[each.key] = Absence(why=str(error))
-        more = [*(each.requirement for each in self.mutants), *places.carriers]
+                self._formulas[situation.key] = Absence(why=str(error))
+        more = [*(mutant.requirement for mutant in self.mutants), *places.carriers]
         budget = Budget(seconds)
-        self.bench = Bench(requirement, others, more, budget)
+        self.bench = RequirementModel(requirement, others, more, budget)
         every = [requirement, *others]
         signals = {name: read for name, read in _read(every).items() if name not in read}
         self._naming = Naming(_atoms([*every, *more]), _atoms(every), signals, places.pinned)
         self._goals = {key: self._goal(formula) for key, formula in self._formulas.items()}
         if (requirement.ticks or 0) >= _LONG:
-            self.bench = Bench(requirement, others, more, budget, self.bench.order())
+            self.bench = RequirementModel(requirement, others, more, budget, self.bench.order())
             self._goals = {key: self._goal(formula) for key, formula in self._formulas.items()}
         self._found: dict[tuple[int, ...], Run] = {}
 
@@ -114,7 +114,7 @@ class Runs:
     # Searches
 
     def meeting(self, situation: Situation, polarity: Polarity) -> Answer:
-        """A shortest run by a situation."""
+        """A shortest run that covers a situation."""
         goal = self._goals[situation.key]
         if isinstance(goal, Absence):
             return goal
@@ -151,7 +151,7 @@ class Runs:
             return Absence(why=str(error))
 
     def _excluding(self, find: Find[F]) -> Ids:
-        """A minimal set of others with which nothing is found, a single one if there is one."""
+        """Minimal set of other requirements that exclude a run, a single one if possible."""
         every = self.bench.others
         alone = next(((id,) for id in every if find((id,)) is None), None)
         return alone or minimal(every, lambda ids: find(tuple(ids)) is None)
@@ -159,10 +159,10 @@ class Runs:
     # Judgements
 
     def _run(self, letters: Sequence[Letter]) -> Run:
-        """The run of some letters.
+        """The run of some valuations.
 
         Raises:
-            UnsupportedError: it breaks another requirement, which has no counter.
+            UnsupportedError: it violates another requirement, which has no counter.
         """
         made = word(letters, self.bench.alphabet, self._naming)
         key = (made.ticks, *made.columns.values())
@@ -174,12 +174,12 @@ class Runs:
     def _check_others(self, made: Word) -> None:
         for each in self.others:
             if judged(each, made).breach:
-                why = self.bench.beyond[each.id]  # all others are kept
-                raise UnsupportedError(f"the shortest run breaks {each.id}, and of that {why}")
+                why = self.bench.beyond[each.id]  # All other requirements are satisfied.
+                raise UnsupportedError(f"the shortest run violates {each.id}, and {why}")
 
     def _judged(self, made: Word) -> Run:
         own = judged(self.requirement, made)
-        columns = {each.key: self._column(each, made) for each in self.situations}
+        columns = {situation.key: self._column(situation, made) for situation in self.situations}
         first = own.breach & -own.breach
         early = (first << 1) - 1 if first else -1
         return Run(
@@ -188,14 +188,14 @@ class Runs:
             frozenset(key for key, column in columns.items() if column & early),
             frozenset(key for key, column in columns.items() if column),
             frozenset(
-                each.key
-                for each in self.mutants
-                if is_killed(own, judged(each.requirement, made), made.ticks)
+                mutant.key
+                for mutant in self.mutants
+                if is_killed(own, judged(mutant.requirement, made), made.ticks)
             ),
         )
 
     def _column(self, situation: Situation, made: Word) -> int:
-        """Where a word in which all is known comes by a situation."""
+        """Ticks at which a run with known values covers a situation."""
         formula = self._formulas[situation.key]
         if isinstance(formula, Absence) or situation.unknown is not None:
             return 0
@@ -205,7 +205,7 @@ class Runs:
     def _doubtful(
         self, situation: Situation, atom: str, letters: Sequence[Letter], tick: int
     ) -> Run:
-        """The run in which an atom is unknown at a tick, as is all that reads the same."""
+        """The run with an atom unknown at a tick, and all atoms that read the same names."""
         made = word(letters, self.bench.alphabet, self._naming)
         self._check_others(made)
         blank = blotted(made, tick, {atom, *self._linked(atom)})
@@ -213,7 +213,7 @@ class Runs:
         return Run(blank, Polarity.UNKNOWN, met, met, frozenset())
 
     def _linked(self, atom: str) -> set[str]:
-        """What an atom reads, and the other atoms that read some of it."""
+        """Names that an atom reads, and the other atoms that read some of them."""
         readers = _read([self.requirement, *self.others])
         read = readers.get(atom, frozenset())
         return {*read, *(name for name, theirs in readers.items() if theirs & read)}
@@ -221,26 +221,26 @@ class Runs:
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A shortest word that two sentences judge differently."""
+    """A shortest run with different verdicts of two sentences."""
 
     word: Word
     doubt: str
-    """Why nobody may be able to bring its values about; empty: they are real."""
+    """Why its values may be impossible; empty: they are possible."""
 
 
 def difference(
     requirement: FormalizedRequirement, other: FormalizedRequirement, seconds: float
 ) -> Difference | Absence:
-    """What tells two sentences apart; without it they judge all finite runs alike.
+    """A run that distinguishes two sentences, or proof that they agree on all finite runs.
 
     Args:
         requirement: a sentence.
-        other: another one, over the same bindings.
-        seconds: of a processor.
+        other: another sentence over the same bindings.
+        seconds: CPU seconds.
     """
     both = [requirement, other]
     try:
-        bench = Bench(requirement, (), [other], Budget(seconds))
+        bench = RequirementModel(requirement, (), [other], Budget(seconds))
         letters = bench.difference(other, ())
     except (UnsupportedError, OutOfTimeError) as error:
         return Absence(why=str(error))
@@ -254,11 +254,11 @@ def difference(
 
 
 def _read(requirements: Iterable[FormalizedRequirement]) -> dict[str, frozenset[str]]:
-    """The signals or variables that each atom reads."""
+    """Signals or variables that each atom reads."""
     found: dict[str, frozenset[str]] = {}
-    for each in requirements:
-        declared = each.declarations.propositions if each.declarations else {}
-        for name, part in candidates(each.sentence):
+    for requirement in requirements:
+        declared = requirement.declarations.propositions if requirement.declarations else {}
+        for name, part in candidates(requirement.sentence):
             bound = declared.get(name)
             found[name] = frozenset(bound.signals if bound else (n.id for n in e.names(part)))
     return found

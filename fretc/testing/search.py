@@ -1,10 +1,10 @@
-"""Shortest words of counters: by way of a tick where something holds, to a tick where it may end.
+"""Shortest runs of counters: through a tick of a goal, to a tick at which they may end.
 
-Layers of states, backwards from the ends: those from which an end is one tick away, two ticks, and
-so on; then those from which the way leads through the goal. The first layer with the initial state
-has the length of the shortest word, so no shorter one exists; layers that grow no more without it
-prove that there is none. Source: Clarke, Emerson, Sistla, Automatic verification of finite-state
-concurrent systems, TOPLAS 8 (1986); Burch et al., Symbolic model checking, LICS 1990.
+Layers of states are computed backwards from the ends: states one tick away from an end, two ticks,
+and so on; then states from which the way leads through the goal. The first layer with the initial
+state gives the length of the shortest run; a fixpoint without it proves that there is none. Source:
+Clarke, Emerson, Sistla, Automatic verification of finite-state concurrent systems, TOPLAS 8 (1986);
+Burch et al., Symbolic model checking, LICS 1990.
 """
 
 from __future__ import annotations
@@ -23,26 +23,26 @@ Letter = Mapping[int, bool]
 
 @dataclass
 class Layers:
-    """States from which a word is 0, 1, 2 ... ticks long at least."""
+    """States with shortest runs of 0, 1, 2 ... ticks."""
 
     fresh: list[Function] = field(default_factory=lambda: [bdd.false()])
-    """Those of each length that no shorter word has."""
+    """New states of each length."""
     found: Function = field(default_factory=bdd.false)
-    """Those of any length so far."""
+    """States of all lengths so far."""
 
     def add(self, states: Function) -> None:
-        """The states with a word of the next length."""
+        """Add the states with a run of the next length."""
         self.fresh.append(states - self.found)
         self.found = self.found | states
 
     @property
     def is_complete(self) -> bool:
-        """Whether no longer word is a shortest one."""
+        """Whether no longer run is a shortest one."""
         return len(self.fresh) > 1 and self.fresh[-1] == bdd.false()
 
 
 class Endings:
-    """Shortest ways to an end, from any state; their layers are computed as they are needed."""
+    """Shortest ways to an end, from any state; layers are computed on demand."""
 
     def __init__(self, words: Words, end: Function) -> None:
         self._words, self.end = words, end
@@ -50,9 +50,9 @@ class Endings:
         self._ways: list[Function] = []
 
     def way(self, length: int) -> Function:
-        """Ticks, over a state and a letter, after which an end is so many ticks away at least.
+        """Ticks, over a state and a valuation, after which an end is at least so many ticks away.
 
-        It is itself the end where the length is 0. False where no way is that long.
+        With length 0, the end itself. False if no way is that long.
         """
         while len(self._ways) <= length:
             self._extend()
@@ -71,11 +71,11 @@ class Endings:
             return
         else:
             self._ways.append(self._words.moved(layers.fresh[-1]))
-        layers.add(self._words.preceding(self._ways[-1]))
+        layers.add(self._words.pre_image(self._ways[-1]))
 
 
 class Words:
-    """The words of some counters that break nothing which is to be kept."""
+    """Runs of some counters without a violation."""
 
     def __init__(
         self,
@@ -85,14 +85,14 @@ class Words:
         safe: Function,
         budget: Budget,
     ) -> None:
-        """The words.
+        """The runs.
 
         Args:
-            transition: of all bits that goals and ends are about.
-            letters: the variables of the alphabet.
-            quiet: those that are false where that can be; the others stay as they were.
-            safe: over a state and a letter, of each tick of a word.
-            budget: for all searches.
+            transition: transition of all bits of goals and ends.
+            letters: variables of the alphabet.
+            quiet: variables that are false if possible; the others keep their values.
+            safe: allowed ticks of a run, over a state and a valuation.
+            budget: time limit for all searches.
         """
         self.transition, self._budget = transition, budget
         self._letters, self._cube = tuple(letters), bdd.cube(letters)
@@ -100,15 +100,15 @@ class Words:
         self._start = bdd.point(transition.start)
         self._moves = {bdd.true(): bdd.true(), bdd.false(): bdd.false()}
 
-    def preceding(self, ticks: Function) -> Function:
-        """The states from which one of these ticks can come."""
+    def pre_image(self, ticks: Function) -> Function:
+        """States from which one of these ticks can come."""
         self._budget.check()
         return bdd.and_exists(self._safe, ticks, self._cube)
 
     def moved(self, states: Function) -> Function:
-        """Over a state and a letter: whether the state after it is one of these.
+        """Function over a state and a valuation: the next state is one of these.
 
-        As `Transition.moved`, node by node: layers are small, and share most of their nodes.
+        Same as `Transition.moved`, but node by node, because layers are small and share most nodes.
         """
         found = self._moves.get(states)
         if found is None:
@@ -123,11 +123,11 @@ class Words:
         return Endings(self, end)
 
     def shortest(self, goal: Function, endings: Endings) -> tuple[Letter, ...] | None:
-        """A shortest word from the initial state by a tick of the goal to an end; None: no word.
+        """A shortest run from the initial state through a goal tick to an end; None: there is none.
 
         Args:
-            goal: over a state and a letter; the tick may be the end.
-            endings: where the word may end.
+            goal: goal over a state and a valuation; its tick may be the end.
+            endings: possible ends of the run.
 
         Raises:
             OutOfTimeError: it takes too long.
@@ -138,14 +138,14 @@ class Words:
             if layers.is_complete and endings.is_over(length):
                 return None
             onward = self.moved(layers.fresh[-1])
-            layers.add(self.preceding(onward | (goal & endings.way(length))))
+            layers.add(self.pre_image(onward | (goal & endings.way(length))))
         return tuple(self._descent(layers, goal, endings))
 
     def _begins(self, states: Function) -> bool:
         return bool(bdd.at(states, self._start) == bdd.true())
 
     def _descent(self, layers: Layers, goal: Function, endings: Endings) -> Iterator[Letter]:
-        """Letters from the initial state down to the end, each as near as can be to the last."""
+        """Valuations from the initial state to the end, with as few changes as possible."""
         transition = self.transition.needed(self._safe, goal, endings.end)
         state: State = transition.start
         letter: Letter = dict.fromkeys(self._letters, False)
@@ -168,11 +168,11 @@ class Words:
 
 
 def nearest(allowed: Function, wanted: Letter) -> Letter:
-    """Values that make a function true, as they are wanted where that can be.
+    """Values that make a function true, with preferred values if possible.
 
     Args:
-        allowed: over the variables of the letter; not false.
-        wanted: tried first, variable by variable in their order.
+        allowed: function over the variables of the valuation; not false.
+        wanted: preferred values, tried in the order of the variables.
     """
     values = dict(wanted)
     while allowed != bdd.true():

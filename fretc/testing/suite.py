@@ -1,4 +1,4 @@
-"""A suite of tests as it is written and read back: runs with their verdicts, and what they show."""
+"""Test suite as it is written and read back: runs with their verdicts, and what they cover."""
 
 from __future__ import annotations
 
@@ -12,42 +12,42 @@ from monitors.kernel.verdicts import Verdict
 
 SCHEMA: Final = "fretc-tests-1"
 LONGEST_NAME: Final = 100
-"""Characters of the name of a test, which also names its files."""
+"""Maximum length of the name of a test, which is also a file name."""
 Ids = tuple[Name, ...]
 
 
 class Repeat(Record, frozen=True):
-    """Equal ticks, one after the other."""
+    """Equal adjacent ticks."""
 
     count: Annotated[Ordinal, about("how many ticks")]
     values: Annotated[
         dict[str, Value | None],
         about(
-            "of each atom its truth, of each variable that is compared its number; null: unknown"
+            "the truth value of each atom and the number of each compared variable; null: unknown"
         ),
     ]
 
 
 class Polarity(StrEnum):
-    """Whether the run of a test keeps the requirement that it tests."""
+    """Whether the run of a test satisfies its requirement."""
 
     KEPT = "kept"
     BROKEN = "broken"
     UNKNOWN = "unknown"
-    """What is unknown in the run decides."""
+    """The verdict depends on an unknown value."""
 
 
 class Test(Record, frozen=True):
-    """One run, and what a monitor of the requirement says of it."""
+    """One run, with the results of the requirement's monitor."""
 
-    __test__: ClassVar[bool] = False  # or pytest takes the class for a test
+    __test__: ClassVar[bool] = False  # Otherwise pytest collects the class.
 
     name: Annotated[Name, about("unique in the suite")]
     requirement: Name
-    words: Annotated[str, about("what the run shows, as one sentence")]
+    words: Annotated[str, about("the purpose of the test, as one sentence")]
     rows: Annotated[tuple[Repeat, ...], about("the ticks, from tick 0 on")]
-    polarity: Annotated[Polarity, about("whether the run keeps the requirement")]
-    verdict: Annotated[Verdict, about("of the monitor, where the run ends")]
+    polarity: Annotated[Polarity, about("whether the run satisfies the requirement")]
+    verdict: Annotated[Verdict, about("verdict of the monitor at the end of the run")]
     finite: Annotated[bool | None, about("FRET's verdict on the finite run")]
     decided: Annotated[
         Count | None,
@@ -55,80 +55,82 @@ class Test(Record, frozen=True):
             "the first tick after which no continuation changes the verdict; null: there is none"
         ),
     ]
-    first_violation: Annotated[Count | None, about("the tick at which a demand is broken first")]
+    first_violation: Annotated[
+        Count | None, about("the first tick at which the requirement is violated")
+    ]
     because: Annotated[str, about("the reason of the verdict, in words")]
-    situations: Annotated[tuple[Name, ...], about("the situations that the run comes by")]
-    kills: Annotated[tuple[Name, ...], about("the mutants that judge the run differently")]
+    situations: Annotated[tuple[Name, ...], about("the situations that the run covers")]
+    kills: Annotated[tuple[Name, ...], about("the mutants that give the run another verdict")]
 
     @property
     def ticks(self) -> int:
-        """How long it is."""
+        """Number of ticks."""
         return sum(row.count for row in self.rows)
 
 
-class Met(StrEnum):
-    """What came of an obligation: a situation that a test is to show."""
+class GoalStatus(StrEnum):
+    """Result for a situation that a test should cover."""
 
     MET = "met"
     IMPOSSIBLE = "impossible"
-    """No run of the requirement comes by it so: proved."""
+    """Proved: no run of the requirement covers it with this polarity."""
     EXCLUDED = "excluded"
-    """No run that keeps the others does: proved."""
+    """Proved: no run that satisfies the other requirements covers it."""
     NOT_SEARCHED = "not searched"
 
 
-class Obligation(Record, frozen=True):
-    """A situation that tests show, on a run that keeps the requirement or on one that breaks it.
+class GoalResult(Record, frozen=True):
+    """A situation that tests cover, on a run that satisfies or violates the requirement.
 
-    One in which something is unknown is shown on a run that may do either.
+    A situation with unknown values may be covered by either run.
     """
 
     requirement: Name
     situation: Name
     words: str
     polarity: Polarity
-    outcome: Met
-    tests: Annotated[tuple[Name, ...], about("the tests that meet it, the shortest first")] = ()
-    by: Annotated[Ids, about("a minimal set of requirements that exclude it")] = ()
-    why: Annotated[str, about("why it was not searched; empty: it was")] = ""
+    outcome: GoalStatus
+    tests: Annotated[
+        tuple[Name, ...], about("the tests that cover the situation, shortest first")
+    ] = ()
+    by: Annotated[Ids, about("a minimal set of requirements that exclude the situation")] = ()
+    why: Annotated[str, about("why no test was searched; empty: it was searched")] = ""
 
 
-class Fate(StrEnum):
-    """What became of a mutant."""
+class MutantStatus(StrEnum):
+    """Result for a mutant."""
 
     KILLED = "killed"
     EQUIVALENT = "equivalent"
-    """It judges every finite run as the requirement does: proved."""
+    """Proved: it gives every finite run the verdict of the requirement."""
     EXCLUDED = "excluded"
-    """It judges every finite run so that keeps the others: proved."""
+    """Proved: the same verdict for every finite run that satisfies the other requirements."""
     NOT_SEARCHED = "not searched"
 
 
-class Mutated(Record, frozen=True):
-    """A sentence that somebody might have written in place of the requirement."""
+class MutantResult(Record, frozen=True):
+    """A mutant of a requirement's sentence, with its result."""
 
     requirement: Name
     key: Name
     words: str
     sentence: str
-    outcome: Fate
-    tests: Annotated[tuple[Name, ...], about("the tests that tell it from the requirement")] = ()
+    outcome: MutantStatus
+    tests: Annotated[tuple[Name, ...], about("the tests that kill the mutant")] = ()
     by: Annotated[Ids, about("a minimal set of requirements that hide the difference")] = ()
-    why: Annotated[str, about("why it was not searched; empty: it was")] = ""
+    why: Annotated[str, about("why no test was searched; empty: it was searched")] = ""
 
 
 class Tested(Record, frozen=True):
-    """A requirement of a suite, exactly."""
+    """A requirement of a suite, with its fingerprint."""
 
     id: Name
     sentence: Name
     fingerprint: Sha256
-    kept: Annotated[Ids, about("requirements and assumptions that its tests keep, too")]
+    kept: Annotated[Ids, about("requirements and assumptions that its tests also satisfy")]
     doubt: Annotated[
         str,
-        about(
-            "why nobody may be able to bring the values of its tests about; empty: they are real"
-        ),
+        about("why the values of its tests may be impossible; empty: they are possible"),
     ] = ""
 
 
@@ -137,22 +139,28 @@ class Suite(Record, frozen=True):
 
     schema: Literal["fretc-tests-1"]
     fretc: Annotated[str, about("the version of fretc")]
-    clock: Annotated[str, about("what a tick is; empty: nothing says so")]
+    clock: Annotated[str, about("the length of a tick; empty: not declared")]
     requirements: tuple[Tested, ...]
-    roles: Annotated[dict[str, str], about("input or output, of each variable that declares it")]
+    roles: Annotated[
+        dict[str, str], about("the role of each variable with a declared role: input or output")
+    ]
     tests: tuple[Test, ...]
-    obligations: tuple[Obligation, ...]
-    mutants: tuple[Mutated, ...]
+    obligations: tuple[GoalResult, ...]
+    mutants: tuple[MutantResult, ...]
 
     @property
     def is_complete(self) -> bool:
-        """Whether everything was searched."""
-        met = all(each.outcome is not Met.NOT_SEARCHED for each in self.obligations)
-        return met and all(each.outcome is not Fate.NOT_SEARCHED for each in self.mutants)
+        """Whether no search is missing."""
+        met = all(
+            obligation.outcome is not GoalStatus.NOT_SEARCHED for obligation in self.obligations
+        )
+        return met and all(
+            mutant.outcome is not MutantStatus.NOT_SEARCHED for mutant in self.mutants
+        )
 
 
 def unused(name: str, names: set[str]) -> str:
-    """The name, shortened to `LONGEST_NAME`, with a number where it is taken; it is taken then."""
+    """An unused name, shortened and numbered if needed; it is added to `names`."""
     ends = chain([""], (f"-{number}" for number in count(2)))
     candidates = (name[: LONGEST_NAME - len(end)].rstrip("-") + end for end in ends)
     found = next(each for each in candidates if each not in names)

@@ -1,4 +1,4 @@
-"""What `fretc test` prints: a row for each requirement, what no test shows, or tests as lanes."""
+"""Text output of `fretc test`: a row for each requirement, missing goals, or tests as tables."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from fretc.analysis.reasons import listed
 from fretc.analysis.text_output import Line, drawn
-from fretc.testing.suite import Fate, Met, Mutated, Obligation, Suite, Test
+from fretc.testing.suite import GoalResult, GoalStatus, MutantResult, MutantStatus, Suite, Test
 from fretish.bindings.declarations import Role
 from fretish.diagnostics import status_symbols as signs
 from monitors.kernel.verdicts import Verdict
@@ -34,16 +34,19 @@ def lines(suite: Suite) -> Iterator[Line]:
 
 
 def lines_of_file(suite: Suite) -> Iterator[Line]:
-    """The summary of tests that somebody else has made: what they show was not looked into."""
-    yield f"{signs.GOOD.glyph} {_size(suite)}; the monitors say what they expect", signs.GOOD.colour
+    """Summary of tests from a file; the goals that they cover are not examined."""
+    yield (
+        f"{signs.GOOD.glyph} {_size(suite)}; the monitors give the expected results",
+        signs.GOOD.colour,
+    )
     yield "", None
     yield from ((row, None) for row in _table(suite, columns=3))
 
 
 def _headline(suite: Suite) -> str:
     if not suite.is_complete:
-        return f"{_size(suite)}; not all was searched"
-    return f"{_size(suite)}; each situation is met or cannot be, no mutant survives"
+        return f"{_size(suite)}; the search is not complete"
+    return f"{_size(suite)}; each situation is covered or impossible, and no mutant survives"
 
 
 def _size(suite: Suite) -> str:
@@ -61,17 +64,21 @@ _HEAD = ("", "tests", "ticks", "situations", "mutants")
 
 def _table(suite: Suite, columns: int = len(_HEAD)) -> Iterator[str]:
     rows = [_HEAD]
-    for each in suite.requirements:
-        own = [test for test in suite.tests if test.requirement == each.id]
-        obligations = [one for one in suite.obligations if one.requirement == each.id]
-        mutants = [one for one in suite.mutants if one.requirement == each.id]
+    for requirement in suite.requirements:
+        own = [test for test in suite.tests if test.requirement == requirement.id]
+        obligations = [
+            obligation
+            for obligation in suite.obligations
+            if obligation.requirement == requirement.id
+        ]
+        mutants = [mutant for mutant in suite.mutants if mutant.requirement == requirement.id]
         rows.append(
             (
-                each.id,
+                requirement.id,
                 str(len(own)),
                 str(sum(test.ticks for test in own)),
-                _counts([one.outcome for one in obligations], Met),
-                _counts([one.outcome for one in mutants], Fate),
+                _counts([obligation.outcome for obligation in obligations], GoalStatus),
+                _counts([mutant.outcome for mutant in mutants], MutantStatus),
             )
         )
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
@@ -86,9 +93,9 @@ def _table(suite: Suite, columns: int = len(_HEAD)) -> Iterator[str]:
         yield f"  {'  '.join(cells[:columns])}".rstrip()
 
 
-def _counts(outcomes: Sequence[str], kinds: type[Met] | type[Fate]) -> str:
+def _counts(outcomes: Sequence[str], kinds: type[GoalStatus] | type[MutantStatus]) -> str:
     """`14 met, 2 impossible`."""
-    found = ((sum(each == kind for each in outcomes), kind) for kind in kinds)
+    found = ((sum(outcome == kind for outcome in outcomes), kind) for kind in kinds)
     return ", ".join(f"{count} {kind}" for count, kind in found if count)
 
 
@@ -98,7 +105,7 @@ def _counts(outcomes: Sequence[str], kinds: type[Met] | type[Fate]) -> str:
 def _remarks(suite: Suite) -> Iterator[Line]:
     lost = dict(_lost(suite))
     for id, why in lost.items():
-        yield f"{signs.UNKNOWN.glyph} {id}: nothing was searched: {why}", signs.UNKNOWN.colour
+        yield f"{signs.UNKNOWN.glyph} {id}: not searched: {why}", signs.UNKNOWN.colour
     for situation in _by_situation(suite):
         if situation[0].requirement not in lost:
             yield from _unmet(situation)
@@ -109,66 +116,70 @@ def _remarks(suite: Suite) -> Iterator[Line]:
 
 
 def _lost(suite: Suite) -> Iterator[tuple[str, str]]:
-    """Requirements of which nothing was searched, all for one reason; and that."""
-    for each in suite.requirements:
-        reasons = {one.why for one in suite.obligations if one.requirement == each.id}
-        reasons |= {one.why for one in suite.mutants if one.requirement == each.id}
+    """Requirements without a search for the same reason, and the reason."""
+    for requirement in suite.requirements:
+        reasons = {
+            obligation.why
+            for obligation in suite.obligations
+            if obligation.requirement == requirement.id
+        }
+        reasons |= {mutant.why for mutant in suite.mutants if mutant.requirement == requirement.id}
         if len(reasons) == 1 and "" not in reasons:
-            yield each.id, reasons.pop()
+            yield requirement.id, reasons.pop()
 
 
 def _doubts(suite: Suite) -> Iterator[Line]:
-    """Values that nobody may be able to bring about; one reason is enough here."""
-    doubted = [each for each in suite.requirements if each.doubt]
+    """Tests with possibly impossible values, with one of the reasons."""
+    doubted = [requirement for requirement in suite.requirements if requirement.doubt]
     if doubted:
         ids = listed([each.id for each in doubted])
-        text = f"some tests of {ids} may have values that cannot be: {doubted[0].doubt}"
+        text = f"some tests of {ids} may have impossible values: {doubted[0].doubt}"
         yield f"{signs.SUSPECT.glyph} {text}", signs.SUSPECT.colour
 
 
-def _by_situation(suite: Suite) -> list[list[Obligation]]:
-    found: dict[tuple[str, str], list[Obligation]] = {}
-    for each in suite.obligations:
-        found.setdefault((each.requirement, each.situation), []).append(each)
+def _by_situation(suite: Suite) -> list[list[GoalResult]]:
+    found: dict[tuple[str, str], list[GoalResult]] = {}
+    for obligation in suite.obligations:
+        found.setdefault((obligation.requirement, obligation.situation), []).append(obligation)
     return [*found.values()]
 
 
-def _unmet(obligations: Sequence[Obligation]) -> Iterator[Line]:
-    """Of one situation, on runs that keep the requirement and on runs that break it."""
+def _unmet(obligations: Sequence[GoalResult]) -> Iterator[Line]:
+    """Results of one situation, on satisfying runs and on violating runs."""
     first = obligations[0]
     for outcome, sign, how in (
-        (Met.IMPOSSIBLE, signs.UNUSED, "no run shows this"),
-        (Met.EXCLUDED, signs.UNUSED, f"not with {listed(first.by)}"),
-        (Met.NOT_SEARCHED, signs.UNKNOWN, f"not searched: {first.why}"),
+        (GoalStatus.IMPOSSIBLE, signs.UNUSED, "no run shows this"),
+        (GoalStatus.EXCLUDED, signs.UNUSED, f"not with {listed(first.by)}"),
+        (GoalStatus.NOT_SEARCHED, signs.UNKNOWN, f"not searched: {first.why}"),
     ):
         if all(
-            (each.outcome, each.by, each.why) == (outcome, first.by, first.why)
-            for each in obligations
+            (obligation.outcome, obligation.by, obligation.why) == (outcome, first.by, first.why)
+            for obligation in obligations
         ):
             yield f"{sign.glyph} {first.requirement}: {how}: {first.words}", sign.colour
             return
     for each in obligations:
         head = f"{each.requirement} {each.polarity}"
-        if each.outcome is Met.EXCLUDED:
+        if each.outcome is GoalStatus.EXCLUDED:
             text = f"{head}: not with {listed(each.by)}: {each.words}"
             yield f"{signs.UNUSED.glyph} {text}", signs.UNUSED.colour
-        elif each.outcome is Met.NOT_SEARCHED:
+        elif each.outcome is GoalStatus.NOT_SEARCHED:
             text = f"{head}: not searched: {each.why}: {each.words}"
             yield f"{signs.UNKNOWN.glyph} {text}", signs.UNKNOWN.colour
 
 
-def _surviving(mutant: Mutated) -> Iterator[Line]:
+def _surviving(mutant: MutantResult) -> Iterator[Line]:
     head = f"{mutant.requirement}: {mutant.words}"
     match mutant.outcome:
-        case Fate.KILLED:
+        case MutantStatus.KILLED:
             return
-        case Fate.EQUIVALENT:
-            yield f"{signs.EMPTY.glyph} {head} says the same", signs.EMPTY.colour
-        case Fate.EXCLUDED:
-            text = f"{head} says the same as long as {listed(mutant.by)}"
+        case MutantStatus.EQUIVALENT:
+            yield f"{signs.EMPTY.glyph} {head} is equivalent", signs.EMPTY.colour
+        case MutantStatus.EXCLUDED:
+            text = f"{head} is equivalent as long as {listed(mutant.by)}"
             verb = "is" if len(mutant.by) == 1 else "are"
-            yield f"{signs.EMPTY.glyph} {text} {verb} kept", signs.EMPTY.colour
-        case Fate.NOT_SEARCHED:
+            yield f"{signs.EMPTY.glyph} {text} {verb} satisfied", signs.EMPTY.colour
+        case MutantStatus.NOT_SEARCHED:
             yield f"{signs.UNKNOWN.glyph} {head}: not searched: {mutant.why}", signs.UNKNOWN.colour
 
 
@@ -186,15 +197,15 @@ def shown(
 
     Args:
         suite: all tests.
-        id: the requirement.
-        names: its atoms and variables: the lanes.
-        roles: of those that have one.
-        wordings: of atoms that are shown in other words than by their names.
+        id: id of the requirement.
+        names: its atoms and variables, which are the rows.
+        roles: roles of those that have one.
+        wordings: atoms with another label than their name.
     """
-    tested = next(each for each in suite.requirements if each.id == id)
+    tested = next(requirement for requirement in suite.requirements if requirement.id == id)
     yield f"{id}  {tested.sentence}", None
     if tested.kept:
-        yield f"  its tests keep {listed(tested.kept)}, too", None
+        yield f"  its tests also satisfy {listed(tested.kept)}", None
     for test in suite.tests:
         if test.requirement == id:
             yield "", None

@@ -1,4 +1,4 @@
-"""A word as columns of atoms, and what the definition, a monitor and reasons say of it."""
+"""A run as columns of atoms, and its results by definition, monitor and explanation."""
 
 from __future__ import annotations
 
@@ -31,35 +31,35 @@ Row = TypeVar("Row")
 
 @dataclass(frozen=True)
 class Word:
-    """A run, stored by stretches of equal ticks."""
+    """A run, stored as columns."""
 
     rows: tuple[Repeat, ...]
     columns: Mapping[str, int]
     """Each atom over time, bit i for tick i."""
     ticks: int
     unknown: Mapping[str, int] = field(default_factory=dict)
-    """Where atoms are unknown, whatever their columns say; of all others nothing is."""
+    """Ticks at which atoms are unknown, whatever their columns contain."""
 
 
 @dataclass(frozen=True, slots=True)
 class Naming:
-    """What the rows of a word have."""
+    """Names in the rows of a run."""
 
     atoms: Sequence[str]
-    """Of which the word has columns."""
+    """Atoms with a column."""
     shown: Collection[str]
-    """Those of them that its rows have, beside numbers that make comparisons so."""
+    """Atoms shown in rows. Comparisons are not shown; the numbers that decide them are."""
     signals: Mapping[str, Collection[str]]
-    """What each atom reads that is a proposition of the bindings."""
+    """Propositions of the bindings that each atom reads."""
     pinned: Mapping[str, Collection[f.Formula]]
-    """Of a signal what says its number, and that propositions agree with it."""
+    """Signal → formulas that fix its number, and that propositions agree with it."""
 
     def numbers(self, values: Tick, true: Collection[str]) -> dict[str, Value | None]:
-        """The numbers of a letter, but for those that no truth value of a proposition follows from.
+        """Numbers of a valuation, without those that decide no proposition.
 
         Args:
-            values: of the letter, atoms that are independent of numbers among them.
-            true: the atoms that are true in it.
+            values: values of the valuation, including atoms that are independent of numbers.
+            true: atoms that are true in it.
         """
         known = {name: int(name in true) for name in self.atoms}
         loose = {signal for name in values for signal in self.signals.get(name, ())}
@@ -75,7 +75,7 @@ class Naming:
 
 
 def word(letters: Sequence[Letter], alphabet: Alphabet, naming: Naming) -> Word:
-    """The word of some letters."""
+    """The run of some valuations."""
     functions = {name: alphabet.atom(name) for name in naming.atoms}
     columns = dict.fromkeys(functions, 0)
     rows: list[Repeat] = []
@@ -98,7 +98,7 @@ def _holds(function: Function, letter: Function) -> bool:
 
 
 def blotted(word: Word, tick: int, names: Collection[str]) -> Word:
-    """The word with some values unknown at one tick, which has a row of its own."""
+    """The run with some values unknown at one tick, which has a row of its own."""
     rows: list[Repeat] = []
     start = 0
     for row in word.rows:
@@ -116,16 +116,16 @@ def blotted(word: Word, tick: int, names: Collection[str]) -> Word:
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """What the signals of a sentence say of a word, tick by tick."""
+    """Signals of a sentence for a run, tick by tick."""
 
     breach: int
-    """A demand is broken, at this tick or before."""
+    """The sentence is violated at this tick or before."""
     accepted: int
-    """FRET's verdict, were the word to end here."""
+    """FRET's verdict if the run ended here."""
 
 
 def judged(requirement: FormalizedRequirement, word: Word) -> Judged:
-    """By the formulas of the monitor, as columns."""
+    """Signals by the formulas of the monitor, as columns."""
     every = (1 << word.ticks) - 1
     first = evaluate(requirement.watch.breach, word.columns, word.ticks)
     breach = every & -(first & -first) if first else 0
@@ -134,9 +134,9 @@ def judged(requirement: FormalizedRequirement, word: Word) -> Judged:
 
 
 def is_killed(own: Judged, mutant: Judged, ticks: int) -> bool:
-    """Whether a test of the word tells a mutant from the requirement.
+    """Whether a test with the run distinguishes a mutant from the requirement.
 
-    Either they disagree on the whole word, or one is broken at a tick where the other accepts.
+    Either they disagree on the whole run, or one is violated at a tick where the other accepts.
     """
     apart = (own.accepted ^ mutant.accepted) & (own.breach ^ mutant.breach)
     first = (own.breach | mutant.breach) & -(own.breach | mutant.breach)
@@ -147,7 +147,7 @@ def is_killed(own: Judged, mutant: Judged, ticks: int) -> bool:
 
 
 def letters(requirement: FormalizedRequirement, word: Word) -> tuple[Parts, ...]:
-    """Mode, condition, response and stop condition of a sentence at each tick of a word."""
+    """Mode, condition, response and stop condition of a sentence at each tick of a run."""
     sentence = requirement.sentence
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
     mode = boolean(scope.mode, Past().alone()) if scope else f.TRUE
@@ -165,7 +165,7 @@ def letters(requirement: FormalizedRequirement, word: Word) -> tuple[Parts, ...]
 
 @dataclass(frozen=True, slots=True)
 class Expected:
-    """What a word is to get."""
+    """Expected result of a run."""
 
     finite: bool | None
     verdict: Verdict
@@ -175,11 +175,11 @@ class Expected:
 
 
 def expected(requirement: FormalizedRequirement, monitor: Monitor, word: Word) -> Expected:
-    """The verdict of a word in which all is known: definition, monitor and reasons agree on it.
+    """The verdict of a run with known values; definition, monitor and explanation must agree.
 
     Args:
         requirement: the sentence.
-        monitor: what is emitted of it, and of nothing else.
+        monitor: emitted monitor of only this requirement.
         word: a run of all its atoms.
     """
     parts = letters(requirement, word)
@@ -195,7 +195,7 @@ def expected(requirement: FormalizedRequirement, monitor: Monitor, word: Word) -
 def undecided(
     requirement: FormalizedRequirement, monitor: Monitor, word: Word, atom: str
 ) -> Expected:
-    """The verdict of a word in which an atom is unknown at one tick, where both values differ."""
+    """The verdict of a run with an atom unknown at one tick; None unless both values differ."""
     at, own = word.unknown[atom], word.columns[atom]
     finite: dict[bool, bool] = {}
     for value, column in {True: own | at, False: own & ~at}.items():
@@ -222,7 +222,7 @@ def _monitored(monitor: Monitor, word: Word, because: str) -> Expected:
 def outcome(
     monitor: Monitor, step: Callable[[Sequence[Row]], None], rows: Iterable[Row], because: str = ""
 ) -> Expected:
-    """What a monitor of one requirement says of rows that its method steps, from the first tick."""
+    """Result of a monitor of one requirement for rows, stepped from the first tick."""
     decided = None
     monitor.reset()
     for tick, row in enumerate(rows):
@@ -244,7 +244,7 @@ def _row(monitor: Monitor, word: Word, tick: int) -> tuple[Truth, ...]:
 
 
 def defined(requirement: FormalizedRequirement, parts: Sequence[Parts]) -> tuple[int | None, bool]:
-    """By the reference automaton: the tick at which a demand is broken, and FRET's verdict."""
+    """Result of the reference automaton: the tick of the violation, and FRET's verdict."""
     template = reference.template(requirement.sentence, requirement.ticks or 0)
     state = reference.initial(template)
     for tick, letter in enumerate(parts):

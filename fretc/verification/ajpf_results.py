@@ -1,8 +1,8 @@
-"""The results of AJPF itself, as the `run.py` of a bundle writes them.
+"""Results of AJPF, in the files that the `run.py` of a bundle writes.
 
-Nothing in a file is trusted: a wrong shape is F616. A result counts only where it is about the
-present texts of fretc. Its conclusion is not read: it follows from its single checks, which must be
-those of the present bundle and agree with their logs, where these lie beside it.
+The files are not trusted: a wrong shape is F616. A result counts only if it is about the present
+files of fretc. Its conclusion is not read: it is derived from its checks, which must be those of
+the present bundle and agree with their logs, if these are in the same folder.
 """
 
 from __future__ import annotations
@@ -38,14 +38,14 @@ from fretish.diagnostics.source import Source
 from fretish.reading.recursion import with_recursion_limit
 
 PLACES = "build/*_ajpf/result.json"
-"""Where `--emit ajpf-bundle -o build/` and `run.py` leave them."""
+"""Default paths of the results of `--emit ajpf-bundle -o build/` and `run.py`."""
 _UNHASHED = ("README.md",)
-"""The files of a bundle that no verdict depends on."""
+"""Files of a bundle on which no verdict depends."""
 _ASSUMED = (
-    "the environment shows the triggers freely, anew at the start, at every action and whenever "
-    "the agent is idle, for ever (Env.java)",
-    "AJPF is right where it says that an agent which loops keeps a property: that is its own "
-    "word, and the layer agent looks at the same texts",
+    "the environment can show or hide every trigger at the start, at every action and whenever "
+    "the agent is idle (Env.java)",
+    "AJPF's answer is right for an agent that loops: fretc does not check it, and the layer "
+    "agent examines the same files",
 )
 
 
@@ -64,32 +64,32 @@ class Check:
     seconds: float
     states: int | None
     log: str
-    """The name of the file that has what AJPF printed."""
+    """Name of the file with the output of AJPF."""
     log_sha256: str
     trace: Trace | None
 
     @property
     def question(self) -> tuple[str, str, str, str, str]:
-        """The property and its place, and the verdict that is expected."""
+        """The property, its role, and the expected verdict."""
         return self.role, self.key, self.jpf, self.text, self.expected
 
 
 @dataclass(frozen=True, slots=True)
 class AjpfResult:
-    """A whole file."""
+    """Content of a result file."""
 
     file: str
     requirement: str
     weakened: bool
     own: tuple[str, str] | None
-    """File and SHA-256 of the user's own agent, in the place of the one of the bundle."""
+    """File and SHA-256 of the user's own agent, which replaces that of the bundle."""
     engine: str
     files: Mapping[str, str]
     checks: tuple[Check, ...]
 
 
 def default_paths() -> tuple[str, ...]:
-    """The results at their usual place."""
+    """The result files at the default paths."""
     return tuple(sorted(map(str, Path().glob(PLACES))))
 
 
@@ -99,11 +99,11 @@ def ajpf_proofs(
     """A proof for each result, in the order of the paths, and the diagnostics of the files.
 
     Args:
-        requirements: the requirements as they are now.
+        requirements: the present requirements.
         paths: files of `run.py`.
 
     Returns:
-        The proofs; F616 for what cannot be read, F617 for a requirement that is not there.
+        The proofs; F616 for an unreadable file, F617 for an unknown requirement.
     """
     known = {requirement.id: requirement for requirement in requirements}
     proofs: list[Proof] = []
@@ -120,10 +120,10 @@ def ajpf_proofs(
 
 
 def merged(proofs: Sequence[Proof], present: Sequence[Proof]) -> tuple[Proof, ...]:
-    """The proofs of a file, with the present ones of AJPF in the place of its own.
+    """The proofs of a file, with its proofs of AJPF replaced by the present ones.
 
-    A proof of AJPF in the file that has no present result becomes one that is not checked: nothing
-    compares it with the present texts. A counterexample stays one.
+    A proof of AJPF without a present result becomes unchecked, because nothing compares it with the
+    present files. A counterexample stays.
     """
     fresh = {proof.requirement for proof in present}
     old = [
@@ -137,7 +137,9 @@ def merged(proofs: Sequence[Proof], present: Sequence[Proof]) -> tuple[Proof, ..
 def _unheld(one: Proof) -> Proof:
     if one.result is Result.COUNTEREXAMPLE:
         return one
-    reason = "the file of AJPF's result is not there, to be compared with what is made now"
+    reason = (
+        "the file of AJPF's result is missing, so it cannot be compared with the present bundle"
+    )
     outcome = not_checked(f"it was {one.result}; {reason}")
     return proof(
         one.requirement, Layer.AJPF, one.claim, outcome, one.engine, one.assumptions, one.artefacts
@@ -174,7 +176,7 @@ def _foreign(result: AjpfResult) -> Diagnostic:
         Code.FOREIGN_AJPF_RESULT,
         f"`{result.file}` is about {result.requirement}, and there is no such requirement",
         Source(result.file, "").span(),
-        "it counts for nothing: name the requirement's file, or remove the result",
+        "the result is ignored: name the file of the requirement, or remove the result",
         Severity.WARNING,
     )
 
@@ -261,21 +263,21 @@ def _proof(requirement: FormalizedRequirement, result: AjpfResult) -> Proof:
 
 
 def _reason(requirement: FormalizedRequirement, result: AjpfResult, options: Options) -> str | None:
-    """Why the result is not about the present texts; None: it is."""
+    """Why the result is not about the present files; None: it is."""
     refused = bundle.refusal(requirement, options)
     if refused is not None:
         why = f"{refused.code.number} {refused.message}"
-        return f"no bundle is made of {requirement.id} any more: {why}"
+        return f"{requirement.id} can no longer be exported as a bundle: {why}"
     artifacts = bundle.emit([requirement], options)
     texts = {artifact.path.name: artifact.text for artifact in artifacts}
     manifest = json.loads(texts.pop("manifest.json"))
     stale = sorted(_stale(result, {name: sha256(text) for name, text in texts.items()}))
     if stale:
         verb = "is" if len(stale) == 1 else "are"
-        return f"{', '.join(stale)} {verb} not made like that any more: run AJPF again"
+        return f"{', '.join(stale)} {verb} out of date: run AJPF again"
     asked = {tuple(map(check.get, _QUESTION)) for check in manifest["checks"]}
     if asked != {check.question for check in result.checks} or len(asked) != len(result.checks):
-        return "it does not tell of what a bundle asks: run AJPF again"
+        return "its checks are not those of the present bundle: run AJPF again"
     other = next(filter(None, (_otherwise(result.file, check) for check in result.checks)), None)
     if other is not None or result.own is None:
         return other
@@ -285,7 +287,7 @@ def _reason(requirement: FormalizedRequirement, result: AjpfResult, options: Opt
 def _otherwise(file: str, check: Check) -> str | None:
     """Why a check disagrees with its log; None: they agree, or there is no log.
 
-    A refutation stays one, whatever its log says.
+    A refutation stays one, whatever its log contains.
     """
     if check.role == "requirement" and check.verdict == VIOLATED:
         return None
@@ -294,10 +296,10 @@ def _otherwise(file: str, check: Check) -> str | None:
     except (OSError, ValueError):
         return None
     if hashlib.sha256(log).hexdigest() != check.log_sha256:
-        return f"logs/{check.log} is not what AJPF printed then: run AJPF again"
+        return f"logs/{check.log} was changed since AJPF printed it: run AJPF again"
     of_log, _ = verdict(log.decode(errors="replace"), 0)
     if check.verdict not in (of_log, ERROR):
-        return f"it tells {check.verdict} of {check.jpf}, and logs/{check.log} does not"
+        return f"it states {check.verdict} for {check.jpf}, but logs/{check.log} does not"
     return None
 
 
@@ -312,33 +314,36 @@ def _stale(result: AjpfResult, now: Mapping[str, str]) -> Iterator[str]:
 
 
 def _changed(file: str, hashed: str) -> str | None:
-    """Why the user's own agent is another one now; None: it is the same."""
+    """Why the user's own agent has changed; None: it has not."""
     try:
         own = content(file)
     except (OSError, ValueError):
-        return f"the agent {file} cannot be read, to be compared with the one that was checked"
+        return (
+            f"the agent {file} cannot be read, so it cannot be compared with the one that was "
+            "checked"
+        )
     if hashlib.sha256(own).hexdigest() != hashed:
         return f"the agent {file} was changed since: run AJPF again"
     return None
 
 
 def _conclusion(result: AjpfResult) -> Outcome:
-    """The outcome of all checks together: a refutation first, then what is not known."""
+    """The outcome of all checks together: a refutation first, then missing answers."""
     checks = result.checks
     for check in checks:
         if check.role == "requirement" and check.verdict == VIOLATED:
             length = f" of {len(check.trace.rows)} states" if check.trace else ""
-            return refuted(f"AJPF found a run{length} that breaks it", check.trace)
+            return refuted(f"AJPF found a run{length} that violates it", check.trace)
     for check in checks:
         if check.verdict == ERROR:
             return not_checked(f"{check.jpf}: {check.why}")
     for check in checks:
         if check.verdict != check.expected:
-            what = "the agent without the response keeps it too" * (check.role == "mutant")
+            what = "the agent without the response satisfies it too" * (check.role == "mutant")
             return vacuous(what or f"its control {check.key} holds")
     sizes = ", ".join("?" if c.states is None else f"{c.states:,}" for c in checks)
     seconds = sum(check.seconds for check in checks)
     return proved(
-        f"AJPF gives every expected verdict for the property, its controls and the mutant ({sizes} "
+        f"AJPF gives the expected verdicts for the property, its controls and the mutant ({sizes} "
         f"states, {seconds:.1f} s)"
     )

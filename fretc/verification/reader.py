@@ -1,6 +1,6 @@
-"""The proofs in a file of `fretc verify`.
+"""Reader of the proofs in a file of `fretc verify`.
 
-Nothing in the file is trusted: what its types (`compiler.logic.claims`) do not have is F503.
+The file is not trusted: values outside the types of `compiler.logic.claims` are F503.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from fretish.diagnostics.source import Source
 
 @dataclass(frozen=True, slots=True)
 class Proofs:
-    """A whole file, with its name and its SHA-256."""
+    """Content of a proof file, with its name and its SHA-256."""
 
     file: str
     sha256: str
@@ -28,18 +28,18 @@ class Proofs:
 
     @property
     def fretc(self) -> str:
-        """Version of the tool that proved."""
+        """Version of fretc that proved the claims."""
         return self.document.fretc
 
     @property
     def proofs(self) -> tuple[Proof, ...]:
-        """One for each claim that applies to its requirement."""
+        """One proof for each claim that applies to its requirement."""
         evidence = self.document.evidence
         return tuple(each for each in evidence if each.result is not Result.NOT_APPLICABLE)
 
 
 DEFAULT = "build/verification.json"
-"""Where `fretc verify` writes."""
+"""Default path of the output of `fretc verify`."""
 
 
 def read(path: str) -> Proofs | Diagnostic:
@@ -61,7 +61,7 @@ def read(path: str) -> Proofs | Diagnostic:
 
 
 def known(path: str | None) -> tuple[Proof, ...] | Diagnostic:
-    """The proofs of a file; None: of the one at its usual place, where there is one."""
+    """Proofs of a file, or of the default file if it exists; empty: there is none."""
     place = path or default_path()
     file = read(place) if place is not None else None
     if file is None or isinstance(file, Diagnostic):
@@ -70,7 +70,7 @@ def known(path: str | None) -> tuple[Proof, ...] | Diagnostic:
 
 
 def default_path() -> str | None:
-    """The file of `fretc verify` at its usual place, if there is one."""
+    """Default path of the proofs, if the file exists."""
     return DEFAULT if Path(DEFAULT).exists() else None
 
 

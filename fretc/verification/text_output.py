@@ -1,4 +1,4 @@
-"""What `fretc verify` prints: an overview, claims with their runs, and each assumption once."""
+"""Text output of `fretc verify`: an overview, claims with their runs, and the assumptions."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ Line = tuple[str, str | None]
 
 
 def lines(proofs: Sequence[Proof], *, every_claim: bool = False) -> Iterator[Line]:
-    """A table of requirements and layers, and below it each claim that is not proved, worst first.
+    """A table of requirements and layers, then each claim that is not proved, worst first.
 
-    Without the table, and with all claims, where it has one cell.
+    A table with a single cell is left out, and all claims are listed.
 
     Args:
-        proofs: all of them.
+        proofs: all proofs.
         every_claim: whether claims that are proved or do not apply are listed, too.
     """
     cells = _cells(proofs)
@@ -39,7 +39,7 @@ def lines(proofs: Sequence[Proof], *, every_claim: bool = False) -> Iterator[Lin
 # The table ------------------------------------------------------------------------------------
 
 _Cells = Mapping[tuple[str, Layer], Result]
-"""The worst result of each requirement at each layer, or of a part that all share."""
+"""Worst result of each requirement at each layer, or of a shared part."""
 
 
 def _cells(proofs: Sequence[Proof]) -> _Cells:
@@ -65,7 +65,7 @@ def _overview(cells: _Cells) -> Iterator[Line]:
 
 
 def _counts(proofs: Sequence[Proof], *, every_claim: bool) -> Iterator[Line]:
-    """How many claims are proved, and to how many requirements each layer does not apply."""
+    """Number of proved claims, and of requirements to which each layer does not apply."""
     proved = [proof for proof in proofs if proof.result is Result.PROVED]
     if proved:
         noun = "claim is" if len(proved) == 1 else "claims are"
@@ -93,7 +93,7 @@ def _requirements(count: int) -> str:
 
 
 def _details(proofs: Sequence[Proof]) -> Iterator[Line]:
-    """A line for each claim, its run below it; why something is not checked is explained once."""
+    """A line for each claim, with its run below it; each reason is explained once."""
     if not proofs:
         return
     numbers, reasons = _numbers(proofs), dict[tuple[str, ...], str]()
@@ -120,7 +120,7 @@ def _details(proofs: Sequence[Proof]) -> Iterator[Line]:
 
 
 def _numbers(proofs: Sequence[Proof]) -> Mapping[str, int]:
-    """Each assumption with its number, in the order in which they come."""
+    """Assumption → its number, in the order of appearance."""
     texts = dict.fromkeys(text for proof in proofs for text in proof.assumptions)
     return {text: number for number, text in enumerate(texts, 1)}
 
@@ -132,7 +132,7 @@ SIGNS: Mapping[Result, StatusSymbol] = {
     Result.PROVED: signs.GOOD,
     Result.NOT_APPLICABLE: signs.RETIRED,
 }
-"""The worst first, as for verdicts."""
+"""Symbols of results, the worst first."""
 _ORDER = tuple(SIGNS)
 _OPEN = (Result.COUNTEREXAMPLE, Result.NOT_CHECKED, Result.VACUOUS)
 _UNEXAMINED = {Result.NOT_CHECKED: "not checked", Result.NOT_APPLICABLE: "does not apply"}
@@ -171,7 +171,7 @@ def _listed(numbers: Sequence[int]) -> str:
 
 
 def table(trace: Trace) -> Iterator[str]:
-    """The run under heads; equal ticks together, and what is repeated for ever marked."""
+    """The run as a table with headings; equal ticks share a row, and a repeated part is marked."""
     stretches = list(_stretches(trace))
     heads = ("tick", *trace.names)
     rows = [
@@ -184,11 +184,11 @@ def table(trace: Trace) -> Iterator[str]:
         cells = (cell.rjust(width) for cell, width in zip(row[:-1], widths, strict=True))
         yield f"{'  '.join(cells)}  {row[-1]}".rstrip()
     if trace.cycle is not None:
-        yield f"and from tick {trace.cycle} on the same again, for ever"
+        yield f"the ticks from {trace.cycle} on repeat for ever"
 
 
 def _stretches(trace: Trace) -> Iterator[tuple[str, int, str]]:
-    """`3` or `3..7`, the first tick of it, and what happens at each."""
+    """`3` or `3..7`, its first tick, and the events of each of its ticks."""
     actions = trace.actions or ("",) * len(trace.rows)
     ticks = range(len(trace.rows))
     alike = groupby(
@@ -207,11 +207,11 @@ def _value(value: Truth, name: str) -> str:
 
 
 def as_csv(trace: Trace, propositions: Sequence[str]) -> str:
-    """The propositions of the run as the monitor's own command line reads them.
+    """The propositions of the run as CSV for the monitor's command line.
 
     Args:
-        trace: of an endless run the rows that it has.
-        propositions: those of the monitor, all of them columns of the run.
+        trace: the run; of an endless run its stored rows.
+        propositions: all propositions of the monitor, which are columns of the run.
     """
     places = [trace.names.index(name) for name in propositions]
     written = io.StringIO()

@@ -1,4 +1,4 @@
-"""The proofs of a project: each layer and prover of the table that is asked."""
+"""The proofs of a project, by each requested layer and prover."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 
 def prove(project: Project, request: Request) -> tuple[Proof, ...] | Diagnostic:
-    """All proofs: requirement by requirement from the monitor outwards, then what all share.
+    """All proofs: requirement by requirement from the monitor outwards, then the shared ones.
 
     Args:
-        project: the requirements and what their bindings declare.
-        request: which layers, with which texts.
+        project: the requirements and the bindings.
+        request: layers, provers and texts.
 
     Raises:
-        NotAMonitorError: the given text is no generated monitor.
+        NotAMonitorError: the given text is not a generated monitor.
     """
     single, common = list[Proof](), list[Proof]()
     for method in TABLE:
@@ -35,11 +35,11 @@ def prove(project: Project, request: Request) -> tuple[Proof, ...] | Diagnostic:
             (single if method.of_requirement else common).extend(results)
     places = {requirement.id: place for place, requirement in enumerate(project.formalized)}
     proofs = (*sorted(single, key=lambda each: places[each.requirement]), *common)
-    return tuple(_open_where_demanded(each, project, request) for each in proofs)
+    return tuple(_open_where_demanded(proof, project, request) for proof in proofs)
 
 
 def _open_where_demanded(proof: Proof, project: Project, request: Request) -> Proof:
-    """A claim that does not apply, and that somebody demands or plans, is open: not checked."""
+    """A claim that does not apply counts as not checked if it was requested or planned."""
     by_id = {requirement.id: requirement.entry for requirement in project.formalized}
     shared = tuple(by_id.values())
     own = (by_id[proof.requirement],) if proof.requirement in by_id else shared
@@ -51,7 +51,7 @@ def _open_where_demanded(proof: Proof, project: Project, request: Request) -> Pr
 
 
 def missing_prover(request: Request) -> Diagnostic | None:
-    """Why a prover that is asked cannot answer."""
+    """The diagnostic of a requested prover that is not installed."""
     if not request.names("frama-c"):
         return None
     from fretc.verification.layers.frama_c import refusal
@@ -60,7 +60,7 @@ def missing_prover(request: Request) -> Diagnostic | None:
 
 
 def refusals(project: Project, request: Request) -> Mapping[str, Diagnostic]:
-    """The requirements that no monitor can be made of, where a layer steps one, and why.
+    """Requirements without a monitor, with the reasons, if a layer steps monitors.
 
     No proof of these layers is about them.
     """
@@ -75,6 +75,6 @@ def _without_monitor(requirements: Sequence[FormalizedRequirement]) -> Mapping[s
 
 
 def _part(project: Project) -> Project:
-    """The requirements that a monitor can be made of."""
+    """The requirements that have a monitor."""
     refused = _without_monitor(project.formalized)
     return replace(project, formalized=tuple(r for r in project.formalized if r.id not in refused))

@@ -21,7 +21,7 @@ from compiler.situations.tick_predicates import tick_predicates
 from fretc.analysis.text_output import Line
 from fretc.testing.assembly import jobs, suite
 from fretc.testing.conformance.text_output import lines as lines_of
-from fretc.testing.exports.files import Form, files
+from fretc.testing.exports.files import SuiteFormat, files
 from fretc.testing.suite import Suite
 from fretc.testing.text_output import lines, shown
 from fretish.bindings.declarations import Role
@@ -185,7 +185,7 @@ def emitted(sentence: str) -> str:
     requirements = (requirement(sentence),)
     found = _suite(requirements)
     longest = max(found.tests, key=lambda test: test.ticks)
-    artifacts, _ = files(found, requirements, Form.PYTEST)
+    artifacts, _ = files(found, requirements, SuiteFormat.PYTEST)
     name = longest.name.replace("-", "_")
     _, start, rest = artifacts[-1].text.partition(f"def test_{name}()")
     return f"```python\n{start}{rest.partition('def ')[0].strip()}\n```"

@@ -98,9 +98,9 @@ def test_a_sentence_in_place_of_a_file_is_told_where_it_belongs(fretc: Fretc) ->
     assert fretc("the rover shall satisfy speed <= 1.5") == Run(
         2,
         "",
-        "F906 a sentence is neither a command of fretc nor a file\n"
-        "help: type `fretc explain 'the rover shall satisfy speed <= 1.5'`, or `fretc -` and then "
-        "the sentence\n",
+        "F906 the argument is a sentence, not a command or a file\n"
+        "help: use `fretc explain 'the rover shall satisfy speed <= 1.5'`, or pipe the sentence "
+        "into `fretc -`\n",
     )
 
 
@@ -126,7 +126,7 @@ def test_emitted_files_go_to_build_and_are_named(fretc: Fretc) -> None:
         UNDECIDED + "wrote build/r1_monitor.py\nwrote build/r1.psl\n"
         "next: `python build/r1_monitor.py TRACE.csv` judges a table with a column for each "
         "of its names\n"
-        "next: `fretc explain r1.fret` shows what is meant, with a picture\n",
+        "next: `fretc explain r1.fret` explains the requirement with a timing diagram\n",
     )
     assert sorted(path.name for path in Path("build").iterdir()) == ["r1.psl", "r1_monitor.py"]
     again = fretc("r1.fret", "--emit", "monitor", "--emit", "ajpf")
@@ -199,7 +199,7 @@ def test_within_is_emitted_for_ajpf_where_weakening_is_allowed(fretc: Fretc) -> 
         "   |                        ^^^^^^^^^^^^^^\n"
         "help: check the bound with `--emit monitor`\n"
         "wrote build/r.psl\nwrote build/r.ltl\n"
-        "next: `fretc explain r.fret` shows what is meant, with a picture\n"
+        "next: `fretc explain r.fret` explains the requirement with a timing diagram\n"
     )
     text = Path("build/r.psl").read_text()
     assert "\n# WEAKER than the requirement: `within 3 ticks` has lost its bound" in text
@@ -211,7 +211,7 @@ def test_within_is_emitted_for_ajpf_where_weakening_is_allowed(fretc: Fretc) -> 
 def test_only_the_files_of_ajpf_can_be_weaker(fretc: Fretc, kinds: tuple[str, ...]) -> None:
     run = fretc(write("r1.fret", R1), *kinds, "--weaken")
     assert run.status == 2
-    assert run.err.startswith("F907 `--weaken` is for `--emit ajpf`")
+    assert run.err.startswith("F907 `--weaken` applies only to `--emit ajpf`")
     assert not Path("build").exists()
 
 
@@ -245,7 +245,8 @@ def test_a_mistyped_command_gets_a_suggestion(fretc: Fretc) -> None:
     assert fretc("audti", "x.mcap") == Run(
         2,
         "",
-        "F906 `audti` is no command of fretc, and no file\nhelp: did you mean `fretc audit`?\n",
+        "F906 `audti` is neither a command of fretc nor a file\nhelp: did you mean `fretc "
+        "audit`?\n",
     )
 
 

@@ -91,7 +91,7 @@ def test_every_command_takes_whatever_is_drawn(fretc: Fretc, texts: list[str]) -
 @pytest.mark.parametrize(
     ("command", "reason"),
     [
-        (("analyze",), "F354 nothing says who chooses `mo`"),
+        (("analyze",), "F354 `mo` has no role"),
         (
             ("requirements", "--emit", "prism"),
             "F601 PRISM cannot express a requirement without a probability, such as that of a",

@@ -1,9 +1,9 @@
-"""The letters of a game: what can be true at one tick, and who decides it.
+"""Valuations of one tick of a game, and the player who chooses each variable.
 
-The arena asks for the atoms of its requirements one by one, and an alphabet answers with functions
-of the variables of its letters. The environment sets the `inputs` first, where `legal` holds; then
-the system the `outputs`, so that `reachable` holds. With numbers the environment's bits name a cell
-of the input space, and `reachable` says which truth patterns the system can bring about in it.
+The arena asks for the atoms of its requirements one by one; an alphabet returns functions of its
+variables. The environment sets the `inputs` first, so that `legal` holds; then the system sets the
+`outputs`, so that `reachable` holds. With numbers, the environment's bits name a cell of the input
+space, and `reachable` contains the truth patterns that the system can choose in the cell.
 """
 
 from __future__ import annotations
@@ -19,31 +19,31 @@ if TYPE_CHECKING:
     from fretc.analysis.arena.memory import Counter
 
 Value = bool | int | float | str
-"""Of a variable at one tick: a truth value, a number, a word of an enumerated signal."""
+"""Value of a variable at one tick: a truth value, a number, or an enumeration value."""
 Tick = dict[str, Value]
 """The value of each variable at one tick."""
 
 
 class NumericTrace(Protocol):
-    """The numbers of a run, tick by tick, where letters depend on those of the tick before."""
+    """Numbers of a run, tick by tick, if valuations depend on numbers of the previous tick."""
 
     @property
     def ticks(self) -> Sequence[Tick]:
-        """The numbers so far."""
+        """Numbers of the ticks so far."""
 
     @property
     def last(self) -> tuple[object, ...]:
-        """What is possible next depends on these alone."""
+        """Numbers of the last tick; the possible next valuations depend only on these."""
 
     def possible(self, inputs: Mapping[int, bool]) -> Function:
-        """Over outputs: what can be true at the next tick, after these numbers."""
+        """Function over outputs: the valuations that are possible at the next tick."""
 
     def follow(self, letter: Mapping[int, bool]) -> None:
-        """Choose numbers for the next tick, which are possible."""
+        """Choose numbers for a possible valuation of the next tick."""
 
 
 class Alphabet(Protocol):
-    """Letters; its variables are complete once every atom has been asked for."""
+    """Valuations of one tick; all variables exist once every atom has been asked for."""
 
     @property
     def inputs(self) -> Sequence[int]:
@@ -55,60 +55,60 @@ class Alphabet(Protocol):
 
     @property
     def legal(self) -> Function:
-        """Over inputs: which values can occur together. Never false."""
+        """Function over inputs: the inputs that can occur together. Never false."""
 
     @property
     def reachable(self) -> Function:
-        """Over inputs and outputs: what the system can do. For all legal inputs it can do some."""
+        """Function over inputs and outputs: choices of the system; not empty for legal inputs."""
 
     @property
     def possible(self) -> Function:
-        """Which letters there can be, for any setter. What follows from these is certain."""
+        """Superset of the valuations that can occur. Results for all of these are certain."""
 
     @property
     def certain(self) -> Function:
-        """Which letters there are for certain, over what `memory` has, too."""
+        """Subset of the valuations that can occur, over inputs, outputs and `memory`."""
 
     @property
     def doubts(self) -> Mapping[Role, str]:
-        """Why its letters are more than there can be, of inputs or of outputs; none: they are not.
+        """Role → why its valuations are a superset of those that can occur; empty: they are exact.
 
-        Where inputs have too many letters, what the environment can force is not certain; where
-        outputs have too many, what the system can keep is not.
+        With a superset for inputs, strategies of the environment are uncertain; with a superset for
+        outputs, strategies of the system are.
         """
 
     def doubtful(self, role: Role) -> frozenset[str]:
-        """The atoms of which a player has too many letters."""
+        """Atoms for which a player has valuations that may be impossible."""
 
     @property
     def is_refinable(self) -> bool:
-        """Whether more can be remembered of numbers than is."""
+        """Whether more about earlier numbers could be stored."""
 
     @property
     def open(self) -> str | None:
-        """What one player chooses that nobody does, as far as that is not known; None: nothing."""
+        """What the favoured player chooses although no player does; None: nothing."""
 
     def atom(self, name: str) -> Function:
-        """When an atom is true, over inputs and outputs, and over what `memory` has.
+        """Function of an atom, over inputs, outputs and `memory`.
 
         Raises:
             UnsupportedError: the alphabet has no such atom.
         """
 
     def memory(self) -> Counter | None:
-        """What is remembered of earlier ticks, where letters speak of them."""
+        """Stored facts about earlier ticks on which valuations depend."""
 
     def course(self, budget: Budget) -> NumericTrace | None:
-        """A run that has not begun; None: no letter depends on earlier numbers."""
+        """A run before its first tick; None: no valuation depends on earlier numbers."""
 
     @property
     def labels(self) -> Mapping[int, str]:
-        """The atom of each variable that stands for one."""
+        """The atom of each variable that represents one."""
 
     def values(self, letter: Mapping[int, bool]) -> Tick:
-        """Values of the user's variables that make up a letter.
+        """Values of the user's variables for a valuation.
 
         Args:
-            letter: a value of each of inputs and outputs, legal and reachable, and of the bits of
+            letter: a value of each input and output, legal and reachable, and of the bits of
                 `memory` before the tick.
         """

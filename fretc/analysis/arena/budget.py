@@ -1,4 +1,4 @@
-"""Time of a processor for one question."""
+"""CPU time limit of one question."""
 
 from __future__ import annotations
 
@@ -9,55 +9,55 @@ from dataclasses import dataclass, field
 
 
 class OutOfTimeError(Exception):
-    """The question took longer than it may; the message says how long that is."""
+    """The question exceeded its time limit, which the message states."""
 
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """A question may take so many seconds from now on."""
+    """CPU seconds that a question may take from now on."""
 
     seconds: float
     start: float = field(default_factory=time.process_time)
 
     def __post_init__(self) -> None:
-        """Guard the question, where its process is to be guarded."""
+        """Start the guard of the process, if requested."""
         if _is_guarded and math.isfinite(self.seconds):
             signal.setitimer(signal.ITIMER_PROF, _OVERTIME * self.seconds + 1)
 
     def again(self) -> Budget:
-        """As many seconds, from now on."""
+        """A new budget of as many seconds, from now on."""
         return Budget(self.seconds)
 
     @property
     def spent(self) -> float:
-        """Seconds so far."""
+        """Seconds used so far."""
         return time.process_time() - self.start
 
     @property
     def left(self) -> float:
-        """Seconds that are left, none or more."""
+        """Remaining seconds, 0 or more."""
         return max(0.0, self.seconds - self.spent)
 
     def check(self) -> None:
-        """Raise OutOfTimeError where they are over."""
+        """Raise OutOfTimeError if no time is left."""
         if self.spent > self.seconds:
             raise self.over
 
     @property
     def over(self) -> OutOfTimeError:
-        """What is raised then."""
-        return OutOfTimeError(f"not answered within {self.seconds:g} s of a processor")
+        """The exception for an exceeded budget."""
+        return OutOfTimeError(f"not answered within {self.seconds:g} CPU seconds")
 
 
 _is_guarded = False
 _OVERTIME = 1.5
-"""A question asks often whether its time is over; what lies between may take so much more."""
+"""Factor by which a single operation may exceed the limit before the guard ends the process."""
 
 
 def guard() -> None:
-    """From now on a question that takes far longer than it may ends the process.
+    """Make the process end if the question takes far longer than its limit.
 
-    A single operation on large diagrams cannot be interrupted otherwise.
+    A single operation on large diagrams cannot be interrupted in another way.
     """
     global _is_guarded
     signal.signal(signal.SIGPROF, signal.SIG_DFL)
@@ -65,4 +65,4 @@ def guard() -> None:
 
 
 ENDLESS = Budget(math.inf)
-"""For what takes no time that counts."""
+"""Budget without a limit."""

@@ -1,7 +1,7 @@
-"""A requirement as a counter over Boolean functions: what it forbids, and how it goes on.
+"""A requirement as a counter over Boolean functions: safe ticks and next state.
 
-It says symbol by symbol what `compiler.formalization.reference` says tick by tick: the phase of
-the scope, the trigger of the condition, the count of the timing. Tests hold the two together.
+It defines symbolically what `compiler.formalization.reference` defines tick by tick: the phase of
+the scope, the trigger of the condition, the count of the timing. Tests compare the two.
 """
 
 from __future__ import annotations
@@ -46,15 +46,15 @@ def counter(
     """The counter of a requirement.
 
     Args:
-        requirement: what is formalized.
-        alphabet: of all requirements.
+        requirement: the formalized requirement.
+        alphabet: the alphabet of all requirements.
         fresh: variables for its bits.
-        shared: bits that keep the value of the tick before, of all counters, by that value.
-        as_fret: whether nothing may be owed at the end of any tick, as where FRET's past form
-            holds at every tick.
+        shared: value → bit with its value at the previous tick, shared by all counters.
+        as_fret: whether no obligation may be open at the end of any tick, as if FRET's past form
+            held at every tick.
 
     Raises:
-        UnsupportedError: it says something that has no counter.
+        UnsupportedError: the requirement has no counter.
     """
     if requirement.sentence.probability is not None:
         raise UnsupportedError("it states a probability")
@@ -75,7 +75,7 @@ def counter(
 
 
 class _Tick:
-    """What scope and condition say of a tick."""
+    """Scope and condition at one tick."""
 
     def __init__(
         self, demanded: Obligation, memory: Memory, value: Callable[..., Function]
@@ -98,10 +98,10 @@ class _Tick:
 
 
 def _interval(scope: ScopeKind | None, m: Function, memory: Memory) -> tuple[Function, Function]:
-    """Whether a tick lies in an interval, and whether the one before it did."""
+    """Whether a tick lies in an interval of the scope, and whether the previous tick did."""
 
     def after(begun: Callable[[Function], Function]) -> tuple[Function, Function]:
-        """What is so from a tick on, and whether it was so at the tick before."""
+        """A condition that holds from some tick on, and its value at the previous tick."""
         bit = memory.bit()
         was = bdd.variable(bit.now)
         memory.steps[bit] = begun(was)
@@ -139,12 +139,12 @@ def _interval(scope: ScopeKind | None, m: Function, memory: Memory) -> tuple[Fun
 class _Timing:
     broken: Function
     owed: Function | None = None
-    """Whether the run may not end with this tick."""
+    """Whether an obligation is open at the end of the tick."""
     fair: Function | None = None
 
 
 def _timing(tick: _Tick, n: int) -> _Timing:
-    """What the timing forbids; its count becomes a part of the memory."""
+    """The safe ticks of the timing; its count becomes a part of the memory."""
     enforced, triggered, q, stop = tick.enforced, tick.triggered, tick.q, tick.stop
     kind = tick.demanded.demand.kind
     match kind:
@@ -178,7 +178,7 @@ def _timing(tick: _Tick, n: int) -> _Timing:
 
 
 def _open(tick: _Tick, stays: Callable[[Function], Function]) -> Function:
-    """Whether a demand is open at a tick; one that `stays` is open at the next one, too."""
+    """Whether an obligation is open at a tick; if it `stays`, it is open at the next tick too."""
     bit = tick.memory.bit()
     due = tick.triggered | (tick.enforced & bdd.variable(bit.now))
     tick.memory.steps[bit] = stays(due)
@@ -194,7 +194,7 @@ def _eventually(tick: _Tick) -> _Timing:
 
 
 def _finally(tick: _Tick) -> _Timing:
-    """An interval that never ends has no last tick: there nothing is owed."""
+    """An interval without an end has no last tick, so that no obligation falls due."""
     bit = tick.memory.bit()
     was = bdd.variable(bit.now)
     due = tick.triggered | (tick.enforced & was)
@@ -204,7 +204,7 @@ def _finally(tick: _Tick) -> _Timing:
 
 
 def _within(tick: _Tick, n: int) -> _Timing:
-    """The count is the ticks since the oldest open trigger, its tick included."""
+    """The count is the number of ticks since the oldest open trigger."""
     bits, count = tick.memory.word(n)
     open_ = (tick.triggered | (tick.enforced & some(count))) - tick.q
     tick.memory.set(bits, only(open_, successor(count)))
@@ -212,7 +212,7 @@ def _within(tick: _Tick, n: int) -> _Timing:
 
 
 def _for(tick: _Tick, n: int) -> _Timing:
-    """The count is the ticks for which the newest trigger still demands the response."""
+    """The count is the number of remaining ticks of the newest trigger."""
     bits, count = tick.memory.word(n)
     due = tick.triggered | (tick.enforced & some(count))
     rest = only(tick.enforced, predecessor(count))
@@ -221,10 +221,10 @@ def _for(tick: _Tick, n: int) -> _Timing:
 
 
 def _after(tick: _Tick, n: int) -> _Timing:
-    """The count is the ticks that the oldest trigger has seen.
+    """The count is the number of ticks since the oldest trigger.
 
-    Another trigger before it is answered forbids the response at the very tick at which the oldest
-    demands it: only the end of the interval can keep both.
+    A second trigger before the deadline forbids the response at the tick at which the first one
+    demands it: only the end of the interval can satisfy both.
     """
     bits, count = tick.memory.word(n + 1)
     clash = tick.memory.bit()
@@ -247,7 +247,7 @@ def _not_after(tick: _Tick, n: int) -> _Timing:
 
 
 def _register(tick: _Tick, n: int) -> _Timing:
-    """Each trigger forbids the response at a tick of its own, so each is remembered."""
+    """Each trigger forbids the response at a tick of its own, so each trigger is stored."""
     if n > LONGEST_DELAY:
         raise UnsupportedError(f"each of its triggers is remembered for {n} ticks")
     unanswered = tick.enforced - tick.q

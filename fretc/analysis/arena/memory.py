@@ -1,6 +1,6 @@
 """Bits of a state that are built one by one, and formulas of the past over them.
 
-All bits are false before the first tick. A counter is a word of bits, the least first, and is
+All bits are false before the first tick. A counter is a vector of bits, lowest first, and is
 computed by arithmetic: a bound of a million ticks has twenty bits.
 """
 
@@ -17,23 +17,23 @@ from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
 
 Word = Sequence[Function]
-"""The bits of a whole number from 0 on, the least first."""
+"""Bits of a whole number from 0 on, lowest first."""
 LONGEST_DELAY = 256
-"""Ticks for which each value is kept in a bit of its own."""
+"""Longest delay in ticks for which each value is stored in a bit of its own."""
 
 
 @dataclass(frozen=True, slots=True)
 class Bit:
-    """One bit of a state: its value before a tick, and variables of the same place after it."""
+    """A bit of a state: its value before a tick, and the variables for later ticks."""
 
     now: int
     after: int
     later: int
-    """After some more ticks."""
+    """The variable of the bit after some more ticks."""
 
 
 class Memory:
-    """The bits of one requirement, while it is built."""
+    """The bits of one requirement, during construction."""
 
     def __init__(self, fresh: Numbers, shared: dict[Function, Bit]) -> None:
         self._fresh, self.shared = fresh, shared
@@ -41,21 +41,21 @@ class Memory:
         self.steps: dict[Bit, Function] = {}
         """The value of each bit after a tick, over bits before it and a letter."""
         self.words: list[tuple[Bit, ...]] = []
-        """The bits of each count, the least first."""
+        """The bits of each count, lowest first."""
 
     def bit(self) -> Bit:
-        """A new one, whose step is to be set."""
+        """A new bit, whose step is still to be set."""
         self.bits.append(Bit(*(next(self._fresh) for _ in range(3))))
         return self.bits[-1]
 
     def word(self, most: int) -> tuple[list[Bit], Word]:
-        """Bits for the numbers 0..most, the weightiest on top of the order; and their values."""
+        """Bits for the numbers 0..most, highest first in the variable order; and their values."""
         bits = [self.bit() for _ in range(most.bit_length())][::-1]
         self.words.append(tuple(bits))
         return bits, [bdd.variable(bit.now) for bit in bits]
 
     def keep(self, value: Function) -> Function:
-        """The value at the tick before; false at the first one."""
+        """The value at the previous tick; false at the first tick."""
         if value in self.shared:
             self.bits.append(self.shared[value])
         else:
@@ -65,11 +65,11 @@ class Memory:
         return bdd.variable(bit.now)
 
     def set(self, bits: Sequence[Bit], values: Word) -> None:
-        """The steps of a word."""
+        """Set the steps of a bit vector."""
         self.steps.update(zip(bits, values, strict=True))
 
     def needed(self, roots: Sequence[Function]) -> tuple[Bit, ...]:
-        """The bits on which the functions depend, at this tick or at a later one."""
+        """Bits on which the functions depend, at this tick or a later one."""
         by_number = {bit.now: bit for bit in self.bits}
         found: set[Bit] = set()
         waiting = list(roots)
@@ -81,11 +81,11 @@ class Memory:
 
 
 def side_by_side(words: Iterable[tuple[Bit, ...]], count: int) -> Numbers:
-    """Variables for a second build like a first one, with bits of the same weight in a row.
+    """Variables for a second construction like the first, with bits of equal weight adjacent.
 
     Args:
-        words: of the first build, the least bits first.
-        count: how many variables it took; the second one takes them in the same order.
+        words: bit vectors of the first construction, lowest bits first.
+        count: number of variables; the second construction takes them in the same order.
     """
     weights = {
         number: weight
@@ -102,7 +102,7 @@ def side_by_side(words: Iterable[tuple[Bit, ...]], count: int) -> Numbers:
 
 
 def equals(word: Word, number: int) -> Function:
-    """Whether the word is the number, which fits."""
+    """Whether the bit vector equals the number, which fits."""
     found = bdd.true()
     for place, bit in reversed([*enumerate(word)]):
         found = (bit if number >> place & 1 else -bit) & found
@@ -110,12 +110,12 @@ def equals(word: Word, number: int) -> Function:
 
 
 def constant(number: int, like: Word) -> Word:
-    """The number, in as many bits as another word."""
+    """The number as a bit vector of the same length."""
     return [bdd.true() if number >> place & 1 else bdd.false() for place in range(len(like))]
 
 
 def successor(word: Word) -> Word:
-    """One more; the greatest becomes 0."""
+    """The number plus one; the greatest becomes 0."""
     carry, found = bdd.true(), []
     for bit in word:
         found.append(bit ^ carry)
@@ -124,7 +124,7 @@ def successor(word: Word) -> Word:
 
 
 def predecessor(word: Word) -> Word:
-    """One less; 0 stays 0."""
+    """The number minus one; 0 stays 0."""
     borrow, found = some(word), []
     for bit in word:
         found.append(bit ^ borrow)
@@ -133,7 +133,7 @@ def predecessor(word: Word) -> Word:
 
 
 def some(word: Word) -> Function:
-    """Whether it is above 0."""
+    """Whether the number is above 0."""
     found = bdd.false()
     for bit in word:
         found = found | bit
@@ -141,13 +141,13 @@ def some(word: Word) -> Function:
 
 
 def either(condition: Function, then: Word, otherwise: Word) -> Word:
-    """One word or the other."""
+    """Bit vector: `if condition then left else right`."""
     pairs = zip(then, otherwise, strict=True)
     return [bdd.ite(condition, left, right) for left, right in pairs]
 
 
 def only(condition: Function, word: Word) -> Word:
-    """The word, or 0 where the condition is false."""
+    """The bit vector, or 0 if the condition is false."""
     return [condition & bit for bit in word]
 
 
@@ -155,10 +155,10 @@ def only(condition: Function, word: Word) -> Word:
 
 
 class Past:
-    """Formulas of the past as functions of a letter and of the bits that they add to a memory.
+    """Formulas of the past as functions of a valuation and of bits that they add to a memory.
 
     Source: Havelund, Rosu, Synthesizing monitors for safety properties, TACAS 2002: the value of a
-    formula at a tick needs those of its parts at this tick and at the one before.
+    formula at a tick needs the values of its parts at this tick and at the previous one.
     """
 
     def __init__(self, atom: Callable[[str], Function], memory: Memory) -> None:
@@ -166,7 +166,7 @@ class Past:
         self._known: dict[f.Formula, Function] = {}
 
     def value(self, formula: f.Formula) -> Function:
-        """Its truth at a tick.
+        """Truth of the formula at a tick.
 
         Raises:
             UnsupportedError: it looks ahead, or too far back.
@@ -254,30 +254,30 @@ def _folded(
 
 @dataclass(frozen=True, slots=True)
 class Counter:
-    """One requirement. Its state has all bits false before the first tick."""
+    """A requirement as a counter. All bits of its state are false before the first tick."""
 
     id: str
     bits: tuple[Bit, ...]
     steps: tuple[Function, ...]
-    """Of each bit its value after a tick, over the bits before it and the letter of the tick."""
+    """The value of each bit after a tick, over the bits before it and the valuation of the tick."""
     safe: Function
-    """Whether a tick breaks nothing; once it does, nothing repairs it, and steps mean nothing."""
+    """Whether a tick violates nothing; after a violation, steps have no meaning."""
     fair: Function | None
-    """Over bits: an endless run keeps the requirement by such states again and again; None: it has
-    no other duty than to be safe."""
+    """Function over bits: an endless run satisfies the requirement if such states recur; None:
+    safety is enough."""
     words: tuple[tuple[Bit, ...], ...]
-    """The bits of each of its counts, the least first."""
+    """The bits of each count, lowest first."""
     enforced: Function
     """Whether a tick lies in an interval of the scope."""
     triggered: Function
-    """Whether a demand begins at a tick."""
+    """Whether an obligation begins at a tick."""
 
     @property
     def longest(self) -> int:
-        """Bits of its largest count."""
+        """Number of bits of the largest count."""
         return max(map(len, self.words), default=0)
 
     @property
     def idle(self) -> Function:
-        """Over bits: nothing is counted, so that nothing is owed by a deadline."""
+        """Function over bits: no count runs, so no deadline is open."""
         return bdd.point({bit.now: False for word in self.words for bit in word})

@@ -1,9 +1,9 @@
 """The arena of a requirement set: one counter for each requirement, over one alphabet.
 
-What is read together stands side by side in the order of variables: the atoms of a requirement,
-then its counter, then the next requirement that shares the most with those before it. Eight
-deadlines that compete for one resource take forty milliseconds so; with all counters first, they
-do not end.
+Variables that are read together are adjacent in the variable order: the atoms of a requirement,
+then its counter, then the next requirement that shares the most variables with the earlier ones.
+With this order, eight deadlines for one resource take forty milliseconds; with all counters first,
+the construction does not end.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ class Arena:
 
     alphabet: Alphabet
     counters: tuple[Counter, ...]
-    """Of the requirements, in the order of the files, but for those that are `beyond`."""
+    """Counters of the requirements, in the order of the files, except those in `beyond`."""
     assumptions: tuple[Counter, ...]
     beyond: dict[str, str]
-    """Why a requirement has no counter, by its id."""
+    """Id of a requirement without a counter → the reason."""
 
     @property
     def size(self) -> int:
-        """Bits of a letter."""
+        """Number of bits of a valuation."""
         return len(self.alphabet.inputs) + len(self.alphabet.outputs)
 
 
 class Fixed:
-    """An alphabet of which each atom has been asked for: a thousand games read it, and it stays."""
+    """An alphabet whose atoms have all been asked for; it does not change any more."""
 
     def __init__(self, alphabet: Alphabet) -> None:
         memory = alphabet.memory()
@@ -86,14 +86,14 @@ def arena(
     of_rules = tuple(
         found[requirement.id] for requirement in requirements if requirement.id in found
     )
-    of_assumptions = tuple(found[each.id] for each in assumptions)
+    of_assumptions = tuple(found[assumption.id] for assumption in assumptions)
     return Arena(Fixed(alphabet), of_rules, of_assumptions, beyond)
 
 
 def near_each_other(requirements: Sequence[FormalizedRequirement]) -> list[FormalizedRequirement]:
-    """Those that count come first, each after those with which it shares the most variables.
+    """Requirements in variable order: those with counts first, by the number of shared variables.
 
-    The others add few bits, or none, and would tear atoms away from the counters that read them.
+    The others add few bits, or none, and would separate atoms from the counters that read them.
     """
     rest = list(requirements)
     ordered: list[FormalizedRequirement] = []

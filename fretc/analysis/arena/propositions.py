@@ -1,8 +1,8 @@
 """An alphabet of truth values: each atom is a bit of the environment or of the system.
 
-Comparisons of numbers and words are bits, too, with the patterns left out that no values have
-(`compiler.logic.orders`). Where more patterns may be impossible than order alone tells, the
-alphabet says so.
+Comparisons of numbers and enumeration values are bits, too; patterns that no values satisfy are
+excluded (`compiler.logic.orders`). If order alone cannot exclude all impossible patterns, the
+alphabet reports it.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ class Propositions:
     """An `Alphabet` in which each atom is a bit.
 
     Args:
-        requirements: whose atoms it has.
-        roles: of their variables.
-        fresh: variables for its bits.
+        requirements: requirements with the atoms.
+        roles: roles of their variables.
+        fresh: variables for the bits.
         elsewhere: atoms that another alphabet has.
-        refused: why that has no others of those that compare numbers.
+        refused: comparison → why the other alphabet does not have it.
     """
 
     def __init__(
@@ -65,23 +65,23 @@ class Propositions:
             self.doubts.setdefault(role, reason)
 
     def doubtful(self, role: Role) -> frozenset[str]:
-        """The atoms of which a player has too many letters."""
+        """Atoms for which a player has valuations that may be impossible."""
         return frozenset(self._doubted[role])
 
     @property
     def is_refinable(self) -> bool:
-        """Nothing is remembered of numbers."""
+        """False: nothing about numbers is stored."""
         return False
 
     @property
     def open(self) -> None:
-        """Nothing is left to a favoured player."""
+        """None: nothing is left to a favoured player."""
 
     def memory(self) -> None:
-        """Nothing is remembered beside what counters do."""
+        """No facts about earlier ticks are stored."""
 
     def course(self, budget: Budget) -> None:
-        """No letter depends on numbers."""
+        """None: no valuation depends on numbers."""
 
     def atom(self, name: str) -> Function:
         """The bit of an atom."""
@@ -91,14 +91,14 @@ class Propositions:
         return bdd.variable(self._numbers[name])
 
     def role(self, name: str) -> Role:
-        """Who decides an atom.
+        """The player who decides an atom.
 
         Raises:
-            UnsupportedError: both do, or it is no atom of one tick.
+            UnsupportedError: both players do, or the atom is not about one tick.
         """
         part = self._parts.get(name)
         if part is None:
-            raise UnsupportedError(f"`{name}` is more than a value at one tick")
+            raise UnsupportedError(f"`{name}` is not a value at a single tick")
         called = next((each for each in e.parts(part) if isinstance(each, e.Call)), None)
         if called is not None and called.name.lower() not in _ABSOLUTE:
             raise UnsupportedError(f"it calls `{called.name}`")
@@ -123,22 +123,22 @@ class Propositions:
 
     @property
     def legal(self) -> Function:
-        """The patterns of inputs that some values have."""
+        """Input patterns that some values satisfy."""
         return self._possible(Role.INPUT)
 
     @property
     def reachable(self) -> Function:
-        """The patterns of outputs that some values have."""
+        """Output patterns that some values satisfy."""
         return self._possible(Role.OUTPUT)
 
     @property
     def possible(self) -> Function:
-        """The patterns that some values have."""
+        """Patterns that some values satisfy."""
         return self.legal & self.reachable
 
     @property
     def certain(self) -> Function:
-        """The same; none where some may have no values."""
+        """The possible patterns; false if some of them may be impossible."""
         return bdd.false() if self.doubts else self.possible
 
     def _possible(self, role: Role) -> Function:
@@ -154,13 +154,13 @@ class Propositions:
         return {number: name for name, number in self._numbers.items()}
 
     def values(self, letter: Mapping[int, bool]) -> Tick:
-        """Each atom by the name that formulas have for it."""
+        """Atom → its value, by the names that formulas have."""
         return {name: letter[number] for name, number in self._numbers.items() if number in letter}
 
     def _doubtful(
         self, requirements: Sequence[FormalizedRequirement]
     ) -> Iterator[tuple[Role, str]]:
-        """Variables that several atoms read in ways that order alone does not tell apart."""
+        """Variables whose atoms order alone cannot separate."""
         readers: defaultdict[str, list[str]] = defaultdict(list)
         for name, read in self._read.items():
             for each in read:
@@ -174,17 +174,17 @@ class Propositions:
             if self._elsewhere.issuperset(atoms):
                 continue
             whole = name in glossary and kind_of(glossary[name].type) in (Kind.WHOLE, Kind.NATURAL)
-            plain = all(_is_plain(self._compared.get(each), whole=whole) for each in atoms)
+            plain = all(_is_plain(self._compared.get(atom), whole=whole) for atom in atoms)
             plain = plain and self._elsewhere.isdisjoint(atoms)
             if (len(atoms) > 1 or not isinstance(self._parts[atoms[0]], e.Name)) and not plain:
                 yield from self._doubt(atoms)
 
     def _doubt(self, atoms: Sequence[str]) -> Iterator[tuple[Role, str]]:
-        """Why letters of these atoms are not certain to be possible, for each role among them."""
-        shown = f"`{atoms[0]}` compares numbers, and is taken as true or false at will"
+        """Role → why the valuations of these atoms may be impossible."""
+        shown = f"`{atoms[0]}` compares numbers, and is treated as true or false at any tick"
         if len(atoms) > 1:
             both = " and ".join(f"`{each}`" for each in atoms[:2])
-            shown = f"{both} read the same numbers, and are taken as independent"
+            shown = f"{both} read the same numbers, and are treated as independent"
         refused = next((self._refused[atom] for atom in atoms if atom in self._refused), None)
         shown = shown if refused is None else f"{refused}: {shown}"
         for atom in atoms:
@@ -200,7 +200,7 @@ _ABSOLUTE = ("abs", "absreal", "absint")
 def _read(
     name: str, part: e.Expression, requirements: Iterable[FormalizedRequirement]
 ) -> frozenset[str]:
-    """The signals or variables that decide an atom."""
+    """Signals or variables that decide an atom."""
     for requirement in requirements:
         declared = requirement.declarations
         bound = declared.propositions.get(name) if declared else None
@@ -210,7 +210,7 @@ def _read(
 
 
 def _is_plain(part: e.Comparison | None, *, whole: bool) -> bool:
-    """Whether order alone tells what else a comparison excludes."""
+    """Whether order alone determines what a comparison excludes."""
     if part is None:
         return False
     sides = (part.left, part.right)
@@ -221,7 +221,7 @@ def _is_plain(part: e.Comparison | None, *, whole: bool) -> bool:
 def _exclusions(
     compared: Mapping[str, e.Comparison], requirements: Sequence[FormalizedRequirement]
 ) -> tuple[Exclusion, ...]:
-    """Patterns of comparisons that no values have."""
+    """Patterns of comparisons that no values satisfy."""
     signals = {
         name: each
         for requirement in requirements

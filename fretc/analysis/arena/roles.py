@@ -1,6 +1,6 @@
-"""Who chooses each variable: the environment its inputs, the system its outputs.
+"""Roles of variables: the environment chooses inputs, the system chooses outputs.
 
-A role is declared, never guessed: whether requirements can be kept together depends on it.
+A role is declared, never guessed, because realizability depends on it.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.toml_text import as_key
 
 Roles = Mapping[str, Role]
-"""Input or output, of every variable of the requirements."""
+"""Role of every variable of the requirements."""
 CHOSEN = (Role.INPUT, Role.OUTPUT)
 
 
 def roles(requirements: Sequence[FormalizedRequirement]) -> Roles | tuple[Diagnostic, ...]:
-    """The role of each variable; or what is wrong with each that has none, or has two.
+    """The role of each variable, or the errors of variables without a role or with two.
 
-    F354 stands where a variable without a role is read first. F907 is of one that is an input of
-    one component and an output of another one.
+    F354 is reported where a variable without a role is read first. F907 is about an input of one
+    component that is an output of another.
     """
     found: dict[str, tuple[Role, str]] = {}
     wrong: dict[str, Diagnostic] = {}
@@ -47,14 +47,15 @@ def _two_roles(
     component = requirement.sentence.component
     return Diagnostic(
         Code.BAD_USAGE,
-        f"`{name}` is an {first}, and an {second} of `{component}`: these are two systems",
+        f"`{name}` is an {first}, and an {second} of `{component}`: these are two different "
+        "systems",
         first_use(requirement, name),
-        help=f"ask about one of them: `--component {component}`",
+        help=f"analyze one of them: `--component {component}`",
     )
 
 
 def role(requirement: FormalizedRequirement, name: str) -> Role | None:
-    """The role that is declared; that of its signals, where a proposition has none of its own."""
+    """The declared role of a variable, or the common role of a proposition's signals."""
     variable = requirement.glossary.get(name)
     if variable is not None and variable.role in CHOSEN:
         return Role(variable.role)
@@ -81,29 +82,32 @@ def _no_role(
         table = "signal" if name in declared.signals else table
     answered = any(name in _answers(each) for each in requirements)
     likely = Role.OUTPUT if answered else Role.INPUT
-    why = "stands in a response" if answered else "stands in no response"
+    why = "occurs in a response" if answered else "occurs in no response"
     variable = requirement.glossary.get(name)
     unread = str(variable.fret.get("assignment", "")) if variable is not None else ""
     if unread:
         shown = " ".join(unread.split())[:_SHOWN]
-        message = f"`{name}` stands for `{shown}`, which is not read, and has no role"
+        message = f"`{name}` has no role, and its assignment `{shown}` is not read"
     elif variable is not None and variable.role == Role.MODE:
-        message = f"`{name}` is a mode, and nothing says whether the system chooses it"
+        message = (
+            f"`{name}` is a mode without a role: it may be chosen by the system or by the "
+            "environment"
+        )
     else:
-        message = f"nothing says who chooses `{name}`: the environment or the system"
+        message = f"`{name}` has no role: it may be chosen by the environment or by the system"
     line = f'role = "{likely}"'
     return Diagnostic(
         Code.NO_ROLE,
         message,
         first_use(requirement, name),
-        help=f'say `role = "input"` (the environment) or `role = "output"` (the system) in '
+        help=f'write `role = "input"` (the environment) or `role = "output"` (the system) in '
         f"`[{table}.{as_key(name)}]` of bindings.toml; `{name}` {why}",
         paste=f"[{table}.{as_key(name)}]\n{line}",
     )
 
 
 _SHOWN = 60
-"""Characters of an assignment that a message shows."""
+"""Maximum number of characters of an assignment in a message."""
 
 
 def _answers(requirement: FormalizedRequirement) -> frozenset[str]:

@@ -1,4 +1,4 @@
-"""How a state of several counters goes on, tick by tick: as functions, and for one known state."""
+"""Next state of several counters: as functions, and for one known state."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ State = Mapping[int, bool]
 
 
 class Transition:
-    """The product of some counters: next-state functions, no relation."""
+    """Product of some counters: next-state functions, without a relation."""
 
     def __init__(self, counters: Sequence[Counter]) -> None:
         by_number: dict[int, Bit] = {}
@@ -26,7 +26,7 @@ class Transition:
         self.start: State = dict.fromkeys(self._steps, False)
 
     def needed(self, *functions: Function) -> Transition:
-        """The same of those bits on which the functions depend, at a tick or at a later one."""
+        """The transition of the bits on which the functions depend, at a tick or a later one."""
         waiting, found = list(functions), set[int]()
         while waiting:
             read = {number for number in bdd.support(waiting.pop()) if number in self._steps}
@@ -40,18 +40,18 @@ class Transition:
 
     @property
     def initial(self) -> Function:
-        """The one state before the first tick."""
+        """The state before the first tick."""
         return bdd.point(self.start)
 
     def step(self, bit: int) -> Function:
-        """The value of a bit after a tick, over a state and a letter."""
+        """The value of a bit after a tick, over a state and a valuation."""
         return self._steps[bit]
 
     def moved(self, states: Function) -> Function:
-        """Over a state and a letter: whether the state after it is one of these.
+        """Function over a state and a valuation: the next state is one of these states.
 
-        A state is renamed first: functions of bits before a tick stand in for bits after it, one
-        by one.
+        The states are renamed first, so that functions of bits before a tick replace bits after it
+        one by one.
         """
         read = [number for number in bdd.support(states) if number in self._steps]
         for number in read:
@@ -61,12 +61,12 @@ class Transition:
         return states
 
     def relation(self, ticks: Function, letters: Function, known: Function) -> Function:
-        """Over states and those after them: which ones some of these ticks lead to.
+        """Relation over states and next states.
 
         Args:
-            ticks: over a state and a letter.
-            letters: cube of the variables of a letter.
-            known: cube of those whose values are known.
+            ticks: the allowed ticks, over a state and a valuation.
+            letters: cube of the variables of a valuation.
+            known: cube of the variables with known values.
         """
         found = bdd.at(ticks, known)
         for bit in sorted(self.bits, key=lambda bit: -bit.now):
@@ -75,11 +75,11 @@ class Transition:
         return bdd.exists(found, letters)
 
     def moved_from(self, states: Function, known: Function) -> Function:
-        """The same where a cube holds the whole state: over what it leaves open of the letter."""
+        """`moved` for a known state, given as a cube: over the other variables of the valuation."""
         for number in [n for n in bdd.support(states) if n in self._steps]:
             states = bdd.compose(states, number, bdd.at(self._steps[number], known))
         return states
 
     def next(self, known: Function) -> State:
-        """The state after a whole state and a whole letter, given as a cube."""
+        """The next state of a complete state and valuation, given as a cube."""
         return {number: bdd.at(step, known) == bdd.true() for number, step in self._steps.items()}

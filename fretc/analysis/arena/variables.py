@@ -1,4 +1,4 @@
-"""Fresh variables of decision diagrams, and what an arena has no model of."""
+"""Fresh variables of decision diagrams, and the error for unsupported requirements."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from itertools import count
 
 
 class UnsupportedError(Exception):
-    """Something that the analysis has no model of; the message says what, in words."""
+    """The analysis has no model of a construct; the message names the construct."""
 
 
 Numbers = Iterator[int]
-"""Variables that nothing has yet, in their order: the next one is free."""
+"""Unused variables in order; the next one is free."""
 
 
 def numbers(start: int = 0) -> Numbers:

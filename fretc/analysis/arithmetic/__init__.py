@@ -1,5 +1,5 @@
 """Comparisons of numbers as valuations in a game, exact by linear arithmetic in z3.
 
-Input is the comparisons of requirements. Output is an alphabet for the arena: the combinations that
-numbers can make true.
+Input is the comparisons of requirements. Output is an alphabet for the arena: the truth patterns
+that numbers can satisfy.
 """

@@ -1,4 +1,4 @@
-"""An alphabet in which comparisons are as true together as numbers allow, and no other way."""
+"""An alphabet whose truth patterns of comparisons are exactly those that numbers allow."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretc.analysis.arithmetic.atoms import Atoms
-from fretc.analysis.arithmetic.course import NumberCourse
-from fretc.analysis.arithmetic.durations import Duration, Held, held
+from fretc.analysis.arithmetic.course import SolvedNumericTrace
+from fretc.analysis.arithmetic.durations import Duration, DurationValue, held
 from fretc.analysis.arithmetic.groups import Group, choice, linked, owners
 from fretc.analysis.arithmetic.past import Remembered, remembered
 from fretc.analysis.arithmetic.projection import Limit
@@ -26,20 +26,20 @@ from fretish.bindings.declarations import Role
 
 
 class Cells:
-    """An `Alphabet`: comparisons by groups, all other atoms as `Propositions` has them.
+    """An `Alphabet` with comparisons in groups, and all other atoms as in `Propositions`.
 
     Args:
-        requirements: whose atoms it has.
-        roles: of their variables.
-        fresh: variables for its bits.
-        favoured: who chooses what is not known: numbers of the tick before, as far as nothing is
-            remembered of them, whether a signal is unknown, and what was before the first tick.
-        budget: for sorting the comparisons.
-        steps: how many ticks before a bound it is remembered whether that is within reach.
+        requirements: requirements with the atoms.
+        roles: roles of their variables.
+        fresh: variables for the bits.
+        favoured: player who chooses unknown values: numbers of the previous tick as far as nothing
+            is stored about them, whether a signal is unknown, and values before the first tick.
+        budget: time limit for solving the comparisons.
+        steps: number of ticks before a bound for which its reachability is stored.
         of_moments: whether propositions over several samples are left to `Propositions`.
 
     Raises:
-        OutOfTimeError: the budget is over.
+        OutOfTimeError: the budget is exceeded.
     """
 
     def __init__(
@@ -60,10 +60,10 @@ class Cells:
         self._kept = Memory(fresh, {})
         self._groups: list[Group] = []
         self._of: dict[str, Group] = {}
-        self._lasted: dict[Duration, Held] = {}
+        self._lasted: dict[Duration, DurationValue] = {}
         self._asked: dict[str, Function] = {}
         self._free: list[int] = []
-        """Bits of the favoured player: whether what lasts has done so since before the run."""
+        """Bits of the favoured player: whether a duration has lasted since before the run."""
         refused = dict(self._atoms.refused)
         for names in linked(self._atoms):
             budget.check()
@@ -79,16 +79,16 @@ class Cells:
         self._lasting = {
             name: lasting
             for name, lasting in self._atoms.lasting.items()
-            if not any(each in refused for each in lasting.atoms)
+            if not any(atom in refused for atom in lasting.atoms)
         }
         for name in self._atoms.lasting.keys() - self._lasting.keys():
             parts = self._atoms.lasting[name].atoms
-            refused[name] = next(refused[each] for each in parts if each in refused)
+            refused[name] = next(refused[part] for part in parts if part in refused)
         elsewhere = frozenset([*self._of, *self._lasting])
         self._plain = Propositions(requirements, roles, fresh, elsewhere, refused)
 
     def atom(self, name: str) -> Function:
-        """When an atom is true; over what is remembered, too, where it depends on that."""
+        """Function of an atom, also over `memory` if it depends on earlier ticks."""
         if name not in self._asked:
             self._asked[name] = self._atom(name)
         return self._asked[name]
@@ -103,7 +103,7 @@ class Cells:
         return self._plain.atom(name) if group is None else group.atom(name)
 
     def _in_time(self, name: str) -> Function:
-        """When a proposition is true that depends on earlier ticks, over their memory, too."""
+        """Function of a proposition that depends on earlier ticks, also over their memory."""
         lasting = self._lasting[name]
         lasted = [self._lasted_so(each) for each in lasting.durations]
         found = bdd.false()
@@ -114,7 +114,7 @@ class Cells:
             found = found | term
         return found
 
-    def _lasted_so(self, duration: Duration) -> Held:
+    def _lasted_so(self, duration: Duration) -> DurationValue:
         if duration not in self._lasted:
             throughout, at_last = self.atom(duration.throughout), self.atom(duration.at_last)
             self._free.append(next(self._fresh))
@@ -150,7 +150,7 @@ class Cells:
 
     @property
     def legal(self) -> Function:
-        """The cells that there are, and the patterns of inputs."""
+        """Possible cells, and input patterns."""
         found = self._plain.legal
         for each in self._used:
             found = found & each.legal
@@ -158,7 +158,7 @@ class Cells:
 
     @property
     def reachable(self) -> Function:
-        """The patterns that the system can bring about."""
+        """Patterns that the system can choose."""
         found = self._plain.reachable
         for each in self._used:
             found = found & each.reachable
@@ -174,7 +174,7 @@ class Cells:
 
     @property
     def certain(self) -> Function:
-        """Those with nothing unknown; of numbers of the tick before none is certain."""
+        """Patterns without unknown values; patterns of earlier numbers are never certain."""
         if self._atoms.before:
             return bdd.false()
         found = self._plain.certain
@@ -186,26 +186,26 @@ class Cells:
 
     @property
     def is_refinable(self) -> bool:
-        """Whether comparisons look back at a number."""
+        """Whether comparisons read a number of the previous tick."""
         return bool(self._atoms.before)
 
     @property
     def open(self) -> str | None:
-        """What the favoured player chooses though nobody does; None: nothing."""
+        """What the favoured player chooses although no player does; None: nothing."""
         before = next(iter(self._atoms.before), None)
         if before is not None:
-            return f"of `{before}` no more is remembered than which comparisons it makes true"
+            return f"of the previous value `{before}` only the truth of its comparisons is kept"
         unknown = next((why for each in self._used if (why := each.open) is not None), None)
         if unknown is not None:
             return unknown
         first = next(iter(self._lasting), None)
         if first is not None:
-            return f"nothing is known of `{first}` before the first tick"
+            return f"the value of `{first}` before the first tick is unknown"
         return None
 
     @property
     def doubts(self) -> Mapping[Role, str]:
-        """Those of the atoms that are in no group, and what is `open`."""
+        """Reasons for atoms outside the groups, and the reasons in `open`."""
         return {**({} if self.open is None else {self._favoured: self.open}), **self._plain.doubts}
 
     @property
@@ -214,7 +214,7 @@ class Cells:
         return {**self._plain.labels, **{n: a for each in self._used for n, a in each.labels()}}
 
     def doubtful(self, role: Role) -> frozenset[str]:
-        """The atoms of which a player has too many letters."""
+        """Atoms for which a player has valuations that may be impossible."""
         found = set(self._plain.doubtful(role))
         if role is self._favoured:
             atoms = self._atoms.found.items()
@@ -224,8 +224,8 @@ class Cells:
         return frozenset(found)
 
     def memory(self) -> Counter | None:
-        """What is remembered of earlier ticks: the player who chooses their numbers keeps to it."""
-        pairs = [each for each in self._pairs if each.now in self._of and each.then in self._of]
+        """Stored facts about earlier ticks, which the player of the numbers must respect."""
+        pairs = [pair for pair in self._pairs if pair.now in self._of and pair.then in self._of]
         agrees = self._agreement(pairs) if pairs else bdd.true()
         bits = self._kept.needed([agrees, *(each.is_so for each in self._lasted.values())])
         if not bits:
@@ -235,9 +235,9 @@ class Cells:
         return Counter("", bits, steps, agrees, None, words, bdd.true(), bdd.true())
 
     def _agreement(self, pairs: Sequence[Remembered]) -> Function:
-        """Whether numbers of the tick before are as they were, where they have a pattern at all.
+        """Whether numbers of the previous tick agree with the stored facts, if they have a pattern.
 
-        Without the patterns the bits of many bounds would agree in too many ways to write down.
+        Without the patterns, the bits of many bounds would have too many combinations.
         """
         then = [self.atom(pair.then) for pair in pairs]
         mine = {bit for function in then for bit in bdd.support(function)}
@@ -250,14 +250,14 @@ class Cells:
             agrees = agrees & bdd.ite(begun, -(was ^ now), first)
         return agrees
 
-    def course(self, budget: Budget) -> NumberCourse | None:
-        """A run that has not begun; None: no letter depends on earlier numbers."""
+    def course(self, budget: Budget) -> SolvedNumericTrace | None:
+        """A run before its first tick; None: no valuation depends on earlier numbers."""
         if not self._atoms.before or self._favoured is not Role.OUTPUT:
             return None
-        return NumberCourse([*self._used], self._atoms, budget)
+        return SolvedNumericTrace([*self._used], self._atoms, budget)
 
     def values(self, letter: Mapping[int, bool]) -> Tick:
-        """The truth of propositions, and numbers that make comparisons true and false so."""
+        """Truth values of propositions, and numbers that satisfy the comparisons' truth values."""
         found = self._plain.values(letter)
         for each in self._used:
             found |= each.values(letter)
@@ -270,4 +270,4 @@ class Cells:
 
     @property
     def _used(self) -> Iterator[Group]:
-        return (each for each in self._groups if each.is_used)
+        return (group for group in self._groups if group.is_used)

@@ -1,4 +1,4 @@
-"""The atoms of requirements that numbers and words decide, as formulas of one tick."""
+"""Atoms that depend on numbers and enumeration values, as formulas of one tick."""
 
 from __future__ import annotations
 
@@ -12,47 +12,47 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import NoTermError, PreviousValue, Term, Terms, read_by
 from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.variables import UnsupportedError
-from fretc.analysis.arithmetic.durations import Lasting, parted
+from fretc.analysis.arithmetic.durations import DurationProposition, parted
 from fretc.analysis.arithmetic.readings import Reading, readings
 from fretc.analysis.arithmetic.steps import AtomOfTick, Moment, Steps, linked, tick, unknown
 
 
 @dataclass(frozen=True, slots=True)
 class Atom:
-    """A truth value of one tick that numbers and words decide."""
+    """Atom of one tick that depends on numbers and enumeration values."""
 
     over: AtomOfTick
     reads: frozenset[str]
-    """Variables: of signals at one step, or of whether they are known there."""
+    """Variables for signals at one step, and for whether they are known there."""
     names: tuple[str, ...] = ()
-    """Those of the sentence: the player who chooses them chooses the variables."""
+    """Names in the sentence; the player who chooses them chooses the variables."""
 
     @property
     def formula(self) -> Term:
-        """When it is true."""
+        """Formula that is true when the atom is."""
         return self.over.formula
 
 
 class Atoms:
-    """The atoms of some requirements that are linear, by the names that formulas give them."""
+    """Linear atoms of some requirements, by their names in formulas."""
 
     def __init__(
         self, requirements: Sequence[FormalizedRequirement], *, of_moments: bool = False
     ) -> None:
-        """The atoms.
+        """Collect the atoms.
 
         Args:
-            requirements: whose they are.
-            of_moments: whether those alone are read that are of one sample, and known.
+            requirements: the requirements.
+            of_moments: whether only atoms of one known sample are read.
         """
         self._terms = Terms(requirements)
         self.found: dict[str, Atom] = {}
         self.refused: dict[str, str] = {}
-        """Why another comparison has no formula here."""
-        self.lasting: dict[str, Lasting] = {}
-        """What atoms are made of that depend on earlier ticks."""
+        """Comparison → why it has no formula here."""
+        self.lasting: dict[str, DurationProposition] = {}
+        """Atom that depends on earlier ticks → its parts."""
         self._of: dict[str, str] = {}
-        """The signal of each variable of another step."""
+        """Variable of another step → its signal."""
         self._flags: set[str] = set()
         self._parts: set[str] = set()
         moments: dict[str, Moment] = {}
@@ -65,36 +65,36 @@ class Atoms:
 
     @property
     def variables(self) -> dict[str, Term]:
-        """Constants of z3 for all that is read."""
+        """Constants of z3 for everything that is read."""
         return self._terms.variables
 
     @property
     def before(self) -> Mapping[str, PreviousValue]:
-        """What variables for numbers of the tick before are."""
+        """Variables for numbers of the previous tick → the names of these numbers."""
         return self._terms.before
 
     @property
     def is_of_moments(self) -> bool:
-        """Whether all are of the numbers of one step, and known."""
+        """Whether all atoms are about known numbers of one step."""
         return not self._of and not self.lasting
 
     def of(self, variable: str) -> str:
-        """The name whose number a variable is, at some step."""
+        """The name of the number that a variable represents at some step."""
         return self._of.get(variable, variable)
 
     def is_part(self, atom: str) -> bool:
-        """Whether an atom stands in no sentence."""
+        """Whether the atom is not named in a sentence."""
         return atom in self._parts
 
     def is_proposition(self, atom: str) -> bool:
-        """Whether a sentence names it, and compares nothing there."""
+        """Whether a sentence names the atom without a comparison."""
         if atom in self.lasting:
             return True
         found = self.found.get(atom)
         return found is not None and found.names == (atom,)
 
     def domain(self, variable: str) -> Term:
-        """Which values a variable may have."""
+        """Domain of a variable."""
         if variable in self._flags:
             return z3.BoolVal(True)
         of = self.of(variable)
@@ -104,7 +104,7 @@ class Atoms:
         return z3.substitute(domain, (self.variables[of], self.variables[variable]))
 
     def tick(self, numbers: Mapping[str, Fraction]) -> Tick:
-        """The numbers of the last step as people write them."""
+        """Numbers of the last step in user notation."""
         return {
             name: self._terms.shown(name, value)
             for name, value in numbers.items()
@@ -136,7 +136,7 @@ class Atoms:
     # Over a tick
 
     def _sort(self, moments: Mapping[str, Moment]) -> None:
-        """Make formulas of a tick, of all moments."""
+        """Make formulas of a tick from all moments."""
         open_ = {
             signal
             for each in moments.values()
@@ -152,7 +152,7 @@ class Atoms:
         for group in linked(kept):
             steps = Steps(group, self.variables, open_)
             if steps.is_crossed and steps.has_flags:
-                why = "read the same samples in part, and what may be unknown"
+                why = "share only some samples, and read values that may be unknown"
                 self.refused |= dict.fromkeys(
                     group, f"{' and '.join(f'`{n}`' for n in group)} {why}"
                 )
@@ -165,9 +165,9 @@ class Atoms:
     def _settled(
         self, moments: Mapping[str, Moment], open_: Collection[str]
     ) -> Mapping[str, Moment]:
-        """The moments where all is known but these signals; durations of those are refused."""
+        """Moments in which all other signals are known; durations of these signals are refused."""
         for name, lasting in [*self.lasting.items()]:
-            if any(not moments[each].signals.isdisjoint(open_) for each in lasting.atoms):
+            if any(not moments[atom].signals.isdisjoint(open_) for atom in lasting.atoms):
                 self.refused[name] = f"`{name}` has a duration of what may be unknown"
                 del self.lasting[name]
         needed = {each for lasting in self.lasting.values() for each in lasting.atoms}
@@ -184,7 +184,7 @@ class Atoms:
         }
 
     def _add(self, variable: str, term: Term, of: str) -> None:
-        """A variable that is no number of the last step."""
+        """Add a variable that is not a number of the last step."""
         self.variables[variable], self._of[variable] = term, of
         if z3.is_bool(term):
             self._flags.add(variable)

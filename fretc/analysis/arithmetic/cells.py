@@ -1,9 +1,8 @@
-"""What numbers can make true together: patterns of comparisons, and cells of the inputs.
+"""Truth patterns that numbers can satisfy: patterns of comparisons, and cells of inputs.
 
-A pattern is the truth of each comparison of a group, for some numbers. Where both players choose
-numbers of the group, two inputs are in one cell just where they leave the same patterns to the
-system; the inputs of a pattern are found by elimination of the outputs. So nothing is lost and
-nothing is added.
+A pattern is the truth of each comparison of a group for some numbers. If both players choose
+numbers of the group, two inputs are in one cell if and only if they leave the system the same
+patterns; the inputs of a pattern are found by eliminating the outputs. So the abstraction is exact.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from fretc.analysis.arithmetic.projection import Limit, projected
 from fretc.analysis.arithmetic.projection import model as next_model
 
 MOST = 4_096
-"""Patterns, or cells, of a group; one with more is refused."""
+"""Maximum number of patterns, or cells, of a group; larger groups are refused."""
 Pattern = tuple[bool, ...]
 """The truth of each formula."""
 Point = dict[str, Fraction]
@@ -36,12 +35,12 @@ class Cell:
 
 
 def patterns(formulas: Sequence[Term], domain: Term, limit: Limit) -> tuple[Pattern, ...]:
-    """The truth values that the formulas can have together.
+    """Truth patterns that the formulas can have together.
 
-    Those of one variable are sorted out by themselves first: many bounds of it have few patterns.
+    Formulas of a single variable are solved first, because many bounds of it have few patterns.
 
     Raises:
-        UnsupportedError: there are too many, or it takes too long.
+        UnsupportedError: there are too many patterns, or it takes too long.
     """
     alone: dict[frozenset[str], list[int]] = {}
     for number, formula in enumerate(formulas):
@@ -70,7 +69,7 @@ def _joined(
     blocks: Sequence[tuple[Sequence[int], Sequence[Pattern]]],
     limit: Limit,
 ) -> Iterator[Pattern]:
-    """Patterns of all blocks that are possible together; meanwhile the solver has each of them."""
+    """Combinations of block patterns that are possible together."""
     if not blocks:
         yield ()
         return
@@ -87,7 +86,7 @@ def _joined(
 def _followed(
     solver: z3.Solver, formulas: Sequence[Term], limit: Limit, model: z3.ModelRef | None = None
 ) -> Iterator[Pattern]:
-    """Patterns of formulas under what the solver has; a model of that spares a question."""
+    """Patterns of formulas under the solver's constraints; a model saves a query."""
     if model is None:
         model = next_model(solver, limit)
     if model is None:
@@ -106,7 +105,7 @@ def _followed(
 
 
 def another(formulas: Sequence[Term], known: Sequence[Pattern], domain: Term, limit: Limit) -> bool:
-    """Whether the formulas can have truth values together that are not known.
+    """Whether the formulas can have a truth pattern that is not known.
 
     Raises:
         UnsupportedError: it takes too long.
@@ -126,17 +125,17 @@ def cells(
     domains: tuple[Term, Term],
     limit: Limit,
 ) -> tuple[Cell, ...]:
-    """The cells of the inputs of a group.
+    """Cells of the inputs of a group.
 
     Args:
-        formulas: of the group.
+        formulas: formulas of the group.
         known: all their patterns.
-        outputs: the variables that the system chooses.
-        domains: of the inputs, and of the outputs.
-        limit: for the group.
+        outputs: variables that the system chooses.
+        domains: domains of the inputs, and of the outputs.
+        limit: time limit of the group.
 
     Raises:
-        UnsupportedError: there are too many, or it takes too long.
+        UnsupportedError: there are too many cells, or it takes too long.
     """
     of_inputs, of_outputs = domains
     free = [number for number, each in enumerate(formulas) if reads(each, outputs)]
@@ -165,7 +164,7 @@ def _part(pattern: Pattern, numbers: Sequence[int]) -> Pattern:
 
 
 def _seen(formulas: Sequence[Term], domain: Term, limit: Limit) -> Iterator[Pattern]:
-    """The same as `patterns`, for many formulas that have few."""
+    """Same as `patterns`, for many formulas with few patterns."""
     solver = z3.Solver()
     solver.add(domain)
     names = [z3.Bool(f"mark!{number}") for number in range(len(formulas))]
@@ -181,32 +180,32 @@ def _seen(formulas: Sequence[Term], domain: Term, limit: Limit) -> Iterator[Patt
 
 
 def reads(formula: Term, variables: Sequence[Term]) -> bool:
-    """Whether a formula is about one of the variables."""
+    """Whether a formula reads one of the variables."""
     names = read_by(formula)
-    return any(each.decl().name() in names for each in variables)
+    return any(variable.decl().name() in names for variable in variables)
 
 
 def literals(formulas: Sequence[Term], pattern: Sequence[bool]) -> list[Term]:
-    """The formulas, each as true or false as the pattern has it."""
+    """The formulas or their negations, as the pattern says."""
     pairs = zip(formulas, pattern, strict=True)
     return [formula if value else z3.Not(formula) for formula, value in pairs]
 
 
 def point(constraints: Sequence[Term], variables: Sequence[Term]) -> Point:
-    """Numbers that keep constraints which some keep; whole ones, if they can be."""
+    """Numbers that satisfy satisfiable constraints; whole numbers if possible."""
     solver = z3.Solver()
     solver.set("timeout", _PATIENCE)
     solver.add(*constraints)
     solver.push()
-    solver.add([z3.IsInt(each) for each in variables if z3.is_real(each)])
+    solver.add([z3.IsInt(variable) for variable in variables if z3.is_real(variable)])
     if solver.check() != z3.sat:
         solver.pop()
         solver.set("timeout", 0)
         answer = solver.check()
         assert answer == z3.sat, "the pattern has been seen"
     model = solver.model()
-    variables = [each for each in variables if z3.is_arith(each)]
-    values = [model.eval(each, model_completion=True) for each in variables]
+    variables = [variable for variable in variables if z3.is_arith(variable)]
+    values = [model.eval(variable, model_completion=True) for variable in variables]
     return {
         str(each): Fraction(str(value.as_fraction() if value.is_real() else value.as_long()))
         for each, value in zip(variables, values, strict=True)
@@ -214,12 +213,17 @@ def point(constraints: Sequence[Term], variables: Sequence[Term]) -> Point:
 
 
 _PATIENCE = 1_000
-"""Milliseconds to look for whole numbers, which read better."""
+"""Milliseconds to search for whole numbers, which are easier to read."""
 
 
 def fixed(point_: Point, variables: Sequence[Term]) -> list[Term]:
-    """Constraints that say the numbers."""
+    """Constraints that fix the numbers."""
     return [
-        each == (z3.RealVal(str(point_[str(each)])) if each.is_real() else int(point_[str(each)]))
-        for each in variables
+        variable
+        == (
+            z3.RealVal(str(point_[str(variable)]))
+            if variable.is_real()
+            else int(point_[str(variable)])
+        )
+        for variable in variables
     ]

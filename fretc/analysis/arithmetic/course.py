@@ -1,4 +1,4 @@
-"""The numbers of a run, tick by tick: each tick begins with those of the tick before."""
+"""Numbers of a run, tick by tick, where each tick depends on the previous one."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from fretc.analysis.arithmetic.groups import Group
 from fretc.analysis.arithmetic.projection import Limit
 
 
-class NumberCourse:
-    """A `NumericTrace`."""
+class SolvedNumericTrace:
+    """Implementation of `NumericTrace`."""
 
     def __init__(self, groups: Sequence[Group], atoms: Atoms, budget: Budget) -> None:
-        """A run that has not begun.
+        """A run before its first tick.
 
         Args:
-            groups: all that have bits.
-            atoms: of the groups.
-            budget: for the numbers.
+            groups: groups with bits.
+            atoms: atoms of the groups.
+            budget: time limit for choosing numbers.
         """
         self._groups, self._atoms, self._budget = groups, atoms, budget
         self._numbers: Point | None = None
@@ -32,12 +32,12 @@ class NumberCourse:
 
     @property
     def last(self) -> tuple[object, ...]:
-        """The numbers that the next tick looks back at."""
+        """Numbers of the last tick, which the next tick reads."""
         names = (before.of for before in self._atoms.before.values())
         return () if self._numbers is None else tuple(self._numbers[name] for name in names)
 
     def possible(self, inputs: Mapping[int, bool]) -> Function:
-        """Over outputs: what can be true at the next tick."""
+        """Function over outputs: the valuations that are possible at the next tick."""
         found = bdd.true()
         for group in self._groups:
             before = self._before(group)
@@ -54,7 +54,7 @@ class NumberCourse:
         self.ticks.append(self._atoms.tick(numbers))
 
     def _before(self, group: Group) -> list[Term]:
-        """What a group has of the tick before."""
+        """Values of the previous tick that a group reads."""
         found: list[Term] = []
         for name, before in self._atoms.before.items():
             if name not in group.names:

@@ -1,9 +1,8 @@
-"""`... for 200 ms` over ticks: a count of the ticks since it was last interrupted.
+"""`... for 200 ms` over ticks: a count of the ticks since the last interruption.
 
-At a tick it is true where its argument was in force at the tick that lies so far back, and true at
-all steps since. So a tick says whether its argument is true at all steps, and whether it is in
-force at the end, and a count remembers the rest. A log that began less than 200 ms ago does not
-tell; then it is left open.
+The duration is true at a tick if its argument was in force at the tick that lies so far back, and
+true at all steps since. A tick records whether the argument is true at all steps and whether it is
+in force at the end; a count stores the rest. In the first 200 ms of a log the value is left open.
 """
 
 from __future__ import annotations
@@ -30,54 +29,56 @@ from fretish.bindings.declarations import Aggregate
 from fretish.printer import expression as printed
 
 _MOST = 3
-"""Durations in one proposition: each doubles what it may be."""
+"""Maximum number of durations in a proposition; each doubles its cases."""
 
 
 @dataclass(frozen=True, slots=True)
 class Duration:
-    """One that has to be remembered."""
+    """A duration that has to be stored."""
 
     throughout: str
-    """The atom that says whether its argument is true at all steps of a tick."""
+    """Atom: the argument is true at all steps of a tick."""
     at_last: str
-    """The atom that says whether it is in force at the end of a tick."""
+    """Atom: the argument is in force at the end of a tick."""
     ticks: int
 
 
 @dataclass(frozen=True, slots=True)
-class Lasting:
-    """A proposition with durations in it."""
+class DurationProposition:
+    """A proposition with durations."""
 
     durations: tuple[Duration, ...]
     cases: Mapping[tuple[bool, ...], str]
-    """The atom that it is, for each truth of the durations."""
+    """Truth values of the durations → atom that then equals the proposition."""
 
     @property
     def atoms(self) -> Iterator[str]:
-        """All atoms that decide it."""
+        """All atoms that decide the proposition."""
         for each in self.durations:
             yield from (each.throughout, each.at_last)
         yield from self.cases.values()
 
 
-def parted(name: str, reading: Reading) -> tuple[Mapping[str, Reading], Lasting | None]:
-    """A reading as readings of single ticks, and how they make it up; None: it is the only one.
+def parted(name: str, reading: Reading) -> tuple[Mapping[str, Reading], DurationProposition | None]:
+    """A reading as readings of single ticks, and their combination; None: it is a single one.
 
     Raises:
-        UnsupportedError: a duration is more than a count of ticks.
+        UnsupportedError: a duration cannot be counted in ticks.
     """
     spans = list(dict.fromkeys(_durations(reading.expression)))
     if not spans:
         return {name: reading}, None
     if reading.aggregate is not Aggregate.LAST or reading.on_unknown is not None:
-        raise UnsupportedError("looks for a duration between ticks, or where it is unknown")
+        raise UnsupportedError(
+            "has a duration that is measured between ticks or over unknown values"
+        )
     if len(spans) > _MOST:
         raise UnsupportedError("has too many durations")
     found: dict[str, Reading] = {}
     durations = []
     for span in spans:
         if reading.period is None or span.duration % reading.period or span.duration == 0:
-            raise UnsupportedError("has a duration that is no number of ticks")
+            raise UnsupportedError("has a duration that is not a whole number of ticks")
         if any(_durations(span.arg)):
             raise UnsupportedError("has a duration within another one")
         text = printed(span.arg)
@@ -90,11 +91,11 @@ def parted(name: str, reading: Reading) -> tuple[Mapping[str, Reading], Lasting 
         expression = _put(reading.expression, dict(zip(spans, values, strict=True)))
         cases[values] = f"{name} where {values}"
         found[cases[values]] = replace(reading, expression=expression)
-    return found, Lasting(tuple(durations), cases)
+    return found, DurationProposition(tuple(durations), cases)
 
 
 def _durations(part: e.Expression) -> Iterator[e.Persistence]:
-    """The outermost ones."""
+    """The outermost durations."""
     if isinstance(part, e.Persistence):
         yield part
         return
@@ -109,25 +110,25 @@ def _put(part: e.Expression, values: Mapping[e.Persistence, bool]) -> e.Expressi
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
-    """Whether something has lasted, over a letter and what is remembered."""
+class DurationValue:
+    """Truth of a duration, over a valuation and stored bits."""
 
     is_so: Function
     is_open: Function
-    """Whether that depends on what was before the first tick."""
+    """Function: the value depends on ticks before the first one."""
 
 
 def held(
     memory: Memory, ticks: int, throughout: Function, at_last: Function, open_: Function
-) -> Held:
-    """Whether something has lasted so many ticks.
+) -> DurationValue:
+    """Whether something has lasted for a number of ticks.
 
     Args:
-        memory: that it takes bits from.
+        memory: memory for the bits.
         ticks: at least one.
         throughout: whether it is true at all steps of a tick.
-        at_last: whether it is in force at the end of a tick; true where it is so throughout.
-        open_: whether it is taken to have lasted since before the first tick.
+        at_last: whether it is in force at the end of a tick; true if it is true throughout.
+        open_: whether it counts as lasting since before the first tick.
     """
     bits, known = memory.word(ticks)
     is_enough = equals(known, ticks)
@@ -137,4 +138,4 @@ def held(
     was = bdd.variable(broken.now)
     memory.steps[broken] = was | -throughout
     is_open = throughout - was - is_enough
-    return Held((throughout & is_enough) | (is_open & open_), is_open)
+    return DurationValue((throughout & is_enough) | (is_open & open_), is_open)

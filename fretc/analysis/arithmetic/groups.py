@@ -1,4 +1,4 @@
-"""Comparisons that share variables: what is made of them, and the bits that they have."""
+"""Groups of comparisons that share variables, and their bits."""
 
 from __future__ import annotations
 
@@ -31,21 +31,21 @@ from fretish.bindings.declarations import Role
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
-    """What a group is made of; two are equal that say the same."""
+class GroupContent:
+    """Content of a group; equal contents are equal values."""
 
     text: str
     formulas: tuple[Term, ...] = field(compare=False)
-    """Each once, be it the formula of an atom or of its opposite."""
+    """Formulas without duplicates; a formula also represents its negation."""
     of: Mapping[str, tuple[int, bool]] = field(compare=False)
-    """The formula of each atom, and whether it is that or the opposite."""
+    """Atom → index of its formula, and whether it is the formula or its negation."""
     variables: Mapping[Role, tuple[Term, ...]] = field(compare=False)
-    """Of each player."""
+    """Variables of each player."""
     domains: Mapping[Role, Term] = field(compare=False)
     flags: tuple[Term, ...] = field(compare=False)
-    """Whether signals are unknown."""
+    """Flags for unknown signals."""
     carried: tuple[Term, ...] = field(compare=False)
-    """The formulas where signals may have no new sample, and what they rest on; none: the same."""
+    """Formulas for signals without a new sample, and their constraints; empty: no difference."""
 
     @property
     def is_mixed(self) -> bool:
@@ -54,24 +54,24 @@ class Choice:
 
     @property
     def role(self) -> Role:
-        """Who chooses the numbers, where one player does; the system, where both do."""
+        """The player who chooses the numbers; the system, if both do."""
         return Role.OUTPUT if self.variables[Role.OUTPUT] else Role.INPUT
 
 
 class Group:
-    """Comparisons that share variables; its bits are made when the first of them is asked for."""
+    """Comparisons that share variables; bits are created when the first of them is asked for."""
 
     def __init__(
-        self, choice: Choice, atoms: Atoms, fresh: Numbers, favoured: Role, limit: Limit
+        self, choice: GroupContent, atoms: Atoms, fresh: Numbers, favoured: Role, limit: Limit
     ) -> None:
-        """The group.
+        """A group of comparisons.
 
         Args:
-            choice: what it is made of.
-            atoms: of the choice.
+            choice: content of the group.
+            atoms: atoms of the content.
             fresh: variables for its bits.
-            favoured: whose signals may be unknown.
-            limit: for sorting it out.
+            favoured: player who decides which signals are unknown.
+            limit: time limit for solving the group.
 
         Raises:
             UnsupportedError: it has too many patterns, or takes too long.
@@ -81,19 +81,19 @@ class Group:
         self._patterns, self._cells, self._open = found.patterns, found.cells, found.open
         self._is_favoured = choice.role is favoured
         self._bits: dict[int, int] = {}
-        """Of the formulas that a cell does not decide."""
+        """Bits of the formulas that a cell does not decide."""
         self._cell_bits: list[int] = []
         self._points: dict[tuple[int, Pattern], Point] = {}
         self._in_cell: dict[int, Point] = {}
 
     @property
     def open(self) -> str | None:
-        """What is unknown of it; None: nothing that matters."""
+        """What is unknown about the group; None: nothing that matters."""
         if not self._open:
             return None
         signals = dict.fromkeys(self._atoms.of(str(flag)) for flag in self._choice.flags)
         shown = " and ".join(f"`{each}`" for each in signals)
-        return f"nothing says when {shown} may be unknown"
+        return f"it is not declared when {shown} may be unknown"
 
     @property
     def is_used(self) -> bool:
@@ -101,7 +101,7 @@ class Group:
         return bool(self._bits)
 
     def atom(self, name: str) -> Function:
-        """When one of its atoms is true."""
+        """Function of one of its atoms."""
         if not self._bits:
             size = max(0, len(self._cells) - 1).bit_length()
             self._cell_bits = [next(self._fresh) for _ in range(size)]
@@ -112,7 +112,7 @@ class Group:
         return found if is_so else -found
 
     def _is_of_cell(self, number: int) -> bool:
-        """Whether a formula reads inputs alone, in a group of both players."""
+        """Whether a formula reads only inputs, in a group of both players."""
         outputs = self._choice.variables[Role.OUTPUT]
         return self._choice.is_mixed and not reads(self._choice.formulas[number], outputs)
 
@@ -140,7 +140,7 @@ class Group:
 
     @property
     def legal(self) -> Function:
-        """The cells that there are, or the patterns of inputs."""
+        """Possible cells, or input patterns."""
         if self._choice.role is Role.INPUT:
             return self._of_player()
         found = bdd.false() if self._cells else bdd.true()
@@ -150,7 +150,7 @@ class Group:
 
     @property
     def reachable(self) -> Function:
-        """The patterns of outputs, in each cell those that it leaves."""
+        """Output patterns, in each cell those that the inputs leave."""
         if self._choice.role is Role.INPUT:
             return bdd.true()
         if not self._cells:
@@ -161,17 +161,17 @@ class Group:
         return found
 
     def _of_player(self) -> Function:
-        """The patterns that its player chooses from."""
+        """Patterns of the player who chooses the numbers."""
         return self.possible if self._is_favoured else self.known
 
     @property
     def known(self) -> Function:
-        """The patterns that there are where nothing is unknown."""
+        """Patterns without unknown values."""
         return self.legal & self.reachable if self._cells else self._some_of(self._patterns)
 
     @property
     def possible(self) -> Function:
-        """All patterns that there are."""
+        """All possible patterns."""
         return self.known | self._some_of(self._open)
 
     def _some_of(self, known: Iterable[Pattern]) -> Function:
@@ -181,22 +181,22 @@ class Group:
         return found
 
     def formulas(self) -> Iterator[tuple[int, Term]]:
-        """Each bit of a formula, and that."""
+        """Bit → its formula."""
         return ((bit, self._choice.formulas[number]) for number, bit in self._bits.items())
 
     def labels(self) -> Iterator[tuple[int, str]]:
-        """Each bit of a formula, and an atom of a sentence that has it."""
+        """Bit of a formula → an atom of a sentence with this formula."""
         for name, (number, is_so) in self._choice.of.items():
             if is_so and number in self._bits and self._atoms.found[name].names:
                 yield self._bits[number], name
 
     @property
     def names(self) -> frozenset[str]:
-        """Those of its variables."""
+        """Names of its variables."""
         return frozenset(str(each) for some in self._choice.variables.values() for each in some)
 
     def values(self, letter: Mapping[int, bool]) -> Tick:
-        """Numbers of a letter; those of inputs depend on nothing that the system does."""
+        """Numbers for a valuation; numbers of inputs do not depend on the system."""
         place = self._place(letter)
         if place is None:
             return {}
@@ -208,13 +208,13 @@ class Group:
         return self._atoms.tick(self._points[key])
 
     def numbers(self, letter: Mapping[int, bool], given: Sequence[Term]) -> Point:
-        """Numbers of a whole letter that keep what is given, which some do."""
+        """Numbers for a complete valuation; `given` are constraints that some numbers satisfy."""
         place = self._place(letter)
         assert place is not None, "the letter is whole"
         return self._point(place, self._signs(letter), given)
 
     def left(self, inputs: Mapping[int, bool], given: Sequence[Term], limit: Limit) -> Function:
-        """Over outputs: the patterns of numbers that keep what is given."""
+        """Function over outputs: the patterns of numbers that satisfy the constraints."""
         choice, place = self._choice, self._place(inputs)
         assert place is not None, "the inputs are whole"
         if choice.role is Role.INPUT:
@@ -227,7 +227,7 @@ class Group:
         return found
 
     def _place(self, letter: Mapping[int, bool]) -> int | None:
-        """Which cell it is; 0 where there are none; None: the letter does not say."""
+        """Index of the cell; 0 without cells; None: the valuation does not determine it."""
         if not all(bit in letter for bit in self._cell_bits):
             return None
         return sum(letter[bit] << i for i, bit in enumerate(self._cell_bits))
@@ -242,7 +242,7 @@ class Group:
         return self._in_cell[place]
 
     def _chosen(self, place: int) -> list[Term]:
-        """The numbers that the environment chooses in a cell."""
+        """Numbers that the environment chooses in a cell."""
         if not self._cells:
             return []
         return fixed(self._of_cell(place), self._choice.variables[Role.INPUT])
@@ -262,7 +262,7 @@ class Group:
 
 
 def linked(atoms: Atoms) -> list[tuple[str, ...]]:
-    """The names of atoms that share variables, directly or by way of others."""
+    """Names of atoms that share variables, directly or indirectly."""
     groups: list[tuple[list[str], set[str]]] = []
     for name, atom in atoms.found.items():
         if not atom.reads:
@@ -275,7 +275,7 @@ def linked(atoms: Atoms) -> list[tuple[str, ...]]:
 
 
 def owners(names: Sequence[str], atoms: Atoms, roles: Roles, past: Role) -> Mapping[str, Role]:
-    """Who chooses each variable of a group: a signal without a role has that of its proposition.
+    """Player of each variable of a group; a signal without a role has that of its proposition.
 
     Raises:
         UnsupportedError: a variable has two roles.
@@ -289,15 +289,16 @@ def owners(names: Sequence[str], atoms: Atoms, roles: Roles, past: Role) -> Mapp
             of = atoms.of(read)
             role = past if of in atoms.before else roles.get(of) or own
             if role is None or found.setdefault(read, role) is not role:
-                raise UnsupportedError(f"read `{of}`, which is not of one role")
+                raise UnsupportedError(f"read `{of}`, which has no single role")
     return found
 
 
-def choice(names: Sequence[str], atoms: Atoms, owners: Mapping[str, Role]) -> Choice:
-    """What a group is made of.
+def choice(names: Sequence[str], atoms: Atoms, owners: Mapping[str, Role]) -> GroupContent:
+    """Content of a group.
 
     Raises:
-        UnsupportedError: both players choose its numbers, and what cannot be told of both is asked.
+        UnsupportedError: both players choose its numbers, and it needs a feature for one player
+            only.
     """
     names = sorted(names, key=atoms.is_part, reverse=True)  # what users wrote names the bits
     formulas: list[Term] = []
@@ -317,19 +318,19 @@ def choice(names: Sequence[str], atoms: Atoms, owners: Mapping[str, Role]) -> Ch
     domains = {r: z3.And([atoms.domain(name) for name in theirs[r]]) for r in players}
     carried = _carried(names, of, atoms)
     if all(variables.values()) and (flags or carried):
-        raise UnsupportedError("compare numbers of both players, sample by sample")
+        raise UnsupportedError("compare numbers of the environment and the system sample by sample")
     only = Role.OUTPUT if variables[Role.OUTPUT] else Role.INPUT
     domains[only] = z3.simplify(z3.And(domains[only], *given))
     terms = [*formulas, *domains.values(), *flags, *carried]
     sorts = [f"{each}: {each.sort()}, {role}" for role in players for each in variables[role]]
     text = "\n".join([*(term.sexpr() for term in terms), *sorts])
-    return Choice(text, tuple(formulas), of, variables, domains, flags, carried)
+    return GroupContent(text, tuple(formulas), of, variables, domains, flags, carried)
 
 
 def _carried(
     names: Sequence[str], of: Mapping[str, tuple[int, bool]], atoms: Atoms
 ) -> tuple[Term, ...]:
-    """The formulas where signals may have no new sample, then what they rest on."""
+    """Formulas for signals without a new sample, then their constraints."""
     ticks = {name: atoms.found[name].over for name in names}
     if all(each.carried is None for each in ticks.values()):
         return ()
@@ -345,23 +346,23 @@ def _carried(
 
 @dataclass(frozen=True, slots=True)
 class _Sorted:
-    """What a group can make true together."""
+    """Possible patterns of a group."""
 
     patterns: Sequence[Pattern]
     cells: Sequence[Cell] = ()
-    """Where both players choose its numbers."""
+    """Cells, if both players choose its numbers."""
     open: Sequence[Pattern] = ()
-    """The patterns that there are only where something is unknown."""
+    """Patterns that exist only if something is unknown."""
 
 
 _SORTED: dict[str, _Sorted | str] = {}
-"""What is known of groups, by their texts: each question about the same requirements asks for it.
-What the time of a question was too short for is not there."""
+"""Cache of solved groups by content, because every question about the requirements needs them.
+Timeouts of a question are not cached."""
 _MOST_SORTED = 64
 
 
-def _sorted_out(choice: Choice, limit: Limit) -> _Sorted:
-    """The patterns of a group, and its cells where both players choose.
+def _sorted_out(choice: GroupContent, limit: Limit) -> _Sorted:
+    """The patterns of a group, and its cells if both players choose.
 
     Raises:
         UnsupportedError: there are too many, or it takes too long.
@@ -380,7 +381,7 @@ def _sorted_out(choice: Choice, limit: Limit) -> _Sorted:
     return found
 
 
-def _found(choice: Choice, limit: Limit) -> _Sorted:
+def _found(choice: GroupContent, limit: Limit) -> _Sorted:
     domain = z3.And(list(choice.domains.values()))
     certain = z3.And(domain, *(z3.Not(flag) for flag in choice.flags))
     known = patterns(choice.formulas, certain, limit)
@@ -391,7 +392,7 @@ def _found(choice: Choice, limit: Limit) -> _Sorted:
     if choice.carried:
         *formulas, links = choice.carried
         if another(formulas, known, z3.And(domain, links), limit):
-            raise UnsupportedError("read the same samples in part")
+            raise UnsupportedError("share only some samples")
     if not choice.flags:
         return _Sorted(known)
     every = patterns(choice.formulas, domain, limit)
@@ -399,5 +400,5 @@ def _found(choice: Choice, limit: Limit) -> _Sorted:
 
 
 def _bare(formula: Term) -> Term:
-    """The same of a formula and of its opposite."""
+    """Formula without its negation, and whether it was negated."""
     return formula.arg(0) if z3.is_not(formula) else formula

@@ -1,9 +1,9 @@
-"""Numbers of the tick before: one player chooses them, and keeps to what is remembered.
+"""Numbers of the previous tick: one player chooses them, within the stored facts.
 
-What is remembered of a number is which comparisons it makes true. Where the environment chooses any
-number of which these are true, and the system wins, it wins with the one that it was, too. Where
-the system chooses, and the environment wins, it wins with the one that it was. So there are two
-games, each with one certain answer; between them nothing is known.
+The stored facts about a number are the truth values of its comparisons. If the environment chooses
+any number with these truth values and the system wins, the system also wins with the real number;
+the converse holds for the other player. So two games give one certain answer each; between them the
+result is unknown.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ from fretc.analysis.arithmetic.thresholds import Bound, reached
 
 @dataclass(frozen=True, slots=True)
 class Remembered:
-    """A comparison of a number, and the same of that number at the tick before, by their names."""
+    """Names of a comparison of a number, and of that comparison for the previous tick."""
 
     now: str
     then: str
     first: bool | None
-    """Whether the second one is true at the first tick; None: that depends."""
+    """Value of the second comparison at the first tick; None: it depends."""
 
 
 def remembered(atoms: Atoms, steps: int) -> tuple[Remembered, ...]:
-    """What is remembered; atoms that it lacks are added.
+    """Stored comparisons; missing atoms are added.
 
     Args:
-        atoms: of some requirements.
-        steps: from how many ticks before a bound it is remembered whether it is within reach.
+        atoms: atoms of some requirements.
+        steps: number of ticks before a bound for which its reachability is stored.
     """
     found: list[Remembered] = []
     for name, before in atoms.before.items():
@@ -44,7 +44,7 @@ def remembered(atoms: Atoms, steps: int) -> tuple[Remembered, ...]:
 
 
 def _conditions(atoms: Atoms, name: str, before: PreviousValue, steps: int) -> list[Term]:
-    """Comparisons of the number alone, as formulas of the tick; one says that it is as at first."""
+    """Formulas of the tick that compare the number alone; one compares with the first value."""
     now, then = atoms.variables[before.of], atoms.variables[name]
     found: dict[str, Term] = {}
     if not read_by(before.first):
@@ -65,7 +65,7 @@ def _conditions(atoms: Atoms, name: str, before: PreviousValue, steps: int) -> l
 
 
 def _compared(variable: Term, bound: Bound) -> Term:
-    """Whether a variable is below a bound, or at most that."""
+    """Formula: a variable is below a bound, or at most that."""
     if not variable.is_int():
         number = z3.RealVal(str(bound.number))
         return z3.simplify(variable < number if bound.is_below else variable <= number)
@@ -83,7 +83,7 @@ def _remembered(atoms: Atoms, name: str, before: PreviousValue, condition: Term)
 
 
 def _named(atoms: Atoms, formula: Term) -> str:
-    """The name of the atom of a formula."""
+    """Name of the atom of a formula."""
     same = (name for name, atom in atoms.found.items() if atom.formula.eq(formula))
     found = next(same, None)
     if found is None:

@@ -1,12 +1,12 @@
-"""For which inputs some outputs keep a formula: quantifier elimination that needs no belief.
+"""Quantifier elimination with checked results: inputs for which outputs satisfy a formula.
 
-A model of the formula says where each output lies between the bounds that comparisons set to it,
-and so a term of the inputs that keeps the formula wherever these bounds stand in the same order.
-What is found by putting the terms in is a part of the answer, whatever they are; when no model is
-left outside of it, it is all of it. `qe2` of z3 5.4 is not used: it makes `u = 1 & u < 0` true.
+A model of the formula tells where each output lies between the bounds of comparisons, and so gives
+a term over inputs that satisfies the formula wherever these bounds are in the same order.
+Substituting the terms always gives a part of the answer; when no model is left outside, the answer
+is complete. `qe2` of z3 5.4 is not used: it makes `u = 1 & u < 0` true.
 
 Source: Loos, Weispfenning, Applying linear quantifier elimination, The Computer Journal 36 (1993);
-Bjorner, Janota, Playing with quantified satisfaction, LPAR 2015 (led by models).
+Bjorner, Janota, Playing with quantified satisfaction, LPAR 2015 (model-guided).
 """
 
 from __future__ import annotations
@@ -23,37 +23,37 @@ from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.variables import UnsupportedError
 
 SECONDS = 10.0
-"""Of a processor, for a group of comparisons."""
+"""CPU seconds for a group of comparisons."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """Time for a group, within that of a question."""
+    """Time limit of a group, within that of the question."""
 
     budget: Budget
     start: float = field(default_factory=time.process_time)
 
     @property
     def milliseconds(self) -> int:
-        """What is left of it.
+        """Remaining milliseconds.
 
         Raises:
             UnsupportedError: the time of the group is over.
-            OutOfTimeError: that of the question is.
+            OutOfTimeError: the time of the question is over.
         """
         self.budget.check()
         left = SECONDS - (time.process_time() - self.start)
         if left <= 0:
-            raise UnsupportedError(f"are not sorted out within {SECONDS:g} s of a processor")
+            raise UnsupportedError(f"were not solved within {SECONDS:g} CPU seconds")
         return max(1, int(1000 * min(left, self.budget.left)))
 
 
 def model(solver: z3.Solver, limit: Limit) -> z3.ModelRef | None:
-    """What keeps the constraints; None: nothing does.
+    """A model of the constraints; None: they are unsatisfiable.
 
     Raises:
-        UnsupportedError: z3 cannot tell.
-        OutOfTimeError: the time of the question was too short for it.
+        UnsupportedError: z3 gives no answer.
+        OutOfTimeError: the time of the question was too short.
     """
     patience = limit.milliseconds
     solver.set("timeout", patience)
@@ -61,12 +61,12 @@ def model(solver: z3.Solver, limit: Limit) -> z3.ModelRef | None:
     if answer == z3.unknown:
         if patience < 1000 * SECONDS / 2:
             raise limit.budget.over
-        raise UnsupportedError("are more than z3 can sort out")
+        raise UnsupportedError("are too complex for z3")
     return solver.model() if answer == z3.sat else None
 
 
 def projected(formula: Term, variables: Sequence[Term], limit: Limit) -> Term:
-    """Where some values of the variables keep the formula, without them.
+    """The formula with the variables eliminated.
 
     Raises:
         UnsupportedError: it takes too long.
@@ -80,14 +80,14 @@ def projected(formula: Term, variables: Sequence[Term], limit: Limit) -> Term:
             part = z3.substitute(part, (variable, _between(variable, part, found)))
         part = z3.simplify(part)
         if not z3.is_true(found.eval(part, model_completion=True)):
-            raise UnsupportedError("have regions of inputs that are not found")
+            raise UnsupportedError("have regions of inputs that z3 does not find")
         parts.append(part)
         solver.add(z3.Not(part))
     return z3.simplify(z3.Or(parts))
 
 
 def _between(variable: Term, formula: Term, found: z3.ModelRef) -> Term:
-    """A term that lies as the variable does in a model, between the bounds next to it."""
+    """A term with the variable's position in a model, between the adjacent bounds."""
     here = _value(found, variable)
     bounds = [(_value(found, bound), bound) for bound in _bounds(variable, formula, found)]
     at = next((bound for value, bound in bounds if value == here), None)
@@ -108,7 +108,7 @@ def _between(variable: Term, formula: Term, found: z3.ModelRef) -> Term:
 
 
 def _bounds(variable: Term, formula: Term, found: z3.ModelRef) -> Iterator[Term]:
-    """What the comparisons of a formula compare a variable with, as real terms or whole ones."""
+    """Bounds of a variable in the comparisons of a formula, as real or integer terms."""
     for left, right in _comparisons(formula, found):
         zero, one = (
             z3.simplify(z3.substitute(left - right, (variable, _number(variable, n))))
@@ -128,7 +128,7 @@ def _bounds(variable: Term, formula: Term, found: z3.ModelRef) -> Iterator[Term]
 
 
 def _comparisons(formula: Term, found: z3.ModelRef) -> Iterator[tuple[Term, Term]]:
-    """The sides of all comparisons, with the alternatives that a model takes."""
+    """Sides of all comparisons, with the alternatives that a model selects."""
     waiting, seen = [formula], set()
     while waiting:
         term = waiting.pop()
@@ -143,7 +143,7 @@ def _comparisons(formula: Term, found: z3.ModelRef) -> Iterator[tuple[Term, Term
 
 
 def _decided(term: Term, found: z3.ModelRef) -> Term:
-    """A number without alternatives."""
+    """A number term without alternatives."""
     if z3.is_app_of(term, z3.Z3_OP_ITE):
         condition, then, otherwise = term.children()
         taken = z3.is_true(found.eval(condition, model_completion=True))

@@ -1,4 +1,4 @@
-"""What the atoms of requirements say of the samples of a tick, as bindings have it."""
+"""Expressions of atoms over the samples of a tick, according to the bindings."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from fretish.bindings.expressions import ticks_back
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What an atom says of the samples of a tick."""
+    """Expression of an atom over the samples of a tick."""
 
     expression: e.Expression
     names: tuple[str, ...]
-    """Those of the sentence: the player who chooses them chooses the signals."""
+    """Names in the sentence; the player who chooses them chooses the signals."""
     aggregate: Aggregate = Aggregate.LAST
     on_unknown: bool | None = None
-    """What it is where its signals are unknown; None: unknown, too."""
+    """Value if its signals are unknown; None: unknown, too."""
     period: int | None = None
-    """Nanoseconds of a tick; None where the clock has no period."""
+    """Length of a tick in nanoseconds; None: the clock has no period."""
 
     @property
     def is_of_moment(self) -> bool:
-        """Whether one sample decides it, which is known."""
+        """Whether a single known sample decides the atom."""
         lasts = any(isinstance(part, e.Persistence) for part in e.parts(self.expression))
         return self.aggregate is Aggregate.LAST and self.on_unknown is None and not lasts
 
 
 def readings(requirements: Sequence[FormalizedRequirement]) -> Iterator[tuple[str, Reading]]:
-    """Of each atom that compares numbers or words, by the name that formulas give it."""
+    """The reading of each atom that compares numbers or enumeration values, by its name."""
     for requirement in requirements:
         compared, declared = comparisons(requirement), requirement.declarations
         for name, comparison in compared.items():
@@ -53,7 +53,7 @@ def _names(part: e.Expression) -> tuple[str, ...]:
 
 
 def _is_measured(expression: e.Expression, signals: Mapping[str, Signal]) -> bool:
-    """Whether it compares numbers of signals in their own units, at one tick."""
+    """Whether the atom compares numbers of signals in their own units, at one tick."""
     read = [signals.get(name.id) for name in e.names(expression)]
     return (
         bool(read)

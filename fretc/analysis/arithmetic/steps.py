@@ -1,13 +1,12 @@
-"""The samples of one tick: what several of them, and none, make true together.
+"""The samples of one tick: what several samples, and none, can make true together.
 
-A tick sees one step after another, and `any` of them, `all`, or the last one count. As many steps
-beside the last one as there are such atoms are enough: for each atom one that decides it, and what
-is left out decides nothing. So a tick is the numbers of a few steps, and no pattern is lost or
-added.
+A tick contains a sequence of steps, and `any`, `all` or the last of them count. As many steps
+beside the last one as there are such atoms are enough: one deciding step for each atom. So a tick
+is the numbers of a few steps, without losing or adding patterns.
 
-Atoms that read the same signals in part only can be told apart by what is carried over from the
-tick before: one of them sees a new sample beside an old one, and the other one sees no step at all.
-Where this makes patterns possible that new samples of all signals do not, they are refused.
+Atoms that share only some signals can differ through values carried over from the previous tick:
+one of them reads a new sample beside an old one, while the other has no step. If this makes
+patterns possible that new samples of all signals do not, the atoms are refused.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ from fretish.bindings.declarations import Aggregate
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """An atom at one step: when it is true for certain, and when it is false."""
+    """An atom at one step: when it is certainly true, and when it is false."""
 
     true: Term
     false: Term
@@ -32,11 +31,11 @@ class Moment:
     aggregate: Aggregate
     on_unknown: bool | None
     names: tuple[str, ...]
-    """Those of the sentence: the player who chooses them chooses the signals."""
+    """Names in the sentence; the player who chooses them chooses the signals."""
 
     @property
     def is_of_all_steps(self) -> bool:
-        """Whether other steps than the last one count."""
+        """Whether steps other than the last one count."""
         return self.aggregate is not Aggregate.LAST
 
 
@@ -46,20 +45,20 @@ class AtomOfTick:
 
     formula: Term
     given: Term
-    """Where it is neither unknown nor replaced."""
+    """Condition that its value is neither unknown nor replaced."""
     carried: Term | None = None
-    """The same where signals may have no new sample; None: it makes no difference."""
+    """Formula for signals without a new sample; None: no difference."""
     links: Term | None = None
-    """What this rests on."""
+    """Constraints of `carried`."""
 
 
 def unknown(signal: str) -> Term:
-    """Whether nothing is known of a signal, at the last step."""
+    """Flag: the signal is unknown at the last step."""
     return z3.Bool(f"{signal} is unknown")
 
 
 def linked(moments: Mapping[str, Moment]) -> list[dict[str, Moment]]:
-    """Those to which other steps than the last one count, by the signals that they share."""
+    """Atoms for which steps other than the last one count, grouped by shared signals."""
     groups: list[dict[str, Moment]] = []
     for name, moment in moments.items():
         if moment.is_of_all_steps:
@@ -74,30 +73,30 @@ def linked(moments: Mapping[str, Moment]) -> list[dict[str, Moment]]:
 
 
 class Steps:
-    """The steps of some signals within a tick."""
+    """Steps of some signals within a tick."""
 
     def __init__(
         self, group: Mapping[str, Moment], variables: Mapping[str, Term], open_: Collection[str]
     ) -> None:
-        """The steps.
+        """Create the steps.
 
         Args:
-            group: atoms of them.
+            group: atoms of the signals.
             variables: constants of z3 for signals at the last step.
-            open_: the signals that may be unknown.
+            open_: signals that may be unknown.
         """
         self._group = group
         signals = sorted({signal for each in group.values() for signal in each.signals})
         self._signals = {name: variables[name] for name in signals}
         self._flags = {name: unknown(name) for name in signals if name in open_}
         self.copies: dict[str, Term] = {}
-        """What stands for a signal, or a flag, at other steps, by its name."""
+        """Name → variable for a signal or flag at another step."""
         self.of: dict[str, str] = {}
-        """The signal of each copy."""
+        """Copy → its signal."""
         self._others = [self._copied(number) for number in range(1, len(group) + 1)]
 
     def _copied(self, number: int) -> list[tuple[Term, Term]]:
-        """What stands for each signal at another step."""
+        """Variables of each signal at another step."""
         pairs = []
         for name, last in [*self._signals.items(), *self._flags.items()]:
             copy = z3.Const(f"{last} at step {number}", last.sort())
@@ -116,7 +115,7 @@ class Steps:
         return len({each.signals for each in self._group.values()}) > 1
 
     def tick(self, moment: Moment) -> AtomOfTick:
-        """An atom of the group over all steps."""
+        """Atom of the group over all steps."""
         every = [[], *self._others]
         true, false = (
             [z3.substitute(formula, *pairs) if pairs else formula for pairs in every]
@@ -126,7 +125,7 @@ class Steps:
         return self._carried(moment, made) if self.is_crossed else made
 
     def _carried(self, moment: Moment, made: AtomOfTick) -> AtomOfTick:
-        """With old numbers of signals that have no new sample, step by step."""
+        """Formula with old numbers of signals without a new sample, step by step."""
         values = {n: z3.Const(f"{n} of before", v.sort()) for n, v in self._signals.items()}
         states, seen = [], []
         for number, pairs in enumerate(self._others, 1):
@@ -156,7 +155,7 @@ def _is_new(signal: str, step: int) -> Term:
 
 
 def tick(moment: Moment, true: Sequence[Term], false: Sequence[Term]) -> AtomOfTick:
-    """An atom of a tick, of what it is at its steps, the last one first."""
+    """Atom of a tick from its values at the steps, the last one first."""
     match moment.aggregate:
         case Aggregate.ANY:
             is_true, is_false = z3.Or(true), z3.And(false)

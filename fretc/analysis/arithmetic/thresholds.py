@@ -22,30 +22,30 @@ from z3 import z3util
 from compiler.formalization.numbers.terms import Term, read_by
 
 _MOST = 64
-"""Alternatives of one comparison; of one with more no bound is computed."""
+"""Maximum number of alternatives of a comparison; beyond it no bound is computed."""
 MOST_BOUNDS = 40
-"""Of one variable: there are as many cells, and patterns grow with their square."""
+"""Maximum number of bounds of a variable; patterns grow with their square."""
 
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """A number that tells those below it from the others, or those at most so large."""
+    """A number that separates smaller numbers, or numbers at most so large, from the others."""
 
     number: Fraction
     is_below: bool
 
 
 def reached(now: Term, then: Term, formulas: Sequence[Term], steps: int) -> tuple[Bound, ...]:
-    """Bounds of a variable from which others come within reach.
+    """Bounds of a variable from which other bounds are reachable.
 
-    Which side a bound itself is on is a guess where the comparison of both numbers is strict; then
-    both are bounds. A bound too many does no harm, and one that lacks leaves a question open.
+    If the comparison of both numbers is strict, the side of the bound itself is unclear, and both
+    bounds are added. A superfluous bound does no harm; a missing one leaves a question open.
 
     Args:
         now: the variable.
-        then: its number at the tick before.
-        formulas: all that is compared.
-        steps: how far to look back.
+        then: its number at the previous tick.
+        formulas: all comparisons.
+        steps: number of ticks to look back.
     """
     both = [*_lines(now, then, formulas)]
     newest = [*dict.fromkeys([*_own(now, formulas), *_own(then, formulas)])]
@@ -65,7 +65,7 @@ def reached(now: Term, then: Term, formulas: Sequence[Term], steps: int) -> tupl
 
 
 def _own(variable: Term, formulas: Sequence[Term]) -> Iterator[Bound]:
-    """The bounds that a variable is compared with."""
+    """Bounds in the comparisons of a variable."""
     name = str(variable)
     for formula in formulas:
         if read_by(formula) == {name}:
@@ -76,7 +76,7 @@ def _own(variable: Term, formulas: Sequence[Term]) -> Iterator[Bound]:
 
 
 def _sides(kind: int, is_above: bool) -> tuple[bool, ...]:
-    """Whether what a comparison with 0 tells apart is below the bound, or at most that."""
+    """Whether the comparison with 0 separates numbers below the bound, or at most it."""
     if kind in (z3.Z3_OP_LE, z3.Z3_OP_GT):
         return (not is_above,)
     if kind in (z3.Z3_OP_GE, z3.Z3_OP_LT):
@@ -97,7 +97,7 @@ def _lines(
 
 
 def _linear(formula: Term) -> Iterator[tuple[dict[str, Fraction], Fraction, int]]:
-    """What its comparisons compare with 0: the factor of each variable, the rest, and how."""
+    """Linear form of a comparison with 0: factor of each variable, constant, operator."""
     waiting, seen = [formula], set()
     while waiting:
         term = waiting.pop()
@@ -112,7 +112,7 @@ def _linear(formula: Term) -> Iterator[tuple[dict[str, Fraction], Fraction, int]
 
 
 def _alternatives(term: Term) -> list[Term]:
-    """What a number may be, without alternatives in it; none: too many."""
+    """Values of a number without alternatives; empty: too many."""
     if z3.is_app_of(term, z3.Z3_OP_ITE):
         _, then, otherwise = term.children()
         return [*_alternatives(then), *_alternatives(otherwise)]
@@ -127,11 +127,13 @@ def _factors(term: Term) -> tuple[dict[str, Fraction], Fraction]:
     variables = z3util.get_vars(term)
 
     def at(one: str) -> Fraction:
-        values = [(each, _number(each, int(str(each) == one))) for each in variables]
+        values = [
+            (variable, _number(variable, int(str(variable) == one))) for variable in variables
+        ]
         return Fraction(str(z3.simplify(z3.substitute(term, *values))))
 
     rest = at("")
-    return {str(each): at(str(each)) - rest for each in variables}, rest
+    return {str(variable): at(str(variable)) - rest for variable in variables}, rest
 
 
 def _number(like: Term, value: int) -> Term:

@@ -12,11 +12,11 @@ from compiler.logic import decision_diagrams as bdd
 from fretc.analysis.controllers.machine import Machine, NoMachineError
 
 MOST_NODES = 20_000
-"""Of a circuit: each is a line of a program."""
+"""Maximum number of nodes of a circuit; each is a line of a program."""
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class Ite:
     """A name for `high if variable else low`."""
 
     name: str
@@ -26,7 +26,7 @@ class Choice:
 
     @property
     def text(self) -> str:
-        """As Python says it best."""
+        """The choice as a Python expression."""
         match self.high, self.low:
             case "False", "True":
                 return f"not {self.variable}"
@@ -44,34 +44,34 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Circuit:
-    """The machine of some requirements; every name is one of Python."""
+    """The machine of some requirements; every name is a Python name."""
 
     requirements: tuple[str, ...]
     inputs: Mapping[str, str]
-    """Each proposition that the environment sets, by its name."""
+    """Name → proposition that the environment sets."""
     outputs: Mapping[str, str]
-    """Each proposition that the machine sets, by its name."""
+    """Name → proposition that the machine sets."""
     bits: tuple[str, ...]
-    replies: tuple[Choice, ...]
-    """What is computed before the outputs."""
+    replies: tuple[Ite, ...]
+    """Choices that are computed before the outputs."""
     values: tuple[str, ...]
-    """Of each output, in their order."""
-    steps: tuple[Choice, ...]
-    """What is computed after the outputs."""
+    """Value of each output, in the order of `outputs`."""
+    steps: tuple[Ite, ...]
+    """Choices that are computed after the outputs."""
     following: tuple[str, ...]
-    """Of each bit its value after the tick, in their order."""
+    """Value of each bit after the tick, in order."""
 
 
 def circuit(machine: Machine, requirements: Sequence[str], number: int) -> Circuit:
     """The circuit of a machine.
 
     Args:
-        machine: whatever its size.
-        requirements: their ids.
-        number: keeps its names apart from those of other circuits.
+        machine: a machine of any size.
+        requirements: ids of its requirements.
+        number: number that makes its names unique.
 
     Raises:
-        NoMachineError: it would be too long.
+        NoMachineError: the circuit would be too long.
     """
     names = {each: f"i{number}_{i}" for i, each in enumerate(machine.inputs)}
     names |= {each: f"o{number}_{i}" for i, each in enumerate(machine.outputs)}
@@ -79,9 +79,7 @@ def circuit(machine: Machine, requirements: Sequence[str], number: int) -> Circu
     roots = [*machine.replies.values(), *machine.steps.values()]
     size = sum(bdd.size(root) for root in roots)
     if size > MOST_NODES:
-        raise NoMachineError(
-            f"its controller has {size} choices; no more than {MOST_NODES} are written"
-        )
+        raise NoMachineError(f"its controller has {size} choices; at most {MOST_NODES} are written")
     known: dict[bdd.Function, str] = {bdd.true(): "True", bdd.false(): "False"}
     replies = tuple(_choices(machine.replies.values(), names, known, number))
     steps = tuple(_choices(machine.steps.values(), names, known, number))
@@ -89,7 +87,7 @@ def circuit(machine: Machine, requirements: Sequence[str], number: int) -> Circu
         tuple(requirements),
         {names[each]: atom for each, atom in machine.inputs.items()},
         {names[each]: atom for each, atom in machine.outputs.items()},
-        tuple(names[each] for each in machine.steps),
+        tuple(names[step] for step in machine.steps),
         replies,
         tuple(known[root] for root in machine.replies.values()),
         steps,
@@ -102,8 +100,8 @@ def _choices(
     names: Mapping[int, str],
     known: dict[bdd.Function, str],
     number: int,
-) -> Iterator[Choice]:
-    """What the roots need and is not known yet; it is known then."""
+) -> Iterator[Ite]:
+    """Choices that the roots need and that are not yet in `known`, which is extended."""
     for part in bdd.nodes(roots):
         if part not in known:
             variable, high, low = bdd.branches(part)
@@ -111,4 +109,4 @@ def _choices(
                 known[part] = names[variable]
             else:
                 known[part] = f"c{number}_{len(known) - 2}"
-                yield Choice(known[part], names[variable], known[high], known[low])
+                yield Ite(known[part], names[variable], known[high], known[low])

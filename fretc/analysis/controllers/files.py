@@ -14,8 +14,8 @@ from fretc.analysis.controllers.circuit import Circuit
 from fretc.analysis.controllers.moves import Mealy, Move, Term
 
 
-class Form(StrEnum):
-    """What a strategy is written as; the values are the words of `--emit`."""
+class ControllerFormat(StrEnum):
+    """Form of a controller; the values are those of `--emit`."""
 
     PYTHON = "python"
     HOA = "hoa"
@@ -23,13 +23,13 @@ class Form(StrEnum):
 
 
 Sentences = Mapping[str, str]
-"""FRETish, by ids."""
+"""FRETish sentences by id."""
 
 
 def controller(
     circuits: Sequence[Circuit], requirements: Sentences, assumptions: Sentences
 ) -> Artifact:
-    """`controller.py`, which keeps all requirements."""
+    """`controller.py`, which satisfies all requirements."""
     text = render(
         "controller/controller.py.j2",
         circuits=circuits,
@@ -45,8 +45,8 @@ def controller(
     return Artifact(PurePosixPath("controller.py"), text)
 
 
-def automata(machines: Sequence[Mealy], form: Form) -> tuple[Artifact, ...]:
-    """`controller.hoa` or `controller.dot`; with a number, where there are several components."""
+def automata(machines: Sequence[Mealy], form: ControllerFormat) -> tuple[Artifact, ...]:
+    """`controller.hoa` or `controller.dot`; with a number for several components."""
     return tuple(
         Artifact(
             PurePosixPath(f"controller{f'-{number}' if len(machines) > 1 else ''}.{form}"),
@@ -56,14 +56,14 @@ def automata(machines: Sequence[Mealy], form: Form) -> tuple[Artifact, ...]:
     )
 
 
-def _automaton(machine: Mealy, form: Form) -> str:
-    title = f"a controller that keeps {', '.join(machine.requirements)}"
+def _automaton(machine: Mealy, form: ControllerFormat) -> str:
+    title = f"a controller that satisfies {', '.join(machine.requirements)}"
     match form:
-        case Form.HOA:
+        case ControllerFormat.HOA:
             return _hoa(machine, title)
-        case Form.DOT:
+        case ControllerFormat.DOT:
             return _dot(machine, title)
-        case Form.PYTHON:
+        case ControllerFormat.PYTHON:
             raise AssertionError("a program is made of circuits")
         case _:
             assert_never(form)

@@ -1,7 +1,7 @@
-"""The strategy of a system as functions: each output, and each bit of what it remembers.
+"""The strategy of a system as functions: each output, and each bit of its memory.
 
-Of all replies by which the system wins, one is chosen: output by output, false where it may be. A
-strategy that could win by what breaks the assumptions does so only where nothing else is left.
+Of all winning replies one is chosen: output by output, false if possible. The strategy makes the
+environment violate assumptions only if nothing else wins.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from fretc.analysis.games.game import Game, Goal, Solution
 
 
 class NoMachineError(Exception):
-    """A strategy that has no such form; the message says why."""
+    """The strategy has no such form; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,33 +25,33 @@ class Machine:
     """A Mealy machine. Before the first tick all bits are false."""
 
     inputs: Mapping[int, str]
-    """The name of each variable that the environment sets."""
+    """Name of each variable that the environment sets."""
     outputs: Mapping[int, str]
-    """The name of each variable that the machine sets."""
+    """Name of each variable that the machine sets."""
     replies: Mapping[int, Function]
-    """Of each output its value, over bits and inputs."""
+    """The value of each output, over bits and inputs."""
     steps: Mapping[int, Function]
-    """Of each bit its value after a tick, over bits, inputs and outputs."""
+    """The value of each bit after a tick, over bits, inputs and outputs."""
     legal: Function
-    """The inputs that can be."""
+    """Possible inputs."""
 
 
 def machine(game: Game, solution: Solution, budget: Budget) -> Machine:
-    """How the system wins.
+    """A winning machine of the system.
 
     Args:
-        game: which the system wins.
-        solution: of the game.
-        budget: of time.
+        game: a game that the system wins.
+        solution: solution of the game.
+        budget: time limit.
 
     Raises:
-        NoMachineError: its letters are no propositions.
+        NoMachineError: the valuations are not propositions.
         OutOfTimeError: it takes too long.
     """
     alphabet = game.alphabet
     named = alphabet.labels
     if any(number not in named for number in (*alphabet.inputs, *alphabet.outputs)):
-        raise NoMachineError("it compares numbers, and a controller of numbers is not made yet")
+        raise NoMachineError("it compares numbers, and controllers cannot compare numbers yet")
     goals = solution.goals
     turns = _Turns(game, len(goals))
     moves = [_Moves(game, budget).of(solution.winning, goal) for goal in goals or (None,)]
@@ -70,20 +70,22 @@ def machine(game: Game, solution: Solution, budget: Budget) -> Machine:
 
 
 class _Turns:
-    """The number of the goal that is next, in bits of its own."""
+    """The number of the next goal, in bits of its own."""
 
     def __init__(self, game: Game, size: int) -> None:
         letters = (*game.alphabet.inputs, *game.alphabet.outputs)
-        first = 2 + max((*letters, *game.transition.start), default=0)  # each bit has an `after`
+        first = 2 + max(
+            (*letters, *game.transition.start), default=0
+        )  # Each bit has an `after` variable.
         self._bits = [first + i for i in range((max(size, 1) - 1).bit_length())]
         self._size = size
 
     def is_turn(self, number: int) -> Function:
-        """Whether it is this one."""
+        """Whether this goal is the next one."""
         return bdd.point({bit: bool(number >> i & 1) for i, bit in enumerate(self._bits)})
 
     def steps(self, reached: Sequence[Function]) -> dict[int, Function]:
-        """Of each bit its value after a tick; a goal that is reached passes the turn on."""
+        """The value of each bit after a tick; reaching a goal selects the next one."""
         found = dict.fromkeys(self._bits, bdd.false())
         for number, ticks in enumerate(reached):
             following = (number + 1) % self._size
@@ -96,7 +98,7 @@ class _Turns:
 
 
 class _Moves:
-    """The ticks by which the system goes for one goal."""
+    """The moves of the system towards one goal."""
 
     def __init__(self, game: Game, budget: Budget) -> None:
         self._game, self._budget = game, budget
@@ -107,15 +109,15 @@ class _Moves:
         return self._game.safe & self._game.transition.moved(states)
 
     def or_else(self, first: Function, second: Function) -> Function:
-        """The first where the system has any such reply, else the second."""
+        """The first function where the system has such a reply, else the second."""
         return first | (second - bdd.exists(first, self._outputs))
 
     def of(self, winning: Function, goal: Goal | None) -> Function:
-        """All of them.
+        """All moves towards a goal.
 
         Args:
-            winning: the states that it never leaves.
-            goal: what it goes for; None: to stay there is all.
+            winning: states that the system never leaves.
+            goal: the goal; None: staying in `winning` is enough.
         """
         if goal is None:
             return winning & self._into(winning)
@@ -130,7 +132,7 @@ class _Moves:
         return found
 
     def _waiting(self, nearer: Function, stays: Sequence[Function]) -> Function:
-        """Nearer to the goal, or where a promise of the environment stays unkept."""
+        """Moves that come nearer to the goal, or stay where the environment violates a promise."""
         found, left = nearer, bdd.true()
         for states, promise in zip(stays, self._game.promises, strict=True):
             mine = states & left
@@ -140,7 +142,7 @@ class _Moves:
 
 
 def _with_broken_word(game: Game, moves: Function) -> Function:
-    """What else to do where the environment breaks its word, or has done so."""
+    """Moves after the environment has violated an assumption, or while it does."""
     if game.kept == bdd.true():
         return moves
     outputs = bdd.cube(game.alphabet.outputs)
@@ -157,7 +159,7 @@ def _last_resorts(game: Game) -> Iterator[Function]:
 
 
 def _chosen(relation: Function, outputs: Sequence[int], budget: Budget) -> dict[int, Function]:
-    """One value of each output, over what is no output."""
+    """One value of each output, over the other variables."""
     found: dict[int, Function] = {}
     for place, output in enumerate(outputs):
         budget.check()

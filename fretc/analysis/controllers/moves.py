@@ -1,4 +1,4 @@
-"""A machine state by state: its moves, as automata have them."""
+"""A machine state by state, with its moves, as in an automaton."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from fretc.analysis.arena.budget import Budget
 from fretc.analysis.controllers.machine import Machine, NoMachineError
 
 MOST_STATES, MOST_MOVES = 1_000, 10_000
-"""Of an automaton that is written."""
+"""Maximum size of an automaton that is written."""
 Term = Mapping[str, bool]
-"""The truth of some propositions."""
+"""Truth values of some propositions."""
 
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """Where the machine goes upon some inputs, and what it sets."""
+    """Next state and outputs of a machine for some inputs."""
 
     when: tuple[Term, ...]
-    """The inputs: one of these terms."""
+    """Inputs: one of these terms holds."""
     outputs: Term
-    """All of them."""
+    """Values of all outputs."""
     after: int
 
 
 @dataclass(frozen=True, slots=True)
 class Mealy:
-    """The machine of some requirements, state by state; the first one is initial."""
+    """The machine of some requirements, state by state; the first state is initial."""
 
     requirements: tuple[str, ...]
     inputs: tuple[str, ...]
@@ -38,15 +38,15 @@ class Mealy:
 
 
 def mealy(machine: Machine, requirements: Sequence[str], budget: Budget) -> Mealy:
-    """The states that the machine can come to, and its moves in each.
+    """Reachable states of a machine, with its moves.
 
     Args:
-        machine: whatever its size.
-        requirements: their ids.
-        budget: of time.
+        machine: a machine of any size.
+        requirements: ids of its requirements.
+        budget: time limit.
 
     Raises:
-        NoMachineError: it has too many.
+        NoMachineError: it has too many states or moves.
         OutOfTimeError: it takes too long.
     """
     numbers: dict[tuple[bool, ...], int] = {tuple(False for _ in machine.steps): 0}
@@ -77,7 +77,7 @@ def mealy(machine: Machine, requirements: Sequence[str], budget: Budget) -> Meal
 def _moves(
     machine: Machine, state: tuple[bool, ...]
 ) -> Iterator[tuple[Function, Mapping[int, bool], tuple[bool, ...]]]:
-    """Sets of inputs with the same outputs and the same state after them."""
+    """Sets of inputs with the same outputs and the same next state."""
     known = bdd.point(dict(zip(machine.steps, state, strict=True)))
     replies = {output: bdd.at(reply, known) for output, reply in machine.replies.items()}
     for inputs, outputs in _split(bdd.at(machine.legal, known), replies):
@@ -90,7 +90,7 @@ def _moves(
 def _split(
     inputs: Function, functions: Mapping[int, Function]
 ) -> list[tuple[Function, dict[int, bool]]]:
-    """The inputs apart by the values of functions."""
+    """Inputs split by the values of functions."""
     found: list[tuple[Function, dict[int, bool]]] = [(inputs, {})]
     for number, function in functions.items():
         found = [
@@ -103,7 +103,7 @@ def _split(
 
 
 def _terms(inputs: Function, names: Mapping[int, str]) -> Iterator[Term]:
-    """Terms of which one is true for each of the inputs."""
+    """Terms whose disjunction is the set of inputs."""
     while inputs != bdd.false():
         term = bdd.witness(inputs)
         inputs = inputs - bdd.point(term)

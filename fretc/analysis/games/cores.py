@@ -1,8 +1,8 @@
 """All minimal conflicts of some requirements.
 
 Source: Liffiton, Previti, Malik, Marques-Silva, Fast, flexible MUS enumeration, Constraints 21
-(2016): a map of the sets that are not decided yet, here a decision diagram; each seed of it is a
-border, or shrinks to one, which takes everything beyond it off the map.
+(2016): a map of the undecided sets, here a decision diagram; each seed grows or shrinks to a
+border, and all sets beyond the border are removed from the map.
 """
 
 from __future__ import annotations
@@ -13,19 +13,19 @@ from itertools import combinations
 from compiler.logic import decision_diagrams as bdd
 
 MOST_PAIRS = 2_000
-"""Of more pairs none is tried before the others."""
+"""Maximum number of pairs that are tried first."""
 Members = frozenset[int]
 
 
 def cores(
     size: int, is_conflict: Callable[[Members], bool], near: Callable[[int, int], bool]
 ) -> Iterator[Members]:
-    """Each minimal set with a conflict, as soon as it is known.
+    """Each minimal set with a conflict, as soon as it is found.
 
     Args:
         size: the members are 0..size-1.
-        is_conflict: monotone: a larger set than a conflict is one.
-        near: whether two members may conflict by themselves; those are tried first.
+        is_conflict: monotone: every superset of a conflict is one.
+        near: whether two members may conflict by themselves; these are tried first.
     """
     open_sets = bdd.true()
     for found in _small(size, is_conflict, near):
@@ -57,7 +57,7 @@ def _small(
 
 
 def _largest(open_sets: bdd.Function, size: int) -> Members:
-    """A set on the map, none of whose supersets is: with each it would hold a known conflict."""
+    """A maximal set on the map: every superset contains a known conflict."""
     values = bdd.witness(open_sets, prefer=True)
     return frozenset(i for i in range(size) if values.get(i, True))
 
@@ -68,23 +68,23 @@ def _shrunk(
     open_sets: bdd.Function,
     is_conflict: Callable[[Members], bool],
 ) -> Members:
-    """A minimal conflict among the members of one; what is off the map below it is known to fit."""
+    """A minimal conflict within a conflict; sets removed from the map have none."""
 
     def is_open(some: Members) -> bool:
         return bool(bdd.at(open_sets, bdd.point({i: i in some for i in range(size)})) == bdd.true())
 
-    for each in sorted(members):
-        fewer = members - {each}
+    for member in sorted(members):
+        fewer = members - {member}
         if is_open(fewer) and is_conflict(fewer):
             members = fewer
     return members
 
 
 def minimal(members: Sequence[str], holds: Callable[[Sequence[str]], bool]) -> tuple[str, ...]:
-    """A minimal subset of which something monotone holds, as it does of all."""
+    """A minimal subset with a monotone property that the whole set has."""
     kept = list(members)
-    for each in members:
-        rest = [other for other in kept if other != each]
+    for member in members:
+        rest = [other for other in kept if other != member]
         if holds(rest):
             kept = rest
     return tuple(kept)

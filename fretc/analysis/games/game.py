@@ -1,10 +1,10 @@
 """The game: at each tick the environment sets the inputs, then the system the outputs.
 
-The system wins where it can go on for ever without a breach, and meets its liveness again and
-again. An environment that has broken its assumptions, or can keep them no longer, has lost.
+The system wins if it can go on for ever without a violation and meets its liveness again and again.
+An environment that has violated its assumptions, or can satisfy them no longer, has lost.
 
 Sources: Piterman, Pnueli, Sa'ar, Synthesis of reactive(1) designs, VMCAI 2006 (the fixpoints);
-Zielonka, Infinite games on finitely coloured graphs, TCS 200 (1998) (strategies of both).
+Zielonka, Infinite games on finitely coloured graphs, TCS 200 (1998) (strategies of both players).
 """
 
 from __future__ import annotations
@@ -24,9 +24,8 @@ from fretc.analysis.games.squaring import IterativeSquaring, Relation, identity
 Letter = Mapping[int, bool]
 """A value of each input and output."""
 Chain = tuple[tuple[Function, Function], ...]
-"""Of each link what is left, and an escape: from states of a trap that are not left the environment
-can see to it that none of the escape comes next. So it comes, link by link, to where its promise is
-kept, or into an earlier trap."""
+"""For each link the remaining states, and an escape set that the environment can avoid at the next
+tick. Link by link, the run reaches states in which a promise is kept, or an earlier trap."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,11 +33,12 @@ class Trap:
     """States from which the environment wins."""
 
     left: Function
-    """The states that are left to the system once those of the trap are taken away."""
+    """States that remain for the system without the trap."""
     chains: tuple[Chain, ...]
-    """One, or one for each promise of the environment, which it keeps in turn."""
+    """One chain, or one for each promise of the environment, which it keeps in turn."""
     inputs: Letter | None = None
-    """What the environment repeats until the state is in an earlier trap; None: as chains say."""
+    """Inputs that the environment repeats until the state is in an earlier trap; None: follow the
+    chains."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,41 +47,41 @@ class Layer:
 
     states: Function
     stays: tuple[Function, ...]
-    """For each promise: where the system can remain, once it is no nearer, while it is unkept."""
+    """For each promise: states in which the system can remain while the promise is not kept."""
 
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """A liveness of the system: how it comes nearer to it, from all states that it wins."""
+    """A liveness goal of the system, reachable from all its winning states."""
 
     target: Function
     layers: tuple[Layer, ...]
-    """From each layer the system can step into the target or into an earlier layer."""
+    """From each layer the system can move into the target or into an earlier layer."""
 
     @property
     def states(self) -> Function:
-        """From where it is reached."""
+        """States from which the goal is reached."""
         return self.layers[-1].states
 
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """Who wins from the initial state, and how."""
+    """The winner from the initial state, with a strategy."""
 
     is_realizable: bool
     winning: Function
-    """The states from which the system wins, as far as they were computed."""
+    """Computed states from which the system wins."""
     traps: tuple[Trap, ...]
-    """In the order in which they were found; empty where they were not asked for."""
+    """Traps in the order of their computation; empty if they were not requested."""
     goals: tuple[Goal, ...]
 
 
 def upheld(alphabet: Alphabet, assumptions: Sequence[Counter], budget: Budget) -> Function:
-    """Whether a tick leaves the assumptions such that they can be kept for ever."""
+    """Whether the environment can satisfy the assumptions for ever after a tick."""
     if not assumptions:
         return bdd.true()
     runs = Runs(alphabet, assumptions, budget)
-    return runs.going_on(runs.lasting())
+    return runs.safe_transitions(runs.lasting())
 
 
 class Game:
@@ -98,11 +98,11 @@ class Game:
         """The game.
 
         Args:
-            alphabet: of all counters.
-            counters: of requirements.
-            assumptions: likewise.
-            budget: for the fixpoints.
-            kept: `upheld` of the assumptions, where it is known from an earlier game.
+            alphabet: alphabet of all counters.
+            counters: counters of requirements.
+            assumptions: counters of assumptions.
+            budget: time limit for the fixpoints.
+            kept: `upheld` of the assumptions, if known from an earlier game.
         """
         self.alphabet, self.counters, self.assumptions = alphabet, counters, assumptions
         self._budget = budget
@@ -113,28 +113,30 @@ class Game:
         for counter in counters:
             self.safe = self.safe & counter.safe
         self.kept = upheld(alphabet, assumptions, budget) if kept is None else kept
-        """Whether a tick leaves the assumptions such that they can be kept for ever."""
-        self.promises = [each.fair for each in assumptions if each.fair is not None]
+        """Whether the environment can satisfy the assumptions for ever after a tick."""
+        self.promises = [
+            assumption.fair for assumption in assumptions if assumption.fair is not None
+        ]
         self.duties = [each.fair for each in counters if each.fair is not None]
 
     @property
     def is_memoryless(self) -> bool:
-        """Whether each tick is like the first one, whatever was done before it."""
+        """Whether every tick is like the first one, independent of earlier ticks."""
         asked = (self.legal, self.reachable, self.safe, self.kept)
         read = {number for each in asked for number in bdd.support(each)}
         return not self.duties and not self.promises and read.isdisjoint(self.transition.start)
 
     def forced(self, states: Function, safe: Function | None = None) -> Function:
-        """The states from which the system can see to it that one of these comes next.
+        """States from which the system can force the next state to be one of these.
 
         Args:
-            states: those.
-            safe: ticks that break nothing; None: those of the game.
+            states: the target states.
+            safe: ticks without a violation; None: those of the game.
         """
         return bdd.forall_implies(self.legal, self.answered(states, safe), self._inputs)
 
     def answered(self, states: Function, safe: Function | None = None) -> Function:
-        """States and inputs to which the system has an answer that leads to one of these states."""
+        """States and inputs for which the system has a reply that leads to one of these states."""
         moved = self.transition.moved(states)
         answer = bdd.and_exists(self.safe if safe is None else safe, moved, self._outputs)
         if self.kept == bdd.true():
@@ -142,10 +144,10 @@ class Game:
         return answer | bdd.and_exists(self.reachable, -self.kept, self._outputs)
 
     def surviving(self, states: Function, inputs: Letter) -> Function:
-        """From where the system can stay in these states, while the environment repeats inputs.
+        """States from which the system can stay in these states while the inputs repeat.
 
         Raises:
-            TooLargeError: their diagrams grow.
+            TooLargeError: the diagrams grow too large.
             OutOfTimeError: it takes too long.
         """
         known, bits = bdd.point(inputs), self.transition.bits
@@ -155,10 +157,10 @@ class Game:
         return Relation(bits, moves, self._budget).lasting()
 
     def solution(self, *, traps: bool = False) -> Solution:
-        """Who wins.
+        """The winner, with a strategy.
 
         Args:
-            traps: whether those are kept, by which the environment wins.
+            traps: whether to store the traps by which the environment wins.
 
         Raises:
             OutOfTimeError: it takes too long.
@@ -194,7 +196,7 @@ class _Search:
             self._traps.append(Trap(left, chains))
 
     def _safe(self) -> Function:
-        """The states from which the system can go on for ever, or where the initial one is lost."""
+        """States from which the system can go on for ever; stops if the initial state is lost."""
         states = bdd.true()
         while True:
             self._budget.check()
@@ -207,7 +209,7 @@ class _Search:
             states = self._leapt(left, states) if self._leaps.is_due() else left
 
     def _leapt(self, left: Function, before: Function) -> Function:
-        """What is left where the environment repeats the inputs by which it has won last."""
+        """Remaining states after the environment repeats its last winning inputs."""
         game = self._game
         lost = (before - left) & (game.legal - game.answered(before))
         inputs = whole(lost, game.alphabet.inputs)
@@ -219,7 +221,7 @@ class _Search:
         return states
 
     def _goal(self, fair: Function, states: Function, promises: Sequence[Function]) -> Goal:
-        """How the system reaches `fair` from states without leaving them."""
+        """How the system reaches `fair` without leaving the states."""
         target = fair & states
         layers: list[Layer] = []
         near = bdd.false()
@@ -238,7 +240,7 @@ class _Search:
         return Goal(target, tuple(layers) or (Layer(bdd.false(), ()),))
 
     def _layer(self, near: Function, promises: Sequence[Function]) -> Layer:
-        """From where the system comes near, or a promise stays unkept for ever."""
+        """States from which the system comes near, or a promise is not kept for ever."""
         if not promises:
             return Layer(self._game.forced(near), ())
         stays = tuple(self._staying(near, promise) for promise in promises)
@@ -252,7 +254,7 @@ class _Search:
         return chain[-1][0] if chain else bdd.true()
 
     def _chain(self, near: Function, promise: Function) -> Chain:
-        """How the states are left, round by round, in which the promise stays unkept."""
+        """How the states with the unkept promise are left, round by round."""
         states = bdd.true()
         links: list[tuple[Function, Function]] = []
         while True:
@@ -266,6 +268,6 @@ class _Search:
 
 
 def whole(options: Function, variables: Sequence[int]) -> dict[int, bool]:
-    """A value of each variable, as one of the options has them; false where none asks for more."""
+    """A value of each variable in one of the options; false if none is required."""
     values = bdd.witness(options)
     return {number: values.get(number, False) for number in variables}

@@ -1,4 +1,4 @@
-"""Plays of a game, tick by tick: how the environment wins, and how the system does."""
+"""Traces of a game, tick by tick: how the environment wins, and how the system wins."""
 
 from __future__ import annotations
 
@@ -14,33 +14,33 @@ from fretc.analysis.games.game import Game, Goal, Letter, Solution, Trap, whole
 from fretc.analysis.games.squaring import Relation, TooLargeError
 
 Run = tuple[Letter, int]
-"""A letter, and for how many ticks it stays."""
+"""A valuation, and its number of ticks."""
 
 
 @dataclass(frozen=True, slots=True)
 class GameTrace:
-    """Letters, tick by tick."""
+    """Valuations, tick by tick."""
 
     runs: tuple[Run, ...]
     loop: int | None
-    """The tick to which the last one leads back for ever; None: the last tick breaks something."""
+    """Tick at which the repeated part begins; None: the last tick is a violation."""
     state: State
-    """Before the last tick."""
+    """State before the last tick."""
     numbers: tuple[Tick, ...] = ()
-    """Of each tick, where they depend on those of the tick before."""
+    """Numbers of each tick, if they depend on earlier numbers."""
 
     @property
     def ticks(self) -> int:
-        """How many it has, up to the breach, or the end of the loop."""
+        """Number of ticks, up to the violation or the end of the loop."""
         return sum(count for _, count in self.runs)
 
     @property
     def letters(self) -> tuple[Letter, ...]:
-        """One for each tick."""
+        """The valuation of each tick."""
         return tuple(letter for letter, count in self.runs for _ in range(count))
 
     def repeated(self, rounds: int) -> tuple[Run, ...]:
-        """The runs, with the loop so many times."""
+        """The runs, with the loop repeated."""
         if self.loop is None:
             return self.runs
         again: list[Run] = []
@@ -53,17 +53,17 @@ class GameTrace:
 
 
 class NoPlayError(Exception):
-    """The environment wins, but no play shows it; the message says why."""
+    """The environment wins, but no trace shows it; the message gives the reason."""
 
 
 _MOST_NUMBERS = 500
-"""Ticks of a play whose numbers may come back to what they were."""
+"""Maximum number of ticks in which the numbers of a loop must recur."""
 
 
 class Counterstrategy:
-    """How the environment wins a game that the system cannot win.
+    """Strategy of the environment in a game that the system cannot win.
 
-    The system resists as long as it can; so the play shows why there is no way out.
+    The system resists as long as possible, so that the trace shows why it must lose.
     """
 
     def __init__(self, game: Game, solution: Solution, budget: Budget) -> None:
@@ -72,11 +72,11 @@ class Counterstrategy:
         self._course = game.alphabet.course(budget)
 
     def play(self) -> GameTrace:
-        """From the initial state to a breach, or round and round without what must come.
+        """A trace from the initial state to a violation, or to a loop without a required event.
 
         Raises:
             OutOfTimeError: it has too many ticks.
-            NoPlayError: its numbers come back to nothing that was.
+            NoPlayError: its numbers do not recur.
         """
         state: State = self._game.transition.start
         promise, trap = 0, len(self._traps) - 1
@@ -108,7 +108,7 @@ class Counterstrategy:
             promise = self._following(state, promise)
 
     def _followed(self, letter: Letter) -> Letter:
-        """The letter, for which numbers are chosen."""
+        """The valuation, after numbers have been chosen for it."""
         if self._course is not None:
             self._course.follow(letter)
         return letter
@@ -118,11 +118,11 @@ class Counterstrategy:
         return () if self._course is None else tuple(self._course.ticks)
 
     def _possible(self, inputs: Letter) -> Function:
-        """The outputs that the numbers of the tick before leave."""
+        """Outputs that are possible with the numbers of the previous tick."""
         return bdd.true() if self._course is None else self._course.possible(inputs)
 
     def _while_repeated(self, letter: Letter, state: State, trap: int) -> tuple[int, State]:
-        """How many ticks more the letter can be repeated before the state leaves the trap."""
+        """How many more ticks the valuation can repeat before the state leaves the trap."""
         game, known = self._game, bdd.point(letter)
         left = self._traps[trap - 1].left  # of the trap itself, none of it is left
         stays = game.safe & left & game.transition.moved(left)
@@ -133,14 +133,14 @@ class Counterstrategy:
             return 0, state
 
     def _following(self, state: State, promise: int) -> int:
-        """The promise that the environment keeps next, once it is in a state."""
+        """The promise that the environment keeps next in a state."""
         promises = self._game.promises
         if not promises or bdd.at(promises[promise], bdd.point(state)) == bdd.false():
             return promise
         return (promise + 1) % len(promises)
 
     def _inputs(self, state: State, promise: int, trap: Trap) -> dict[int, bool]:
-        """What the environment does in a state that a trap holds, to keep a promise next."""
+        """Inputs of the environment in a state of a trap, to keep a promise next."""
         if trap.inputs is not None:
             return {**trap.inputs}
         game, known = self._game, bdd.point(state)
@@ -152,7 +152,7 @@ class Counterstrategy:
         return whole(bdd.at(game.legal, known) - answer, game.alphabet.inputs)
 
     def _number(self, known: Function, near: int) -> int:
-        """The first trap that holds the state; often one that is near, or the one before it."""
+        """Index of the first trap with the state; the search starts at the given one."""
 
         def is_held(number: int) -> bool:
             return bool(bdd.at(self._traps[number].left, known) == bdd.false())
@@ -163,14 +163,14 @@ class Counterstrategy:
         return _first(is_held, len(self._traps))
 
     def _options(self, state: State, inputs: Letter) -> Function:
-        """The outputs that break nothing."""
+        """Outputs without a violation."""
         safe = bdd.at(self._game.safe, bdd.point({**state, **inputs}))
         return safe & self._possible(inputs)
 
     def _resistance(
         self, options: Function, state: State, inputs: Letter, trap: int
     ) -> dict[int, bool]:
-        """Outputs that lead into the trap that was found last; often the one before this."""
+        """Outputs that lead into the trap with the highest possible number."""
         known = bdd.point({**state, **inputs})
         variables = self._game.alphabet.outputs
 
@@ -187,7 +187,7 @@ class Counterstrategy:
         return whole(ways(none_left - 1) if none_left else options, variables)
 
     def _breach(self, state: State, inputs: Letter) -> dict[int, bool]:
-        """Outputs that break as few requirements as can be."""
+        """Outputs that violate as few requirements as possible."""
         known = bdd.point({**state, **inputs})
         options = bdd.at(self._game.reachable, known) & self._possible(inputs)
         for counter in self._game.counters:
@@ -197,7 +197,7 @@ class Counterstrategy:
 
 
 class _Runs:
-    """The letters of a play that goes on."""
+    """The valuations of a trace under construction."""
 
     def __init__(self) -> None:
         self._runs: list[Run] = []
@@ -208,7 +208,7 @@ class _Runs:
         return tuple(self._runs)
 
     def add(self, letter: Letter, ticks: int = 1) -> int:
-        """One more letter; for how many ticks it stays now."""
+        """Append a valuation; returns how many ticks it has lasted."""
         before = self._runs.pop()[1] if self._runs and self._runs[-1][0] == letter else 0
         self._runs.append((letter, before + ticks))
         self.ticks += ticks
@@ -216,19 +216,19 @@ class _Runs:
 
 
 _LONG = 16
-"""Ticks of one letter, after which it is looked at how long it stays."""
+"""Ticks of an equal valuation after which its total length is computed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a strategy is: the state of the game, and the goal that it goes for."""
+    """Position of a strategy: the state of the game, and the current goal."""
 
     state: tuple[bool, ...]
     goal: int = 0
 
 
 class Strategy:
-    """How the system wins: a Mealy machine, reply by reply."""
+    """Winning strategy of the system: a Mealy machine, computed reply by reply."""
 
     def __init__(self, game: Game, solution: Solution) -> None:
         assert solution.is_realizable
@@ -237,11 +237,11 @@ class Strategy:
         self.start = Place(tuple(game.transition.start.values()))
 
     def reply(self, place: Place, inputs: Letter) -> tuple[dict[int, bool], Place]:
-        """The outputs at a tick, and the place after it.
+        """The outputs at a tick, and the next position.
 
         Args:
-            place: before the tick; reached by replies.
-            inputs: all of them, legal.
+            place: position before the tick, reached by earlier replies.
+            inputs: values of all inputs, legal.
         """
         game = self._game
         state = dict(zip(self._bits, place.state, strict=True))
@@ -252,12 +252,12 @@ class Strategy:
         return outputs, Place(tuple(after[bit] for bit in self._bits), goal)
 
     def legal(self, place: Place) -> Function:
-        """The inputs that may come, over their bits."""
+        """Legal inputs, over their bits."""
         state = dict(zip(self._bits, place.state, strict=True))
         return bdd.at(self._game.legal, bdd.point(state))
 
     def _options(self, place: Place, known: Function) -> tuple[Function, int]:
-        """Winning outputs, and the goal after them."""
+        """Winning outputs, and the next goal."""
         game, goals = self._game, self._solution.goals
         free = bdd.at(game.reachable - game.kept, known)
         if free != bdd.false():
@@ -272,7 +272,7 @@ class Strategy:
         return self._nearer(goal, place, safe, known), place.goal
 
     def _nearer(self, goal: Goal, place: Place, safe: Function, known: Function) -> Function:
-        """Outputs that lead to the nearest layer, or stay where a promise is unkept."""
+        """Outputs that lead to the nearest layer, or stay where a promise is not kept."""
         moved_from = self._game.transition.moved_from
         here = bdd.point(dict(zip(self._bits, place.state, strict=True)))
         number = _first(
@@ -289,7 +289,7 @@ class Strategy:
 
 
 def _first(holds: Callable[[int], bool], size: int) -> int:
-    """The first number from which on something monotone holds; `size` where it never does."""
+    """First number from which a monotone property holds; `size` if there is none."""
     low, high = 0, size
     while low < high:
         middle = (low + high) // 2

@@ -1,4 +1,4 @@
-"""A question that is asked by itself, with what stands in place of an answer that is lost."""
+"""A question of the analysis, with its finding for the case that it gets no answer."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ F = TypeVar("F")
 
 @dataclass(frozen=True)  # slots cannot be generic in Python 3.11
 class Job(Generic[F]):
-    """One question about some requirements; its answer is any number of findings."""
+    """A question about some requirements; its answer is any number of findings."""
 
     title: str
-    """The question, for people who wait."""
+    """The question, for progress messages."""
     ask: Callable[[Sequence[F]], Iterator[F]]
-    """It is given what is known so far."""
+    """Function of the earlier findings that yields the answer."""
     lost: Callable[[str], F]
-    """What stands in its place where it ends without an answer, for a reason."""
+    """Function of a reason that gives the finding if there is no answer."""

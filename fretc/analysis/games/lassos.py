@@ -1,9 +1,9 @@
-"""A run that comes back to where it was: how requirements are kept that have no inputs.
+"""Lassos: endless runs that satisfy requirements without inputs.
 
-Where only the system chooses, one run that keeps requirements shows that they can be kept, numbers
-of the tick before and all. z3 looks for it, with exact numbers. Nothing of the search is believed:
-what is compared is computed again from the numbers, round by round, and the formulas of the
-monitors judge it.
+If the system chooses every variable, one satisfying run proves that the requirements are
+realizable, including numbers of earlier ticks. z3 searches for it with exact numbers. The result is
+checked: comparisons are recomputed from the numbers, and the formulas of the monitors judge the
+run.
 
 Source: Biere et al., Bounded model checking, Advances in Computers 58 (2003), for the lasso.
 """
@@ -30,25 +30,25 @@ from fretc.analysis.games.replay import ROUNDS, kept
 from fretish.bindings.declarations import Role
 
 LONGEST = 40
-"""Ticks of a run that is looked for."""
+"""Maximum number of ticks of a lasso."""
 _PATIENCE = 5_000
 """Milliseconds of z3 for each length."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lasso:
-    """A run that keeps all; the tick to which its last one leads back for ever."""
+    """A run that satisfies all requirements, and the tick at which its repeated part begins."""
 
     numbers: tuple[Mapping[str, Term], ...]
-    """Of each tick the value of each variable."""
+    """The value of each variable, for each tick."""
     others: tuple[Mapping[int, bool], ...]
-    """Of each tick the bits of an alphabet that are about no number."""
+    """The bits of an alphabet that are not about numbers, for each tick."""
     loop: int
 
 
 @dataclass(frozen=True, slots=True)
 class Impossible:
-    """No run keeps all for so many ticks."""
+    """No run of so many ticks satisfies all requirements."""
 
     ticks: int
 
@@ -60,20 +60,20 @@ def lasso(
     *,
     as_fret: bool = False,
 ) -> Lasso | Impossible | None:
-    """A run that keeps all requirements for ever, or that there is none; None: not known.
+    """An endless run that satisfies all requirements, or proof that there is none; None: unknown.
 
     Args:
-        requirements: the requirements; each has a counter, and letters that are certain.
-        roles: of their variables; none is an input.
-        budget: for the search.
-        as_fret: whether nothing may be owed at the end of any tick.
+        requirements: requirements with counters and certain valuations.
+        roles: roles of their variables, none of them an input.
+        budget: time limit for the search.
+        as_fret: whether no obligation may be open at the end of any tick.
     """
     fresh = numbers()
     cells = Cells(requirements, roles, fresh, Role.OUTPUT, budget)
     if not cells.numbers.is_of_moments:
         return None
     counters = arena(requirements, (), cells, fresh, as_fret=as_fret).counters
-    waiting = {each.id for each in counters if each.fair is not None}
+    waiting = {counter.id for counter in counters if counter.fair is not None}
     search = _Search(cells, counters)
     for length in range(1, LONGEST + 1):
         if budget.spent > budget.seconds / 2:
@@ -89,7 +89,7 @@ def lasso(
 
 
 class _Search:
-    """Longer and longer runs, and whether they come back to where they were."""
+    """Search for runs of increasing length that return to an earlier state."""
 
     def __init__(self, cells: Cells, counters: Sequence[Counter]) -> None:
         self._atoms, self._formulas = cells.numbers, cells.formulas
@@ -106,7 +106,7 @@ class _Search:
         self._solver.add([z3.Not(_bit(number, 0)) for number in self._steps])
 
     def next(self) -> Lasso | Impossible | None:
-        """A run of one tick more, if it comes back; or that there is none of this length."""
+        """A lasso with one more tick, or proof that there is none of this length; None: neither."""
         self._solver.add(list(self._tick(self._length)))
         self._length += 1
         if self._solver.check() == z3.unsat:
@@ -121,7 +121,7 @@ class _Search:
         return found
 
     def _tick(self, tick: int) -> Iterator[Term]:
-        """What holds at a tick: numbers and letters agree, and no requirement is broken."""
+        """Constraints of a tick: numbers and valuation agree, and no requirement is violated."""
         known: dict[Function, Term] = {}
         for name in self._atoms.variables:
             if name not in self._atoms.before:
@@ -134,7 +134,7 @@ class _Search:
             yield _bit(number, tick + 1) == _term(step, tick, known)
 
     def _comes_back(self, tick: int) -> Iterator[Term]:
-        """The end is where a tick was: in state, and in all that is known of the tick before."""
+        """Constraint: the end equals an earlier tick in state and in stored numbers."""
         for number in self._steps:
             yield _bit(number, self._length) == _bit(number, tick)
         for name in self._atoms.before:
@@ -179,7 +179,7 @@ def _at(atoms: Atoms, formula: Term, tick: int) -> Term:
 
 
 def _term(function: Function, tick: int, known: dict[Function, Term]) -> Term:
-    """A function of bits as a formula of z3; `known` has those of the tick."""
+    """A function of bits as a z3 formula; `known` has the bits of the tick."""
     known |= {bdd.true(): z3.BoolVal(True), bdd.false(): z3.BoolVal(False)}
     for part in bdd.nodes([function]):
         if part not in known:
@@ -192,7 +192,7 @@ def _term(function: Function, tick: int, known: dict[Function, Term]) -> Term:
 
 
 def _letters(cells: Cells, found: Lasso) -> tuple[Mapping[int, bool], ...]:
-    """The letters of a run with its loop read several times, from its numbers alone."""
+    """Valuations of a run with its loop repeated, computed from its numbers alone."""
     atoms = cells.numbers
     length = len(found.numbers)
     again = [*range(found.loop, length)] * (ROUNDS - 1)
@@ -212,7 +212,7 @@ def _letters(cells: Cells, found: Lasso) -> tuple[Mapping[int, bool], ...]:
 def _before(
     atoms: Atoms, now: Mapping[str, Term], last: Mapping[str, Term] | None
 ) -> Mapping[str, Term]:
-    """The numbers of the tick before."""
+    """Numbers of the previous tick."""
     if last is not None:
         return {name: last[before.of] for name, before in atoms.before.items()}
     found: dict[str, Term] = {}

@@ -1,7 +1,7 @@
-"""Plays judged once more, by the formulas that monitors are made of.
+"""Check of game traces by the formulas of the monitors.
 
-Nothing of the game is believed here but the letters of a play: a finding is shown only where the
-monitors of its requirements find it, too.
+Only the valuations of a trace are taken from the game: a finding is shown only if the monitors of
+its requirements confirm it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from fretc.analysis.games.game import Letter
 from fretc.analysis.games.game_traces import GameTrace, Run
 
 ROUNDS = 3
-"""How often a loop is read: a demand that stays open that long stays open."""
+"""Number of repetitions of a loop; an obligation that stays open for all of them stays open."""
 
 
 def columns(alphabet: Alphabet, runs: Sequence[Run], atoms: Iterable[str]) -> dict[str, int]:
@@ -33,7 +33,7 @@ def columns(alphabet: Alphabet, runs: Sequence[Run], atoms: Iterable[str]) -> di
 
 
 def remembering(alphabet: Alphabet, runs: Iterable[Run]) -> Iterator[Run]:
-    """Letters from the first tick on, each with what is remembered before it."""
+    """Valuations from the first tick on, each with the stored facts before it."""
     memory = alphabet.memory()
     if memory is None:
         yield from runs
@@ -45,7 +45,7 @@ def remembering(alphabet: Alphabet, runs: Iterable[Run]) -> Iterator[Run]:
         while left:
             known = {**letter, **state}
             after = transition.next(bdd.point(known))
-            ticks = left if after == state else 1  # nothing new is remembered of the others
+            ticks = left if after == state else 1  # Other bits of memory do not change.
             yield known, ticks
             state, left = after, left - ticks
 
@@ -57,13 +57,13 @@ def broken(
     *,
     as_fret: bool = False,
 ) -> tuple[str, ...]:
-    """The requirements that the play breaks at its last tick, or never meets in its loop.
+    """The requirements that the trace violates at its last tick, or never meets in its loop.
 
     Args:
-        requirements: those of a conflict.
-        alphabet: of the letters.
-        play: up to the first breach, or an endless one.
-        as_fret: whether nothing may be owed at the end of any tick.
+        requirements: requirements of a conflict.
+        alphabet: alphabet of the valuations.
+        play: trace up to the first violation, or endless.
+        as_fret: whether no obligation may be open at the end of any tick.
     """
     runs = play.repeated(ROUNDS)
     return tuple(
@@ -99,16 +99,16 @@ def kept(
     *,
     as_fret: bool = False,
 ) -> bool:
-    """Whether a run breaks none of the requirements, and leaves none unmet in its last ticks.
+    """Whether a run violates no requirement, and leaves none unmet in its last ticks.
 
     Args:
-        requirements: all that are to be kept.
-        alphabet: of the letters.
-        letters: with the loop of the run, several times.
-        tail: how many ticks the loop has.
-        waiting: ids of those whose demands may not stay open for ever; `finally` on a run without
-            an end is met.
-        as_fret: whether nothing may be owed at the end of any tick.
+        requirements: all requirements to satisfy.
+        alphabet: alphabet of the valuations.
+        letters: valuations, with the loop of the run repeated.
+        tail: number of ticks of the loop.
+        waiting: ids of requirements whose obligations may not stay open for ever; `finally` on an
+            endless run is met.
+        as_fret: whether no obligation may be open at the end of any tick.
     """
     end = ((1 << tail) - 1) << len(letters) - tail
     for requirement in requirements:
@@ -132,12 +132,12 @@ def _watched(
 def first_breaches(
     requirements: Sequence[FormalizedRequirement], known: Mapping[str, int], ticks: int
 ) -> dict[str, int | None]:
-    """For each requirement the tick at which it is broken; None: it is not.
+    """The tick at which each requirement is first violated; None: it is not.
 
     Args:
-        requirements: of which all atoms are known.
+        requirements: requirements whose atoms are all known.
         known: each atom over time.
-        ticks: the length of the run.
+        ticks: length of the run.
     """
     found: dict[str, int | None] = {}
     for requirement in requirements:

@@ -1,7 +1,7 @@
-"""Runs that keep requirements, for any choices: reachability, and what can last for ever.
+"""Runs that satisfy requirements, for any choices: reachability and endless runs.
 
 Source: Emerson, Lei, Efficient model checking in fragments of the propositional mu-calculus, LICS
-1986 (runs that are fair).
+1986 (fair runs).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from fretc.analysis.games.squaring import IterativeSquaring, Relation
 
 
 class Runs:
-    """The runs that keep some counters; others may be watched along with them."""
+    """Runs that satisfy some counters; other counters may be observed along with them."""
 
     def __init__(
         self,
@@ -32,11 +32,11 @@ class Runs:
         """The runs.
 
         Args:
-            alphabet: of all counters.
-            kept: by the runs.
-            budget: for the fixpoints.
-            watched: others.
-            certain: whether the runs have letters only that there are for certain.
+            alphabet: alphabet of all counters.
+            kept: counters that the runs satisfy.
+            budget: time limit for the fixpoints.
+            watched: other counters to observe.
+            certain: whether only certain valuations are used.
         """
         self._kept, self._budget = kept, budget
         self._counters = (*kept, *watched)
@@ -47,21 +47,21 @@ class Runs:
             self.safe = self.safe & counter.safe
         self._fair = [each.fair for each in kept if each.fair is not None]
 
-    def going_on(self, states: Function) -> Function:
-        """Ticks that break nothing and lead to one of the states."""
+    def safe_transitions(self, states: Function) -> Function:
+        """Ticks without a violation that lead to one of the states."""
         return self.safe & self.transition.moved(states)
 
     def _paths(self, through: Function) -> Relation:
-        """The steps of runs that break nothing, from such states."""
+        """Relation of ticks without a violation, from these states."""
         steps = self.transition.relation(self.safe & through, self._letters, bdd.true())
         return Relation(self.transition.bits, steps, self._budget)
 
-    def preceding(self, states: Function) -> Function:
-        """The states from which a tick that breaks nothing leads to one of these."""
+    def pre_image(self, states: Function) -> Function:
+        """States with a tick without a violation that leads to one of these."""
         return bdd.and_exists(self.safe, self.transition.moved(states), self._letters)
 
     def lasting(self, within: Function | None = None) -> Function:
-        """The states from which all that is kept can be kept for ever.
+        """States from which an endless run satisfies all counters.
 
         Args:
             within: states that such a run never leaves; None: all.
@@ -72,28 +72,28 @@ class Runs:
             if leaps.is_due():
                 with leaps.trial():
                     states = states & self._paths(states).lasting()
-            left = states & self.preceding(states)
+            left = states & self.pre_image(states)
             for fair in self._fair:
-                left = left & self._leading(fair & left, left)
+                left = left & self._eu_fixpoint(fair & left, left)
             if left == states:
                 return states
             states = left
 
-    def _leading(self, target: Function, through: Function) -> Function:
-        """The states from which a run comes to a target, and nowhere but `through` before it."""
+    def _eu_fixpoint(self, target: Function, through: Function) -> Function:
+        """States with a run to the target that stays in `through` before it."""
         found, leaps = bdd.false(), IterativeSquaring(self._counters)
         while True:
             self._budget.check()
             if leaps.is_due():
                 with leaps.trial():
                     found = found | (through & self._paths(through).reaching(found))
-            more = found | (through & self.preceding(target | found))
+            more = found | (through & self.pre_image(target | found))
             if more == found:
                 return found
             found = more
 
     def is_possible(self) -> bool:
-        """Whether there is a run that keeps all, for ever; often one that nothing triggers."""
+        """Whether an endless run satisfies all counters; tries a run without triggers first."""
         idle = bdd.true()
         for counter in self._kept:
             idle = idle & counter.idle
@@ -102,11 +102,11 @@ class Runs:
         return quiet or bool((initial & self.lasting()) != bdd.false())
 
     def can_reach(self, ticks: Function, lasting: Function) -> bool:
-        """Whether a run that can be kept for ever has such a tick.
+        """Whether an endless satisfying run has such a tick.
 
         Args:
-            ticks: over a state and a letter.
-            lasting: of these runs.
+            ticks: ticks over a state and a valuation.
+            lasting: states of these runs.
         """
         initial, moved = self.transition.initial, self.transition.moved
         found = bdd.and_exists(self.safe & ticks, moved(lasting), self._letters)
@@ -118,17 +118,19 @@ class Runs:
                     found = self._paths(bdd.true()).reaching(found)
             if (initial & found) != bdd.false():
                 return True
-            more = found | self.preceding(found)  # what leads to such a state can last, too
+            more = found | self.pre_image(
+                found
+            )  # States before such a state are also on an endless run.
             if more == found:
                 return False
             found = more
 
     def can_break(self, counter: Counter, lasting: Function) -> bool:
-        """Whether a run that can be kept for ever breaks a counter that is watched, or fails it.
+        """Whether an endless satisfying run violates an observed counter.
 
         Args:
-            counter: one of those that are watched.
-            lasting: of these runs.
+            counter: one of the observed counters.
+            lasting: states of these runs.
         """
         if self.can_reach(-counter.safe, lasting):
             return True
@@ -138,23 +140,23 @@ class Runs:
         return self.can_reach(self.transition.moved(starving), lasting)
 
     def path(self, goal: Function, through: Function) -> tuple[dict[int, bool], ...] | None:
-        """The letters of a shortest run into a goal; None: there is none.
+        """Valuations of a shortest run into a goal; None: there is none.
 
         Args:
-            goal: states.
-            through: the only states, those of the goal among them, that such a run may have.
+            goal: target states.
+            through: all states that such a run may have, including those of the goal.
         """
         levels = [goal]
         while (self.transition.initial & levels[-1]) == bdd.false():
             self._budget.check()
-            more = levels[-1] | (through & self.preceding(levels[-1]))
+            more = levels[-1] | (through & self.pre_image(levels[-1]))
             if more == levels[-1]:
                 return None
             levels.append(more)
         return tuple(self._descent(levels))
 
     def _descent(self, levels: Sequence[Function]) -> Iterator[dict[int, bool]]:
-        """Letters that lead from the initial state down from level to level."""
+        """Valuations that lead from the initial state down from level to level."""
         state = self.transition.start
         for level in reversed(levels[:-1]):
             known = bdd.point(state)

@@ -1,7 +1,7 @@
-"""Where long paths of a relation lead, without following them tick by tick.
+"""Iterative squaring: long paths of a relation, without single ticks.
 
-A relation that is composed with itself is about twice as many ticks: a million ticks are twenty
-such steps. That pays where counts go on by themselves, which keeps the diagrams small.
+The composition of a relation with itself covers twice as many ticks: a million ticks are twenty
+compositions. This pays if counts run by themselves, which keeps the diagrams small.
 
 Source: Burch, Clarke, McMillan, Dill, Hwang, Symbolic model checking: 10^20 states and beyond,
 Information and Computation 98 (1992), iterative squaring.
@@ -21,7 +21,7 @@ from fretc.analysis.arena.memory import Bit, Counter
 from fretc.analysis.arena.transition import State
 
 MOST_NODES = 10_000
-"""Of a relation; larger ones take longer than the ticks that they stand for."""
+"""Maximum number of nodes of a relation; larger ones cost more than single ticks."""
 
 
 class TooLargeError(Exception):
@@ -29,23 +29,23 @@ class TooLargeError(Exception):
 
 
 _PATIENCE = 16
-"""Ticks that are looked at one by one, before the first leap over many."""
+"""Number of single ticks before the first squaring."""
 
 
 class IterativeSquaring:
-    """When many ticks are looked at in one, which takes as long as some hundred single ones.
+    """Schedule of squarings within a fixpoint; one costs as much as some hundred ticks.
 
-    Each leap is a patience later than the one before it: a fixpoint that is near is not held up,
-    and one that takes n ticks has no more than the root of n leaps.
+    Each squaring waits longer than the one before: a short fixpoint is not delayed, and one of n
+    ticks has at most the root of n squarings.
     """
 
     def __init__(self, counters: Iterable[Counter]) -> None:
-        """Of a question about such counters."""
+        """The schedule for a question about such counters."""
         self._ticks = 0
         self._wait = _PATIENCE if _are_side_by_side(counters) else None
 
     def is_due(self) -> bool:
-        """After each tick that is looked at: whether a leap comes next."""
+        """Whether to try a squaring after this tick."""
         self._ticks += 1
         if self._wait is None or self._ticks < self._wait:
             return False
@@ -54,7 +54,7 @@ class IterativeSquaring:
 
     @contextmanager
     def trial(self) -> Iterator[None]:
-        """A leap, which finds nothing where a relation is too large; then it was the last one."""
+        """Try a squaring; if a relation is too large, there is no result and no later try."""
         try:
             yield
         except TooLargeError:
@@ -62,9 +62,9 @@ class IterativeSquaring:
 
 
 def _are_side_by_side(counters: Iterable[Counter]) -> bool:
-    """Whether no long count stands above another one in the order of variables.
+    """Whether the bits of long counts are interleaved in the variable order.
 
-    Sums of such counts have no small diagrams.
+    Sums of counts that are not interleaved have no small diagrams.
     """
     words = [[bit.now for bit in word] for each in counters for word in each.words]
     spans = sorted((min(word), max(word)) for word in words if len(word) >= _LONG)
@@ -72,22 +72,22 @@ def _are_side_by_side(counters: Iterable[Counter]) -> bool:
 
 
 _LONG = 6
-"""Bits of a count that is not small."""
+"""Number of bits of a long count."""
 
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """States and those that come after them, over the bits `now` and `after`."""
+    """States and next states, over the bits `now` and `after`."""
 
     bits: tuple[Bit, ...]
     function: Function
     budget: Budget
 
     def lasting(self) -> Function:
-        """The states from which a path never ends.
+        """States from which a path never ends.
 
         Raises:
-            TooLargeError: the diagrams grow.
+            TooLargeError: the diagrams grow too large.
             OutOfTimeError: it takes too long.
         """
         relation, after = self.function, bdd.cube(bit.after for bit in self.bits)
@@ -95,15 +95,15 @@ class Relation:
         while True:
             relation = self._squared(relation)
             left = bdd.exists(relation, after)
-            if left == states:  # what has a path of n ticks has one of 2n
+            if left == states:  # A state with a path of n ticks within the set has one of 2n ticks.
                 return states
             states = left
 
     def reaching(self, goal: Function) -> Function:
-        """The states from which a path leads into the goal, those of the goal among them.
+        """States with a path into the goal, including those of the goal.
 
         Raises:
-            TooLargeError: the diagrams grow.
+            TooLargeError: the diagrams grow too large.
             OutOfTimeError: it takes too long.
         """
         after = bdd.cube(bit.after for bit in self.bits)
@@ -115,12 +115,12 @@ class Relation:
             relation, found = self._squared(relation), more
 
     def longest(self, state: State) -> tuple[int, State]:
-        """How many ticks the path from a state has, and where it ends.
+        """Number of ticks of the path from a state, and its end.
 
-        The relation is a function, and the path does end.
+        The relation must be a function, and the path must end.
 
         Raises:
-            TooLargeError: the diagrams grow.
+            TooLargeError: the diagrams grow too large.
             OutOfTimeError: it takes too long.
         """
         powers = [self.function]
@@ -136,7 +136,7 @@ class Relation:
         return ticks, state
 
     def _squared(self, relation: Function) -> Function:
-        """Two steps of it in one."""
+        """The relation composed with itself."""
         self.budget.check()
         if bdd.size(relation) > MOST_NODES:
             raise TooLargeError

@@ -1,7 +1,7 @@
-"""All minimal conflicts at once, of requirements that remember nothing.
+"""All minimal conflicts at once, for requirements without memory.
 
-Each requirement gets a switch, which turns it off. One tick of the game of all of them then says
-for which switches the system wins: what hundreds of games would say one after the other.
+Each requirement gets a switch, which turns it off. One tick of the game of all requirements then
+gives the switch settings for which the system wins, in place of hundreds of games.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from fretc.analysis.games.cores import Members
 from fretc.analysis.games.game import Game
 
 MOST_NODES = 100_000
-"""Of the diagram of requirements and switches; one that is larger is not worth its time."""
+"""Maximum number of nodes of the diagram of requirements and switches."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,12 +25,12 @@ class Switched:
     """Requirements with switches."""
 
     switches: tuple[int, ...]
-    """One variable for each requirement."""
+    """The switch variable of each requirement."""
     lost: Function
-    """The switches that are on where the environment wins."""
+    """Switch settings for which the environment wins."""
 
     def cores(self, budget: Budget) -> Iterator[Members]:
-        """Each minimal conflict: a witness that prefers `off` has no other below it.
+        """Each minimal conflict; minimal settings of the switches are enumerated.
 
         Raises:
             OutOfTimeError: there are too many.
@@ -44,7 +44,7 @@ class Switched:
 
 
 def switched(game: Game, fresh: Numbers) -> Switched | None:
-    """The requirements of a game with switches; None: they remember something, or are too many."""
+    """The requirements of a game with switches; None: they have memory, or are too many."""
     if not game.is_memoryless:
         return None
     safe, switches = game.reachable, [next(fresh) for _ in game.counters]

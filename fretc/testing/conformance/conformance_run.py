@@ -1,4 +1,4 @@
-"""A program under test, run after run: towards each situation of each requirement."""
+"""Conformance test of a program: a run towards each situation of each requirement."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ from fretc.testing.suite import Polarity, Repeat
 from fretish.printer import sentence as printed
 
 _ROAMING = 24
-"""Runs with any inputs, after those with an aim: faults may lie between two requirements."""
+"""Number of random runs after the directed ones, to find faults between two requirements."""
 _CHANGES = (0.5, 0.2, 0.05)
-"""How likely an input changes at a tick of these, in turn."""
+"""Probabilities that an input changes at a tick, used in turn."""
 _PATIENCE, _EXTRA = 2, 8
-"""A run may be so many times as long as the shortest way to its aim, and so many ticks longer."""
+"""Maximum length of a run: a multiple of the shortest way to its goal, and further ticks."""
 
 
 class ConformanceRun:
-    """All runs of one program, and what was seen so far."""
+    """All runs of one program, and the results so far."""
 
     def __init__(
         self,
@@ -41,13 +41,13 @@ class ConformanceRun:
         roles: Roles,
         seconds: float,
     ) -> None:
-        """Before the first run.
+        """The test before the first run.
 
         Args:
             requirements: the requirements.
-            assumptions: what the tester keeps.
-            roles: of all their variables.
-            seconds: of a processor, for the strategy towards each situation.
+            assumptions: assumptions that the tester satisfies.
+            roles: roles of all their variables.
+            seconds: CPU seconds for the strategy towards each situation.
 
         Raises:
             UnsupportedError: the program cannot be given inputs.
@@ -76,15 +76,15 @@ class ConformanceRun:
         self._is_whole = False
 
     def run(self, start: Start, progress: Callable[[str], None]) -> None:
-        """All of them.
+        """Run all tests.
 
         Args:
-            start: the program.
-            progress: is called with each aim before it is gone for.
+            start: starts the program.
+            progress: called with the name of each goal before its runs.
 
         Raises:
             UnsupportedError: no value is known for an input.
-            ProgramError: the program does not keep to the protocol.
+            ProgramError: the program violates the protocol.
         """
         driver = Driver(self._fields, self.oracle, start)
         try:
@@ -99,7 +99,7 @@ class ConformanceRun:
             self._runs, self._ticks = driver.runs, driver.ticks
 
     def _go_for(self, aim: TargetState, field: RequirementGroup, driver: Driver) -> None:
-        """Without any needless change of an input, and with any inputs."""
+        """Runs towards a goal: one without needless changes of inputs, and random ones."""
         try:
             plan = field.plan(aim, Budget(self._seconds))
             if plan is None:
@@ -120,17 +120,17 @@ class ConformanceRun:
         )
 
     def _roam(self, driver: Driver, progress: Callable[[str], None]) -> None:
-        """As long as there is a requirement of which no violation is known."""
+        """Random runs while a requirement has no known violation."""
         for number in range(_ROAMING):
             if len(self._failures) < len(self._rules):
-                progress(f"any inputs: run {number + 1} of {_ROAMING}")
+                progress(f"random inputs: run {number + 1} of {_ROAMING}")
                 change = _CHANGES[number % len(_CHANGES)]
                 ticks = _PATIENCE * self._longest + _EXTRA
                 run = driver.anywhere(Random(number), change, ticks)
                 self._look(run, None, driver)
 
     def _choices(self, aim: TargetState) -> Iterator[Random | None]:
-        """By which inputs are chosen that do not matter, run by run."""
+        """Choices of irrelevant inputs, run by run."""
         if aim.polarity is Polarity.KEPT:
             yield None
         yield Random(aim.name)
@@ -152,13 +152,13 @@ class ConformanceRun:
         return run
 
     def _look(self, run: Run, aim: TargetState | None, driver: Driver) -> None:
-        """What a run shows of all requirements."""
+        """Record what a run shows about all requirements."""
         self._triggered |= run.triggered
         for id in run.broken:
             if id not in self._failures:
                 self._failures[id] = self._failure(aim, self._rules[id], run, driver)
-        for each in self._fields:
-            for other in each.aims:
+        for field in self._fields:
+            for other in field.aims:
                 if _shows(run, other, other.shown[0]):
                     self._outcomes[other] = Outcome.REACHED, ""
 
@@ -180,7 +180,7 @@ class ConformanceRun:
         )
 
     def findings(self, command: Sequence[str]) -> Conformance:
-        """What was seen so far."""
+        """Results so far."""
         return Conformance(
             schema=SCHEMA,
             fretc=__version__,
@@ -208,7 +208,7 @@ class ConformanceRun:
 
 
 def _shows(run: Run, aim: TargetState, shown: Formula) -> bool:
-    """Whether a run that keeps a requirement shows a situation of it."""
+    """Whether a run that satisfies a requirement shows a situation of it."""
     if aim.polarity is not Polarity.KEPT or aim.requirement.id in run.broken or not run.is_known:
         return False
     return bool(run.rows and evaluate(shown, run.columns(), len(run.rows)))

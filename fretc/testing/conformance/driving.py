@@ -1,4 +1,4 @@
-"""One run of the program: towards an aim, or with inputs that are known beforehand."""
+"""One run of the program: towards a goal, or with given inputs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fretc.testing.conformance.requirement_groups import Plan, RequirementGroup
 from fretc.testing.search import Letter
 
 Start = Callable[[], Program]
-"""The program, from its start on."""
+"""Function that starts the program."""
 
 
 class Driver:
@@ -24,20 +24,20 @@ class Driver:
     def __init__(self, fields: Sequence[RequirementGroup], oracle: Oracle, start: Start) -> None:
         self._fields, self._oracle, self._start = fields, oracle, start
         self.runs = self.ticks = 0
-        """How many there were of both."""
+        """Numbers of runs and of ticks so far."""
 
     def towards(self, field: RequirementGroup, plan: Plan, choose: Random | None, most: int) -> Run:
-        """A run with inputs that lead to an aim.
+        """A run with inputs that lead to a goal.
 
         Args:
-            field: of the aim.
-            plan: how to come to it.
-            choose: by which inputs that do not matter are chosen; None: they stay as they were.
-            most: ticks, where the program does not help.
+            field: requirement group of the goal.
+            plan: way to the goal.
+            choose: random choice of irrelevant inputs; None: they keep their values.
+            most: maximum number of ticks if the program does not cooperate.
 
         Raises:
             UnsupportedError: no value is known for an input.
-            ProgramError: the program does not keep to the protocol.
+            ProgramError: the program violates the protocol.
             OutOfTimeError: it takes too long to find the inputs.
         """
         sides = [_Side(each, choose) for each in self._fields]
@@ -53,17 +53,17 @@ class Driver:
         return self._run(inputs, goes_on)
 
     def anywhere(self, choose: Random, change: float, most: int) -> Run:
-        """A run with any inputs that keep the assumptions.
+        """A run with random inputs that satisfy the assumptions.
 
         Args:
-            choose: the inputs.
-            change: how likely each of them changes at a tick.
-            most: ticks.
+            choose: random choice of the inputs.
+            change: probability that an input changes at a tick.
+            most: number of ticks.
 
         Raises:
-            UnsupportedError: as `towards`; ProgramError, too.
+            UnsupportedError: as for `towards`; also ProgramError.
         """
-        sides = [_Side(each, choose, change) for each in self._fields]
+        sides = [_Side(field, choose, change) for field in self._fields]
         return self._run(
             lambda tick: _joined(sides, {}) if tick < most else None,
             lambda truths: all(side.moves(truths) for side in sides),
@@ -73,12 +73,12 @@ class Driver:
         """A run with these inputs, up to the first violation.
 
         Raises:
-            ProgramError: the program does not keep to the protocol.
+            ProgramError: the program violates the protocol.
         """
         return self._run(lambda tick: rows[tick] if tick < len(rows) else None, lambda truths: True)
 
     def _run(self, inputs: Callable[[int], Tick | None], goes_on: Callable[[Truths], bool]) -> Run:
-        """One run, as long as there are inputs, it goes on, and nothing is violated."""
+        """A run that ends with its inputs, with the program, or with a violation."""
         oracle = self._oracle
         oracle.begin()
         rows: list[Tick] = []
@@ -101,21 +101,21 @@ class Driver:
 
 
 class _Side:
-    """Where a run is in one field."""
+    """State of a run in one requirement group."""
 
     def __init__(self, field: RequirementGroup, choose: Random | None, change: float = 0.5) -> None:
         self.field, self._choose, self._change = field, choose, change
         self.state: State = field.transition.start
         self.last: Letter = {}
-        """The last tick: the state before it, and what was chosen by both."""
+        """The last tick: the state before it, and the choices of both sides."""
         self._inputs: Letter = dict.fromkeys(field.alphabet.inputs, False)
 
     def options(self) -> Function:
-        """All inputs that keep the assumptions."""
+        """All inputs that satisfy the assumptions."""
         return bdd.at(self.field.allowed, bdd.point(self.state))
 
     def values(self, options: Function) -> Tick | None:
-        """What is given to the program; None: there are no such inputs."""
+        """Input values for the program; None: there are no such inputs."""
         if options == bdd.false():
             return None
         wanted = self._inputs
@@ -126,7 +126,7 @@ class _Side:
         return self.field.values(self._inputs)
 
     def moves(self, truths: Truths) -> bool:
-        """Whether the state after the tick is known; it is the state then."""
+        """Whether the state after the tick is known; it is stored."""
         letter = self.field.letter(self._inputs, truths)
         if letter is None:
             return False
@@ -136,7 +136,7 @@ class _Side:
 
 
 def _joined(sides: Sequence[_Side], options: Mapping[_Side, Function]) -> Tick | None:
-    """What is given to the program, from the options of each side; None: one has none."""
+    """Input values for the program, from the options of each group; None: one has none."""
     found: Tick = {}
     for side in sides:
         values = side.values(options.get(side, side.options()))

@@ -1,4 +1,4 @@
-"""What came of a program under test."""
+"""Results of a conformance test, as they are written and printed."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ SCHEMA: Final = "fretc-conformance-1"
 
 
 class Outcome(StrEnum):
-    """What came of an aim."""
+    """Result of the runs towards a goal."""
 
     REACHED = "reached"
     UP_TO_PROGRAM = "up to the program"
-    """No inputs force it, and the program did not bring it about."""
+    """No inputs force the situation, and the program did not cause it."""
     NOT_REACHED = "not reached"
-    """Inputs can force it, and yet it did not come."""
+    """Inputs can force the situation, but it did not occur."""
     NOT_SEARCHED = "not searched"
 
 
 class Situated(Record, frozen=True):
-    """A situation that the program was led to, or was to be led to."""
+    """A situation that was a goal of runs."""
 
     requirement: Name
     situation: Name
@@ -38,41 +38,45 @@ class Failure(Record, frozen=True):
     requirement: Name
     sentence: Name
     because: Annotated[str, about("the reason, in words")]
-    rows: Annotated[tuple[Repeat, ...], about("inputs and outputs; the last tick violates it")]
-    situation: Annotated[str, about("what the run was to show; empty: its inputs had no aim")]
-    ticks: Annotated[Ordinal, about("of the run on which it was found")]
-    tries: Annotated[Count, about("runs by which that one was made shorter")]
+    rows: Annotated[
+        tuple[Repeat, ...], about("inputs and outputs; the last tick violates the requirement")
+    ]
+    situation: Annotated[str, about("the goal of the run; empty: its inputs were random")]
+    ticks: Annotated[Ordinal, about("length of the run in which the failure was found, in ticks")]
+    tries: Annotated[Count, about("number of runs that were used to shorten it")]
     again: Annotated[bool, about("whether the program did the same with the same inputs")]
 
 
 class Conformance(Record, frozen=True):
-    """All that was seen of a program."""
+    """All results about a program."""
 
     schema: Literal["fretc-conformance-1"]
     fretc: Annotated[str, about("the version of fretc")]
     command: tuple[str, ...]
     requirements: tuple[Name, ...]
-    runs: Annotated[Count, about("of the program, those that made a failure shorter among them")]
-    ticks: Annotated[Count, about("of all runs together")]
+    runs: Annotated[
+        Count, about("number of runs of the program, including those that shortened a failure")
+    ]
+    ticks: Annotated[Count, about("ticks of all runs together")]
     situations: tuple[Situated, ...]
     failures: tuple[Failure, ...]
-    untried: Annotated[tuple[Name, ...], about("requirements of which no run began a demand")]
-    whole: Annotated[bool, about("whether all runs were made; a mistake or Ctrl-C ends them")]
+    untried: Annotated[tuple[Name, ...], about("requirements that no run triggered")]
+    whole: Annotated[bool, about("whether all runs were made; an error or Ctrl-C ends the test")]
     not_judged: Annotated[dict[str, str], about("why a requirement has no monitor, by its id")]
 
     @property
     def is_complete(self) -> bool:
-        """Whether all was searched, all was reached that can be forced, and all was asked for."""
+        """Whether the search is complete and every situation that can be forced was reached."""
         left = (Outcome.NOT_REACHED, Outcome.NOT_SEARCHED)
-        reached = all(each.outcome not in left for each in self.situations)
+        reached = all(situation.outcome not in left for situation in self.situations)
         return self.whole and reached and not self.untried and not self.not_judged
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema of what was seen."""
+    """The JSON Schema of the results."""
     return json_schema(
         Conformance,
         SCHEMA,
-        "A program under test, as `fretc test --against` saw it",
+        "Result of testing a program, as `fretc test --against` writes it",
         "Nothing depends on when it was made.",
     )

@@ -1,4 +1,4 @@
-"""What is said of a run of the program: by the emitted monitor of all requirements."""
+"""Test oracle: the emitted monitor of all requirements evaluates the program's runs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from monitors.loading import load
 Tick = Mapping[str, Cell]
 """The value of each column at one tick."""
 Truths = Mapping[str, bool | None]
-"""Of atoms, at one tick."""
+"""Truth values of atoms at one tick."""
 
 
 class Oracle:
@@ -34,13 +34,13 @@ class Oracle:
         assumptions: Sequence[FormalizedRequirement],
         roles: Roles,
     ) -> None:
-        """Before the first tick.
+        """The monitor before the first tick.
 
         Raises:
-            UnsupportedError: a column belongs neither to the inputs nor to the outputs.
+            UnsupportedError: a column is neither an input nor an output.
         """
         self._rules = [*requirements, *assumptions]
-        self._assumed = {each.id for each in assumptions}
+        self._assumed = {assumption.id for assumption in assumptions}
         self._monitor = load("monitors.py", text(*self._rules))
         self._truths: Callable[..., Sequence[bool | None]] | None
         self._truths = getattr(self._monitor, "truths", None)
@@ -51,20 +51,20 @@ class Oracle:
         )
         for name in columns:
             if name not in roles:
-                raise UnsupportedError(f"`{name}` is no value that a program is given, or gives")
+                raise UnsupportedError(f"`{name}` is neither an input nor an output of a program")
         self._names = tuple(columns)
         self.inputs = tuple(name for name in columns if roles[name] is Role.INPUT)
         self.outputs = {name: own for name, own in columns.items() if roles[name] is Role.OUTPUT}
 
     def begin(self) -> None:
-        """Forget everything."""
+        """Reset the monitor."""
         self._monitor.reset()
 
     def step(self, values: Tick) -> Truths:
-        """The truth of all atoms at the next tick; None: unknown.
+        """Truth values of all atoms at the next tick; None: unknown.
 
         Raises:
-            InputError: a value is of the wrong kind.
+            InputError: a value has a wrong type.
         """
         row: list[Any] = [values[name] for name in self._names]
         try:
@@ -75,36 +75,36 @@ class Oracle:
         return dict(zip(self._monitor.PROPOSITIONS, truths, strict=True))
 
     def broken(self) -> tuple[str, ...]:
-        """The requirements that are violated; none of them where an assumption is."""
+        """The violated requirements; empty if an assumption is violated."""
         said = zip(self._rules, self._monitor.verdicts(), strict=True)
         found = tuple(requirement.id for requirement, verdict in said if verdict == VIOLATED)
         return () if self._assumed.intersection(found) else found
 
     def is_over(self) -> bool:
-        """Whether an assumption is violated: nothing that follows counts."""
+        """Whether an assumption is violated, so that later ticks do not count."""
         said = zip(self._rules, self._monitor.verdicts(), strict=True)
         return any(
             verdict == VIOLATED and requirement.id in self._assumed for requirement, verdict in said
         )
 
     def triggered(self) -> frozenset[str]:
-        """The requirements of which a demand has begun."""
+        """The requirements that were triggered."""
         marks = zip(self._rules, self._monitor.must.marks(), strict=True)
         return frozenset(requirement.id for requirement, mark in marks if mark.last >= 0)
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """What was seen of the program, from its start on."""
+    """Inputs and outputs of the program, from its start on."""
 
     rows: tuple[Tick, ...]
     truths: tuple[Truths, ...]
     broken: tuple[str, ...]
-    """The requirements that its last tick violates; none before it does."""
+    """The requirements that its last tick violates; earlier ticks violate none."""
     triggered: frozenset[str]
 
     def columns(self) -> dict[str, int]:
-        """Each atom over time; what is unknown counts as false."""
+        """Each atom over time; unknown values count as false."""
         found: dict[str, int] = {}
         for tick, truths in enumerate(self.truths):
             for name, truth in truths.items():
@@ -118,7 +118,7 @@ class Run:
 
 
 def reason(requirement: FormalizedRequirement, run: Run) -> str:
-    """Why the run violates the requirement, in words."""
+    """Reason why the run violates the requirement, in words."""
     if not run.is_known:
         return "whatever the unknown values are"
     word = Word((), run.columns(), len(run.rows))

@@ -1,7 +1,7 @@
-"""The program under test: a line of inputs goes in, a line of outputs comes out, tick by tick.
+"""The program under test: one line of inputs and one line of outputs for each tick.
 
-First each side writes a header with the names of its columns. All that the program does is bounded
-here: how long it takes for a line, how long the line is; and it ends when the run does.
+First each side writes a header with the names of its columns. Time and length of each output line
+are limited; the program is ended with the run.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from monitors.kernel.variable_tables import read_variables
 from monitors.kernel.variables import Variable
 
 LONGEST_LINE = 1 << 16
-"""Bytes of a line that is read."""
+"""Maximum length of an output line in bytes."""
 _LAST_WORDS = 2048
-"""Bytes of standard error that are kept."""
+"""Number of bytes of standard error that are kept."""
 _FAREWELL = 1.0
-"""Seconds that it has to end by itself once nothing more comes."""
+"""Seconds in which it must end after its input has ended."""
 
 
 class ProgramError(Exception):
-    """The program does not keep to the protocol."""
+    """The program violates the protocol."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
@@ -50,13 +50,13 @@ class Program:
         outputs: Mapping[str, Variable],
         seconds: float,
     ) -> None:
-        """A run that is yet to begin.
+        """A run that has not started.
 
         Args:
-            command: the program and its arguments; no shell reads them.
-            inputs: the columns that it is given.
-            outputs: the columns that it has to print.
-            seconds: within which each line has to come.
+            command: the program and its arguments, without a shell.
+            inputs: its input columns.
+            outputs: the columns that it must print.
+            seconds: time limit for each line.
         """
         self._command, self._inputs, self._seconds = command, inputs, seconds
         self._rows = read_variables(self._lines(), outputs, f"output of `{command[0]}`")
@@ -77,7 +77,7 @@ class Program:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 bufsize=0,
-                start_new_session=True,  # Ctrl-C is for us alone, and its children end with it
+                start_new_session=True,  # Ctrl-C reaches only fretc, which ends the children.
             )
         except (OSError, ValueError) as error:
             why = getattr(error, "strerror", None) or error
@@ -94,7 +94,7 @@ class Program:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        """End it, and whatever it has started."""
+        """End the program and its child processes."""
         process = self._process
         with suppress(OSError):
             _stream(process.stdin).close()
@@ -133,7 +133,7 @@ class Program:
             raise ProgramError(self._ended()) from None
 
     def _lines(self) -> Iterator[str]:
-        """The lines of its output, each as soon as it is there."""
+        """Lines of its output, each as soon as it is complete."""
         while True:
             due = time.monotonic() + self._seconds
             while b"\n" not in self._buffer:
@@ -150,7 +150,7 @@ class Program:
         """Whether more of its output came in time.
 
         Raises:
-            ProgramError: it has ended, and more is wanted.
+            ProgramError: it has ended too early.
         """
         due = time.monotonic() + seconds
         while ready := self._selector.select(max(0.0, due - time.monotonic())):
@@ -174,8 +174,8 @@ class Program:
         return Diagnostic(
             Code.PROGRAM_LINE,
             visible(f"at tick {self._tick} the program under test printed a wrong line: {why}"),
-            help="it prints one line with the names of its outputs, and then for each line of "
-            "inputs one line of outputs; `docs/test.md` has an example",
+            help="it must print one line with the names of its outputs, and then one line of "
+            "outputs for each line of inputs; `docs/test.md` has an example",
         )
 
     def _late(self) -> Diagnostic:
@@ -184,14 +184,14 @@ class Program:
             Code.PROGRAM_SILENT,
             f"at tick {max(self._tick, 0)} the program under test printed no line within "
             f"{self._seconds:g} s",
-            help="it has to flush each line as it is printed; `--line-time` gives it more time",
+            help="it must flush each line; `--line-time` gives it more time",
         )
 
     def _ended(self) -> Diagnostic:
         """F943."""
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(_FAREWELL)
-        while True:  # what it said last
+        while True:  # The last lines of its standard error.
             ready = [k for k, _ in self._selector.select(0) if k.fileobj is not self._output]
             found = b"".join(os.read(key.fd, _LAST_WORDS) for key in ready)
             if not found:
@@ -200,11 +200,11 @@ class Program:
         status = self._process.returncode
         how = "closed its output" if status is None else _ending(status)
         said = self._errors.decode(errors="backslashreplace").strip().splitlines()
-        last = f"; its last words: {said[-1]}" if said else ""
+        last = f"; its last output: {said[-1]}" if said else ""
         return Diagnostic(
             Code.PROGRAM_ENDED,
             visible(f"at tick {max(self._tick, 0)} the program under test {how}{last}"),
-            help="it has to go on until its standard input ends",
+            help="it must run until its standard input ends",
         )
 
 

@@ -1,10 +1,10 @@
 """The game of a tester against the program under test: how inputs lead to a situation.
 
-From some states the tester can see to it that the situation comes about, whatever a program does
-that keeps its requirements: a strategy. From others it needs the program's help, and takes the
-inputs of a shortest run. Sources: David, Larsen, Li, Nielsen, A game-theoretic approach to
-real-time system testing, DATE 2008 (strategies); Cooperative testing of timed systems, ENTCS 220
-(2008) (help, where there is no strategy).
+From some states the tester can force the situation against any program that satisfies its
+requirements: a strategy. From others it needs the program's cooperation, and takes the inputs of a
+shortest run. Sources: David, Larsen, Li, Nielsen, A game-theoretic approach to real-time system
+testing, DATE 2008 (strategies); Cooperative testing of timed systems, ENTCS 220 (2008) (cooperation
+without a strategy).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from fretc.analysis.arena.transition import State, Transition
 from fretc.analysis.arena.variables import UnsupportedError, numbers
 from fretc.analysis.games.game import upheld
 from fretc.analysis.realizability_problem import alphabet_of
-from fretc.testing.bench import demands
+from fretc.testing.requirement_model import demands
 from fretc.testing.search import Letter, nearest
 from fretc.testing.suite import Polarity
 from fretish.bindings.declarations import Role
@@ -37,25 +37,25 @@ from fretish.bindings.declarations import Role
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TargetState:
-    """What a run is to lead to."""
+    """Goal of a run."""
 
     requirement: FormalizedRequirement
     situation: Situation
     polarity: Polarity
     shown: tuple[f.Formula, ...]
-    """Of the past: a run has come to the aim where this holds, as far as the program keeps all; the
-    next one is enough where no run comes to the one before."""
+    """Formulas of the past: a run has reached the goal if the first one holds; the next one counts
+    if no run can satisfy the one before."""
     goals: tuple[Function, ...]
-    """The same over a state and a letter: what the tester goes for."""
+    """The formulas over a state and a valuation."""
 
     @property
     def name(self) -> str:
-        """For people, and as a seed."""
+        """Name for people, also used as a random seed."""
         return f"{self.requirement.id} {self.situation.key} {self.polarity}"
 
 
 class RequirementGroup:
-    """Requirements whose variables hang together, and the assumptions about them."""
+    """Requirements that share variables, directly or indirectly, with their assumptions."""
 
     def __init__(
         self,
@@ -64,7 +64,7 @@ class RequirementGroup:
         roles: Roles,
         budget: Budget,
     ) -> None:
-        """The field.
+        """The group.
 
         Raises:
             UnsupportedError: an assumption has no counter, or no values are known for an input.
@@ -76,7 +76,7 @@ class RequirementGroup:
         shared: dict[Function, Bit] = {}
         found: dict[str, Counter] = {}
         self.beyond: dict[str, str] = {}
-        """Why a requirement has no counter, by its id."""
+        """Id of a requirement without a counter → the reason."""
         for each in near_each_other(every):
             try:
                 found[each.id] = counter(each, alphabet, fresh, shared)
@@ -96,7 +96,7 @@ class RequirementGroup:
             for requirement in requirements
             if requirement.id in found
         }
-        given = [found[each.id] for each in assumptions]
+        given = [found[assumption.id] for assumption in assumptions]
         given += [before] if before is not None else []
         self.aims = tuple(aim for requirement in requirements for aim in self._aims(requirement))
         self.transition = Transition([*self._counters.values(), *given, self._remembered()])
@@ -115,7 +115,7 @@ class RequirementGroup:
         return Counter("", bits, steps, yes, None, (), yes, yes)
 
     def _allowed(self) -> Function:
-        """The inputs that keep the assumptions, whatever a program does that keeps its own."""
+        """Inputs that satisfy the assumptions for any program that satisfies its requirements."""
         return self.alphabet.legal & bdd.forall_implies(self._safe, self._kept, self._outputs)
 
     def _aims(self, requirement: FormalizedRequirement) -> Iterator[TargetState]:
@@ -123,7 +123,7 @@ class RequirementGroup:
             return
         for situation in situations(requirement):
             if situation.unknown is not None or situation.place is not None:
-                continue  # a program is given values, and those that a strategy has no say in
+                continue  # Inputs that the strategy ignores need values, too.
             try:
                 yield self._kept_aim(requirement, situation)
                 yield self._broken_aim(requirement, situation)
@@ -131,7 +131,7 @@ class RequirementGroup:
                 self.beyond[f"{requirement.id}: {situation.words}"] = str(error)
 
     def _kept_aim(self, requirement: FormalizedRequirement, situation: Situation) -> TargetState:
-        """The situation, and then, where it can be, a tick at which nothing is open any more."""
+        """The situation, then if possible a tick without an open obligation."""
         if situation.at_end:
             return self._aim(requirement, situation, Polarity.KEPT, situation.formula)
         seen = f.once(situation.formula)
@@ -139,7 +139,7 @@ class RequirementGroup:
         return self._aim(requirement, situation, Polarity.KEPT, done, seen)
 
     def _broken_aim(self, requirement: FormalizedRequirement, situation: Situation) -> TargetState:
-        """The situation, and a tick at which the requirement is broken."""
+        """The situation, and a tick at which the requirement is violated."""
         return self._aim(requirement, situation, Polarity.BROKEN, f.once(situation.formula))
 
     def _aim(
@@ -158,7 +158,7 @@ class RequirementGroup:
     # Plans
 
     def plan(self, aim: TargetState, budget: Budget) -> Plan | None:
-        """How to go for an aim; None: no run that keeps the assumptions comes to it.
+        """Way to a goal; None: no run that satisfies the assumptions reaches it.
 
         Raises:
             OutOfTimeError: it takes too long.
@@ -177,7 +177,7 @@ class RequirementGroup:
         return None
 
     def _reached(self, aim: TargetState) -> Function:
-        """The ticks at which a goal counts: those that break nothing else."""
+        """Ticks of a goal that violate nothing else."""
         if aim.polarity is not Polarity.BROKEN:
             return self._safe
         found = self.alphabet.reachable
@@ -187,28 +187,28 @@ class RequirementGroup:
         return found
 
     def _forced(self, goal: Function, states: Function) -> Function:
-        """The inputs after which the goal is there or the states come, whatever it answers."""
+        """Inputs that force the goal or the states, for all outputs."""
         ends = goal | self.transition.moved(states)
         return self.allowed & bdd.forall_implies(self._safe, ends, self._outputs)
 
     def _helped(self, goal: Function, states: Function) -> Function:
-        """The inputs after which that is so for some answer."""
+        """Inputs that lead to the goal or the states for some outputs."""
         ends = (goal | (self._safe & self.transition.moved(states))) & self._kept
         return self.allowed & bdd.exists(ends & self.alphabet.reachable, self._outputs)
 
     def inputs(self, options: Function, wanted: Letter) -> Letter:
-        """Values of the inputs among the options, as they are wanted where that can be.
+        """Values of the inputs among the options, with preferred values if possible.
 
         Args:
-            options: over inputs; not false.
-            wanted: a value of each of them.
+            options: function over inputs; not false.
+            wanted: a preferred value of each input.
         """
         return nearest(options, {bit: wanted[bit] for bit in self.alphabet.inputs})
 
     # Values
 
     def values(self, inputs: Letter) -> Tick:
-        """The truth of atoms that inputs decide, and numbers that make comparisons so."""
+        """Truth values of input atoms, and numbers that satisfy the comparisons' truth values."""
         known, found = bdd.point(inputs), self.alphabet.values(inputs)
         for name in self.names:
             truth = bdd.at(self.alphabet.atom(name), known)
@@ -217,11 +217,12 @@ class RequirementGroup:
         return found
 
     def letter(self, inputs: Letter, truths: Mapping[str, bool | None]) -> Letter | None:
-        """What a tick was; None: by the analysis no values have such truths.
+        """Valuation of a tick; None: the analysis has no valuation with these truth values.
 
         Args:
-            inputs: what was chosen.
-            truths: of atoms, from the values of both sides; None: unknown, and taken as it fits.
+            inputs: chosen inputs.
+            truths: truth values of atoms, from the values of both sides; None: unknown, and chosen
+                freely.
         """
         here = bdd.point(inputs)
         fits = bdd.at(self.alphabet.reachable, here)
@@ -236,17 +237,17 @@ class RequirementGroup:
 
 
 class Layers:
-    """States from which something is 1, 2, ... ticks away; computed as they are asked for."""
+    """States that are 1, 2, ... ticks away from a target; computed on demand."""
 
     def __init__(
         self, step: Callable[[Function], Function], inputs: Function, budget: Budget
     ) -> None:
-        """None yet.
+        """No layer is computed yet.
 
         Args:
-            step: of states, the inputs at a state that lead to one of these, or to the end.
-            inputs: a cube of them.
-            budget: for all layers.
+            step: for states, the inputs that lead from a state to one of them or to the target.
+            inputs: cube of the inputs.
+            budget: time limit for all layers.
         """
         self._step, self._inputs, self._budget = step, inputs, budget
         self._ways: list[Function] = []
@@ -254,7 +255,7 @@ class Layers:
         self._is_complete = False
 
     def number(self, state: State) -> int | None:
-        """The number of ticks from a state; None: it is in no layer."""
+        """Number of ticks from a state to the target; None: it is in no layer."""
         known = bdd.point(state)
 
         def is_in(number: int) -> bool:
@@ -267,7 +268,7 @@ class Layers:
         return bisect_left(range(len(self._states)), True, key=is_in)
 
     def way(self, number: int, state: State) -> Function:
-        """Inputs at a state, so many ticks away, that lead nearer."""
+        """Inputs that lead nearer, in a state that is so many ticks away."""
         return bdd.at(self._ways[number - 1], bdd.point(state))
 
     def _extend(self) -> None:
@@ -281,23 +282,23 @@ class Layers:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """How to come to an aim."""
+    """Way to a goal."""
 
     forced: Layers
-    """From where the tester can see to it."""
+    """States from which the tester can force the goal."""
     helped: Layers
-    """From where the program can help it to."""
+    """States from which the goal can be reached with the program's cooperation."""
     goal: Function
-    """Over a state and a letter."""
+    """The goal over a state and a valuation."""
     shown: f.Formula
-    """The same of the past, but for what the program has to keep."""
+    """Formula of the past for the goal, without the program's requirements."""
 
     def is_reached(self, tick: Letter) -> bool:
         """Whether a tick, with the state before it, is the goal."""
         return bool(bdd.at(self.goal, bdd.point(tick)) == bdd.true())
 
     def distance(self, state: State) -> tuple[int, bool] | None:
-        """The ticks to go, and whether that can be forced; None: there is no way."""
+        """Remaining ticks, and whether they can be forced; None: there is no way."""
         forced = self.forced.number(state)
         if forced is not None:
             return forced, True
@@ -305,7 +306,7 @@ class Plan:
         return None if helped is None else (helped, False)
 
     def options(self, state: State) -> Function | None:
-        """The inputs that lead nearer; None: there are none."""
+        """Inputs that lead nearer; None: there are none."""
         found = self.distance(state)
         if found is None:
             return None

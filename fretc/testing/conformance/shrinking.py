@@ -1,7 +1,7 @@
-"""A run that shows a violation, made shorter: each try is a run of the program from its start.
+"""Minimization of a failing run; each attempt is a run of the program from its start.
 
-Ticks are left out as long as the same requirement is violated; then each input stays as it was a
-tick before where it can. In the end no single tick can be left out. Source: Zeller, Hildebrandt,
+Ticks are removed as long as the same requirement is violated; then each input keeps its previous
+value where possible. In the end no single tick can be removed. Source: Zeller, Hildebrandt,
 Simplifying and isolating failure-inducing input, TSE 28 (2002).
 """
 
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fretc.testing.conformance.oracle import Run, Tick
 
 MOST = 400
-"""Runs for one failure."""
+"""Maximum number of runs for one failure."""
 Rows = tuple[Tick, ...]
 
 
@@ -22,18 +22,18 @@ class Shrinking:
     """The shortest run so far."""
 
     id: str
-    """The requirement that is violated."""
+    """Id of the violated requirement."""
     inputs: Sequence[str]
     play: Callable[[Sequence[Tick]], Run]
     best: Run
     tries: int = 0
 
     def again(self) -> bool:
-        """Whether the same inputs do the same once more."""
+        """Whether the same inputs give the same outputs again."""
         return self._is_shorter(self.best.rows)
 
     def shrink(self) -> Run:
-        """The shortest run that was found."""
+        """The shortest failing run that was found."""
         self._leave_out_ticks()
         while self.tries < MOST and any(self._is_shorter(rows) for rows in self._calmer()):
             pass
@@ -46,13 +46,13 @@ class Shrinking:
                 size //= 2
 
     def _without(self, size: int) -> Iterator[Rows]:
-        """The run without some ticks in a row, the last ones first."""
+        """The run without some adjacent ticks, the last ones first."""
         rows = self.best.rows
         for start in range(len(rows) - size, -1, -size):
             yield rows[:start] + rows[start + size :]
 
     def _calmer(self) -> Iterator[Rows]:
-        """The run with one input that stays as it was, where it changed."""
+        """The run with one change of an input removed."""
         rows = self.best.rows
         for tick in range(1, len(rows)):
             for name in self.inputs:
@@ -61,7 +61,7 @@ class Shrinking:
                     yield (*rows[:tick], {**rows[tick], name: was}, *rows[tick + 1 :])
 
     def _is_shorter(self, rows: Rows) -> bool:
-        """Whether inputs violate the requirement, too; they are the best then."""
+        """Whether the inputs violate the requirement, too; they are then stored as the best."""
         if not rows or self.tries >= MOST:
             return False
         self.tries += 1

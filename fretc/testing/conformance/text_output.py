@@ -1,4 +1,4 @@
-"""What `fretc test --against` prints: a row for each requirement, and each failure as lanes."""
+"""Text output of `fretc test --against`: a row for each requirement, and each failing run."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from fretish.diagnostics import status_symbols as signs
 
 
 def lines(found: Conformance, roles: Mapping[str, Role]) -> Iterator[Line]:
-    """All that was seen.
+    """All lines of the output.
 
     Args:
-        found: of a program.
-        roles: of its columns.
+        found: results of a program.
+        roles: roles of its columns.
     """
     sign = signs.BAD if found.failures else signs.GOOD if found.is_complete else signs.UNKNOWN
     yield f"{sign.glyph} {_headline(found)}", sign.colour
@@ -39,7 +39,7 @@ def _headline(found: Conformance) -> str:
         broken = listed([each.requirement for each in found.failures])
         return f"{name} violates {broken}: {size}"
     if not found.is_complete:
-        return f"{name} violates nothing in {size}; not all was tested"
+        return f"{name} violates nothing in {size}, but the test is not complete"
     return f"{name} conforms in {size}"
 
 
@@ -51,7 +51,7 @@ def _table(found: Conformance) -> Iterator[Line]:
     broken = {each.requirement for each in found.failures}
     width = max(map(len, found.requirements), default=0)
     for id in found.requirements:
-        own = [each for each in found.situations if each.requirement == id]
+        own = [situation for situation in found.situations if situation.requirement == id]
         counts = {kind: sum(each.outcome is kind for each in own) for kind in Outcome}
         shown = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
         sign = signs.BAD if id in broken else signs.GOOD if found.whole else signs.UNKNOWN
@@ -74,7 +74,7 @@ def _failure(failure: Failure, roles: Mapping[str, Role]) -> Iterator[Line]:
     for row in drawn(shown, roles):
         yield f"    {row}", None
     if not failure.again:
-        yield "  once more with the same inputs, the program did something else", None
+        yield "  repeated with the same inputs, the program gave other outputs", None
     elif ticks < failure.ticks:
         yield (
             f"  found on {_some(failure.ticks, 'tick')}, shortened by {failure.tries} runs",
@@ -83,12 +83,12 @@ def _failure(failure: Failure, roles: Mapping[str, Role]) -> Iterator[Line]:
 
 
 def _rest(found: Conformance) -> Iterator[Line]:
-    """What was not reached, in words; of what is up to the program the keys."""
+    """Situations that were not reached."""
     for id in found.requirements:
-        own = [each for each in found.situations if each.requirement == id]
+        own = [situation for situation in found.situations if situation.requirement == id]
         free = [each.situation for each in own if each.outcome is Outcome.UP_TO_PROGRAM]
         if free:
-            text = f"{id}: up to the program, and not seen: {', '.join(free)}"
+            text = f"{id}: depends on the program, and did not occur: {', '.join(free)}"
             yield f"{signs.UNUSED.glyph} {text}", signs.UNUSED.colour
         yield from _missing(own)
 

@@ -1,4 +1,4 @@
-"""The files of `fretc test --emit`."""
+"""Files of `fretc test --emit`."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from fretc.testing.exports.tables import Table, csv_text, table, ticks
 from fretc.testing.suite import Suite, Test
 
 
-class Form(StrEnum):
-    """What tests are written as; the values are the words of `--emit`."""
+class SuiteFormat(StrEnum):
+    """File format of tests; the values are those of `--emit`."""
 
     PYTEST = "pytest"
     CSV = "csv"
@@ -30,24 +30,24 @@ class Form(StrEnum):
 
 
 INDEX = "tests.csv"
-"""The table of all tests, beside their files."""
+"""Name of the table of all tests, beside their files."""
 Left = Mapping[str, str]
-"""Why a test is in no file, by its name."""
+"""Name of a test without a file → the reason."""
 
 
 def files(
     suite: Suite,
     requirements: Sequence[FormalizedRequirement],
-    form: Form,
+    form: SuiteFormat,
     languages: Sequence[Language] = (Language.PYTHON,),
 ) -> tuple[tuple[Artifact, ...], Left]:
     """All files of a suite, and the tests that are in none of them.
 
     Args:
-        suite: made of the requirements.
+        suite: tests of the requirements.
         requirements: the requirements.
-        form: of the files.
-        languages: of the monitors that tests for pytest step.
+        form: file format.
+        languages: languages of the monitors in pytest files.
     """
     by_id = {requirement.id: requirement for requirement in requirements}
     reasons = {
@@ -57,20 +57,20 @@ def files(
     tests = [test for test in suite.tests if test.name not in left]
     tested = [by_id[id] for id in dict.fromkeys(test.requirement for test in tests)]
     match form:
-        case Form.PYTEST:
+        case SuiteFormat.PYTEST:
             made = [file for each in targets(languages) for file in each.emit(tested)]
             sentences = {each.id: each.sentence for each in suite.requirements}
             for requirement in tested:
                 own = [test for test in tests if test.requirement == requirement.id]
                 test_file = pytest_file(requirement, sentences[requirement.id], own, languages)
                 made.append(_apart(test_file, {each.path for each in made}))
-        case Form.CSV:
+        case SuiteFormat.CSV:
             tables = {test.name: table(by_id[test.requirement], test) for test in tests}
             made = [*emitted.emit(tested), *(_csv(name, each) for name, each in tables.items())]
             made.append(_index(tests, tables))
-        case Form.FRET:
+        case SuiteFormat.FRET:
             made = [*_fret(tests, by_id)]
-        case Form.C:
+        case SuiteFormat.C:
             made = [*c.emit(tested), self_test(tested, tests)] if tested else []
         case _:
             assert_never(form)
@@ -78,7 +78,7 @@ def files(
 
 
 def _apart(file: Artifact, taken: Set[PurePosixPath]) -> Artifact:
-    """Where its name is that of a monitor: `x_monitor` is tested beside the monitor of `test_x`."""
+    """Whether its name is that of a monitor, as for requirements `x` and `x_monitor`."""
     path = file.path
     while path in taken:
         path = path.with_stem(f"{path.stem}_")
@@ -86,19 +86,19 @@ def _apart(file: Artifact, taken: Set[PurePosixPath]) -> Artifact:
 
 
 def _refusal(
-    requirement: FormalizedRequirement, test: Test, form: Form, languages: Sequence[Language]
+    requirement: FormalizedRequirement, test: Test, form: SuiteFormat, languages: Sequence[Language]
 ) -> str | None:
-    """Why a test cannot be written so, as where there is no monitor; None: it can."""
+    """Why a test cannot be written in the format, for example without a monitor; None: it can."""
     match form:
-        case Form.FRET:
+        case SuiteFormat.FRET:
             return simulator.refusal(requirement, test)
-        case Form.C:
+        case SuiteFormat.C:
             languages = (Language.C,)
-        case Form.CSV:
+        case SuiteFormat.CSV:
             if f"{test.name}.csv" == INDEX:
                 return f"`{INDEX}` is the table of all tests"
             languages = (Language.PYTHON,)
-        case Form.PYTEST:
+        case SuiteFormat.PYTEST:
             pass
         case _:
             assert_never(form)
@@ -115,7 +115,7 @@ _COLUMNS = ("file", "requirement", "ticks", "verdict", "finite", "decided", "fir
 
 
 def _index(tests: Sequence[Test], tables: Mapping[str, Table]) -> Artifact:
-    """What is expected of each table, and the option with which a monitor reads it."""
+    """Expected results of each table, and the option with which a monitor reads it."""
     rows = (
         (
             f"{test.name}.csv",

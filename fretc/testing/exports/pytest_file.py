@@ -1,4 +1,4 @@
-"""Tests of one requirement as a file for pytest, and the monitors beside it that they step."""
+"""Tests of one requirement as a pytest file, with the monitors that it steps."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from monitors.kernel.verdicts import Verdict
 
 
 class Language(StrEnum):
-    """Of a monitor; the values are the words of `--language`."""
+    """Language of a monitor; the values are those of `--language`."""
 
     PYTHON = "python"
     C = "c"
@@ -42,17 +42,17 @@ _IMPORTS = {
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """What the template places of a test."""
+    """Values of a test for the template."""
 
     own: Test
     function: str
     table: Table
     truths: Table | None
-    """Of propositions, where the other table has numbers, and the monitor in C is tested."""
+    """Truth values of propositions for the monitor in C, if the other table has numbers."""
 
 
 def targets(languages: Sequence[Language]) -> list[Target]:
-    """What makes the monitors."""
+    """Targets that generate the monitors."""
     return [TARGETS[language] for language in languages]
 
 
@@ -65,10 +65,10 @@ def pytest_file(
     """`test_<id>.py`.
 
     Args:
-        requirement: one that no target of the languages refuses.
-        sentence: its own.
-        tests: of the requirement.
-        languages: those of the monitors; each once.
+        requirement: requirement that the targets of all languages accept.
+        sentence: its sentence.
+        tests: tests of the requirement.
+        languages: languages of the monitors, without duplicates.
     """
     (names,) = c.interface([requirement]) if Language.C in languages else (None,)
     monitors = [each.emit([requirement])[0].path for each in targets(languages)]

@@ -1,7 +1,7 @@
-"""Tests out of a file, as far as they are about requirements as they are, and say what is right.
+"""Tests from a suite file that are up to date and correct.
 
-The file may be anybody's: a test counts where its names can name files, its values are those that
-monitors read, and the monitor of its requirement gives the verdict that it expects.
+The file is not trusted: a test counts if its name is a valid file name, its values suit the
+monitors, and the monitor of its requirement gives the expected verdict.
 """
 
 from __future__ import annotations
@@ -23,28 +23,28 @@ from monitors.kernel import Monitor
 from monitors.loading import load
 
 MOST = 1_000_000
-"""Ticks of all tests of a file."""
+"""Maximum number of ticks of all tests of a file."""
 _NAME = re.compile(r"[a-z0-9]+(?:[-_][a-z0-9]+)*", re.ASCII)
 
 
 class WrongError(Exception):
-    """The message says what is wrong with which test."""
+    """A test is wrong; the message names the test and the error."""
 
 
 @dataclass(frozen=True, slots=True)
 class Saved:
-    """What of a file counts."""
+    """The usable tests of a file."""
 
     suite: Suite
     others: tuple[str, ...]
-    """The ids of its requirements that are not there, or have another sentence now."""
+    """Ids of its requirements that are missing or have another sentence now."""
 
 
 def saved(suite: Suite, formalized: Sequence[FormalizedRequirement]) -> Saved:
     """The tests of a file that are about the requirements.
 
     Raises:
-        WrongError: one of them is not a test of its requirement.
+        WrongError: a test is not one of its requirement.
     """
     known = {requirement.id: requirement for requirement in formalized}
     same = {
@@ -59,8 +59,8 @@ def saved(suite: Suite, formalized: Sequence[FormalizedRequirement]) -> Saved:
     for test in tests:
         if not _NAME.fullmatch(test.name) or len(test.name) > LONGEST_NAME:
             raise WrongError(
-                f"`{test.name}` cannot name a test: at most {LONGEST_NAME} small letters, digits "
-                "and `-` can"
+                f"`{test.name}` is not a valid name for a test: use at most {LONGEST_NAME} "
+                "lower-case letters, digits and `-`"
             )
         if names[test.name] > 1:
             raise WrongError(f"the name `{test.name}` comes twice")
@@ -79,10 +79,10 @@ def saved(suite: Suite, formalized: Sequence[FormalizedRequirement]) -> Saved:
 
 
 def _check(requirement: FormalizedRequirement, monitor: Monitor, test: Test) -> None:
-    """Whether the monitor can read it, and says what it expects.
+    """Check that the monitor can read a test and gives the expected verdict.
 
     Raises:
-        WrongError: not so.
+        WrongError: it does not.
     """
     try:
         own = table(requirement, test)
@@ -105,7 +105,7 @@ def _check_table(
     expected = (test.verdict, test.finite, test.decided, test.first_violation)
     if (found := _outcome(monitor, read)) != expected:
         shown = ", ".join(f"{each}" for each in found)
-        raise WrongError(f"`{test.name}` expects what the monitor does not say: {shown}")
+        raise WrongError(f"`{test.name}` expects another result than the monitor gives: {shown}")
 
 
 def _is_value(value: object, kind: Input) -> bool:
@@ -121,7 +121,7 @@ def _is_value(value: object, kind: Input) -> bool:
 
 
 def _outcome(monitor: Monitor, read: Table) -> tuple[object, ...]:
-    """The verdict where the run ends, FRET's, and the ticks of the decision and the violation."""
+    """Verdict at the end of the run, FRET's verdict, and the ticks of decision and violation."""
     step = monitor.advance if read.of_truths else getattr(monitor, "take", monitor.advance)
     said = outcome(monitor, step, _ticks(read))
     return said.verdict, said.finite, said.decided, said.first_violation

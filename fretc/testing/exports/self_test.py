@@ -1,4 +1,4 @@
-"""Tests as one file of C, for targets on which nothing else runs than what a C compiler makes."""
+"""Tests as one C file, for targets with only a C compiler."""
 
 from __future__ import annotations
 
@@ -18,27 +18,27 @@ from monitors.kernel.verdicts import Verdict
 
 NAME = PurePosixPath("fretc_self_test.c")
 _CODES: Mapping[Cell, int] = {False: 0, True: 1, None: 2}
-"""Of truths, as headers of monitors have them."""
+"""Codes of truth values in the headers of monitors."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Requirement:
-    """What the template places of a requirement."""
+    """Values of a requirement for the template."""
 
     id: str
     sentence: str
     names: Interface
     before: int
-    """How many tests are those of requirements before it."""
+    """Number of tests of earlier requirements."""
     tests: tuple[Mapping[str, Any], ...]
 
 
 def self_test(formalized: Sequence[FormalizedRequirement], tests: Sequence[Test]) -> Artifact:
-    """The tests of monitors in C, which stand beside the file.
+    """Self-test of monitors in C, which are in the same folder.
 
     Args:
-        formalized: each with a test at least.
-        tests: of them; they are numbered requirement by requirement, from 1 on.
+        formalized: requirements with at least one test each.
+        tests: their tests, numbered requirement by requirement from 1 on.
     """
     requirements = [*_requirements(formalized, tests)]
     text = render("tests/self_test.c.j2", requirements=requirements, version=__version__)
@@ -73,7 +73,7 @@ def _test(requirement: FormalizedRequirement, test: Test, number: int) -> dict[s
 
 
 def _verdict(test: Test) -> str:
-    """From the tick on at which it is decided."""
+    """The verdict, from the tick on at which it is decided."""
     if test.decided is None:
         return "FRETC_PENDING"
     return "FRETC_VIOLATED" if test.verdict is Verdict.VIOLATED else "FRETC_SATISFIED"

@@ -1,9 +1,9 @@
-"""Traces that LTLSIM, the simulator of FRET, imports: all as JSON, and each as CSV.
+"""Traces for LTLSIM, the simulator of FRET: all as JSON, and each as CSV.
 
 Sources: FRET, `LTLSimDialog.js` (`handleImportTraces`: a list of traces, each linked to a
 requirement) and `LTLSimController.js` (`setTrace`: values tick by tick in one list, kinds and
-ranges beside them; `addTrace`: CSV without quotes). Comparisons are no columns: LTLSIM computes
-them from the numbers.
+ranges beside them; `addTrace`: CSV without quotes). Comparisons are not columns, because LTLSIM
+computes them from the numbers.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from fretc.testing.exports.tables import Row, columns, csv_text
 from fretc.testing.suite import Polarity, Test
 
 LEAST = 4
-"""Ticks of a trace: with fewer of them LTLSIM has problems, it says."""
+"""Minimum number of ticks of a trace, according to LTLSIM."""
 Numbers = tuple[float, ...]
 
 
@@ -36,11 +36,11 @@ def refusal(requirement: FormalizedRequirement, test: Test) -> str | None:
 def traces(
     requirements: Mapping[str, FormalizedRequirement], tests: Sequence[Test]
 ) -> list[dict[str, Any]]:
-    """What LTLSIM imports as JSON.
+    """JSON for LTLSIM.
 
     Args:
-        requirements: by their ids.
-        tests: none of them refused.
+        requirements: requirements by id.
+        tests: tests that are not refused.
     """
     return [_trace(requirements[test.requirement], test) for test in tests]
 
@@ -78,23 +78,23 @@ def _description(test: Test) -> str:
 
 
 def table(requirement: FormalizedRequirement, test: Test) -> str:
-    """What LTLSIM imports as CSV; its trace is to be as long before."""
+    """CSV for LTLSIM, which must have a trace of the same length before the import."""
     names, rows = _numbers(requirement, test)
     ends = [0] * (len(rows) - 1) + [1]
     return csv_text(("LAST", *names), ((end, *row) for end, row in zip(ends, rows, strict=True)))
 
 
 def _names(test: Test) -> tuple[str, ...]:
-    """What is known of each tick and is no comparison."""
+    """Names with a known value at each tick that are not comparisons."""
     first, *others = (row.values for row in test.rows)
     known = (name for name in first if all(name in values for values in others))
     return tuple(name for name in known if not is_compound(name))
 
 
 def _numbers(requirement: FormalizedRequirement, test: Test) -> tuple[list[str], list[Numbers]]:
-    """Names and the numbers of each tick: LTLSIM has no words and no truth values.
+    """Names and the numbers of each tick: LTLSIM has no enumerations and no truth values.
 
-    The words of an enumerated signal are constants: the place of each in its list.
+    Enumeration values are represented by their position in the signal's list.
     """
     names = _names(test)
     signals = requirement.declarations.signals if requirement.declarations else {}
@@ -107,7 +107,7 @@ def _numbers(requirement: FormalizedRequirement, test: Test) -> tuple[list[str],
 
 
 def _long_enough(rows: Sequence[Row]) -> list[Row]:
-    """Row by row; the last one is repeated where there are too few."""
+    """Rows with the last one repeated up to the minimum length."""
     each = [(1, values) for count, values in rows for _ in range(count)]
     return each + each[-1:] * (LEAST - len(each))
 

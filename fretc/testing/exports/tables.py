@@ -1,4 +1,4 @@
-"""A test as the table that the emitted monitor of its requirement reads."""
+"""A test as a table for the emitted monitor of its requirement."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from fretc.testing.suite import Test
 
 Cell = Value | None
 Row = tuple[int, tuple[Cell, ...]]
-"""How many ticks, and the value of each column."""
+"""Number of ticks, and the value of each column."""
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A test, by the columns of a monitor."""
+    """A test in the columns of a monitor."""
 
     names: tuple[str, ...]
     rows: tuple[Row, ...]
     of_truths: bool
-    """Whether the columns are propositions where the monitor wants variables: the test has no
-    numbers that make its comparisons so. The monitor reads it with `--propositions`."""
+    """Whether the columns are propositions although the monitor expects variables, because no
+    numbers satisfy the test's comparisons. The monitor reads it with `--propositions`."""
 
 
 def table(requirement: FormalizedRequirement, test: Test) -> Table:
@@ -40,14 +40,14 @@ def table(requirement: FormalizedRequirement, test: Test) -> Table:
 
 
 def truths(requirement: FormalizedRequirement, test: Test) -> Table:
-    """The truth of the propositions of a test, as the monitor in C takes it."""
+    """Truth values of the propositions of a test, for the monitor in C."""
     return Table(requirement.watched, columns(test, requirement.watched), of_truths=True)
 
 
 def columns(test: Test, names: Sequence[str]) -> tuple[Row, ...]:
-    """Some columns of a test; ticks that are equal in them are one row."""
+    """Some columns of a test; equal adjacent ticks are one row."""
     found = ((row.count, tuple(row.values[name] for name in names)) for row in test.rows)
-    # 0, 0.0 and False are equal, and are not the same
+    # 0, 0.0 and False are equal, but different values.
     grouped = groupby(found, key=lambda row: [(type(cell), cell) for cell in row[1]])
     runs = ([*group] for _, group in grouped)
     return tuple((sum(count for count, _ in run), run[0][1]) for run in runs)
@@ -63,13 +63,13 @@ def csv_text(names: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 def ticks(rows: Iterable[Row]) -> Iterator[tuple[str, ...]]:
-    """One row of text for each tick."""
+    """A row of text for each tick."""
     for count, values in rows:
         yield from [tuple(map(cell_text, values))] * count
 
 
 def cell_text(value: Cell) -> str:
-    """As monitors read it; nothing where it is unknown."""
+    """Text of a value for monitors; empty if it is unknown."""
     if value is None:
         return ""
     return str(value).lower() if isinstance(value, bool) else str(value)

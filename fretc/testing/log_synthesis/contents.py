@@ -1,7 +1,7 @@
-"""What the field of a signal may hold: few contents, with the value that an audit reads of each.
+"""Field contents of a signal: a few candidates, each with the value that an audit reads.
 
-Nothing is solved for: comparisons change their truth at their numbers only, so the numbers, what
-lies between them and what lies beyond are tried, and the code that audits logs says which do.
+No equations are solved: comparisons change only at their constants, so the constants and numbers
+between and beyond them are tried, and the code that audits logs evaluates them.
 """
 
 from __future__ import annotations
@@ -23,33 +23,34 @@ from fretish.bindings.declarations import Reading, Reduce, Signal
 from fretish.units import unit
 
 _MOST_NUMBERS = 4
-"""Of one comparison: their sums and differences are tried, too."""
+"""Maximum number of constants of a comparison whose sums and differences are tried, too."""
 _FARTHEST = 99.0
-"""Metres that a beam reaches."""
+"""Range of a lidar beam in metres."""
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class FieldContent:
     """A content of a signal's field."""
 
     content: Content | None
-    """None: no message comes at all."""
+    """The content; None: no message is sent."""
     value: float
-    """What the audit reads of it, as `sample` and `enum_index` have it; NaN: unknown."""
+    """Value that the audit reads, as `sample` and `word` have it; NaN: unknown."""
     nominal: Fraction | str | None
-    """The number in base units, or the word, that it stands for."""
+    """The number in base units, or the enumeration value, that it represents."""
 
 
 def choices(
     signal: Signal, field: Field, read_by: Iterable[e.Expression], wished: Iterable[object]
-) -> tuple[Choice, ...]:
-    """What is tried for a signal, in this order: what is wished for, numbers of comparisons, none.
+) -> tuple[FieldContent, ...]:
+    """Candidates for a signal in order: preferred values, constants of comparisons, no message.
 
     Args:
-        signal: with its unit and its reduction.
-        field: where it is read from.
-        read_by: the expressions that name it.
-        wished: words, truth values, and numbers in the signal's unit; None asks for unknown.
+        signal: signal with its unit and its reduction.
+        field: field of the signal.
+        read_by: expressions that name the signal.
+        wished: preferred enumeration values, truth values, and numbers in the signal's unit; None:
+            unknown.
     """
     found = dict.fromkeys(_nominal(signal, each) for each in wished if each is not None)
     if signal.values:
@@ -68,7 +69,7 @@ def _nominal(signal: Signal, value: object) -> Fraction | str:
 
 
 def _points(name: str, read_by: Iterable[e.Expression]) -> list[Fraction]:
-    """The numbers at which a comparison may change, what lies between, and what lies beyond."""
+    """Constants at which a comparison may change, with numbers between and beyond them."""
     points = {Fraction(0), Fraction(1)}
     for expression in read_by:
         for part in e.parts(expression):
@@ -89,7 +90,7 @@ def _constants(part: e.Expression) -> Iterator[Fraction]:
 
 
 def _sums(numbers: Sequence[Fraction]) -> Iterator[Fraction]:
-    """Each with itself, its negative and none of it, added up in each way."""
+    """All sums of the numbers, each with sign +, - or left out."""
     if not numbers:
         yield Fraction(0)
         return
@@ -98,12 +99,12 @@ def _sums(numbers: Sequence[Fraction]) -> Iterator[Fraction]:
         yield from (rest, rest + first, rest - first)
 
 
-def _made(signal: Signal, field: Field, nominal: Fraction | str) -> Iterator[Choice]:
+def _made(signal: Signal, field: Field, nominal: Fraction | str) -> Iterator[FieldContent]:
     for content in _contents(signal, field, nominal):
         if isinstance(content, str) or _fits(content, field):
             value = read(signal, field, content)
             if value is not None:
-                yield Choice(content, value, nominal)
+                yield FieldContent(content, value, nominal)
 
 
 def _contents(signal: Signal, field: Field, nominal: Fraction | str) -> Iterator[Content]:
@@ -135,9 +136,9 @@ def _fits(content: float | Sequence[float], field: Field) -> bool:
 
 @lru_cache
 def _beams(signal: Signal, gap: float) -> tuple[float, ...]:
-    """The two ranges of a beam straight ahead whose end is so far from the outline, or about so.
+    """The two ranges of a forward beam that ends about so far from the outline.
 
-    Every test of a requirement asks for the same few.
+    The result is cached, because tests of a requirement need the same few distances.
     """
     first = (-math.inf,) if gap == 0 and signal.invalid.negative_infinity is Reading.NEAR else ()
     low, high = np.float32(0), np.float32(_FARTHEST)
@@ -150,19 +151,19 @@ def _beams(signal: Signal, gap: float) -> tuple[float, ...]:
     return (*first, float(high), float(low))
 
 
-def _unknown(signal: Signal, field: Field) -> Iterator[Choice]:
-    """How the signal is made unknown: by NaN, or by no message."""
+def _unknown(signal: Signal, field: Field) -> Iterator[FieldContent]:
+    """Content that makes the signal unknown: NaN, or no message."""
     if field.has_nan:
         content: Content = [math.nan] if signal.path.each else math.nan
         value = read(signal, field, content)
         if value is not None and math.isnan(value):
-            yield Choice(content, value, None)
+            yield FieldContent(content, value, None)
             return
-    yield Choice(None, math.nan, None)
+    yield FieldContent(None, math.nan, None)
 
 
 def read(signal: Signal, field: Field, content: Content) -> float | None:
-    """What an audit reads of a message with that content; None where it finds no value in it."""
+    """Value that an audit reads from a message with the content; None if it finds none."""
     made = message(field.message, 0, {signal.path: content})
     value = (
         enum_index(signal, made)

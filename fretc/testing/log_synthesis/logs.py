@@ -1,4 +1,4 @@
-"""Logs of tests: written, audited at once, and kept where the audit says what the test expects."""
+"""Logs of tests: written, audited, and kept if the audit gives the expected verdict."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from compiler.project.project import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.many_logs import audit_log
 from fretc.audit.plan import Plan, planned
-from fretc.testing.log_synthesis.messages import NoStageError
-from fretc.testing.log_synthesis.synthetic_log import EPOCH, SyntheticLog, staged
+from fretc.testing.log_synthesis.messages import NotRecordableError
+from fretc.testing.log_synthesis.synthetic_log import EPOCH, SyntheticLog, synthesize
 from fretc.testing.suite import Test
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel import Monitor
@@ -23,33 +23,33 @@ from monitors.kernel.verdicts import INCONCLUSIVE, Verdict
 from monitors.loading import load
 from simulation.recording import Topic, recording
 
-Outcome = Literal["confirmed", "cannot be staged", "not confirmed"]
+Outcome = Literal["confirmed", "cannot be recorded", "not confirmed"]
 
 
 @dataclass(frozen=True, slots=True)
-class StagedTest:
-    """What became of a test."""
+class LogTestResult:
+    """Result of writing a test as a log."""
 
     test: Test
     outcome: Outcome
     why: str = ""
     """Why there is no log; empty: there is one."""
     lead: int = 0
-    """Ticks of the log before those of the test."""
+    """Number of ticks of the log before those of the test."""
 
 
 def logs(
     project: Project, tests: Sequence[Test], folder: Path, tell: Callable[[int], None]
-) -> Iterator[StagedTest]:
-    """A log for each test that can be staged, `folder/NAME.mcap`.
+) -> Iterator[LogTestResult]:
+    """A log `folder/NAME.mcap` for each test that can be recorded.
 
-    A log is there once its audit has given the verdict that the test expects.
+    A log is kept if its audit gives the verdict that the test expects.
 
     Args:
-        project: whose requirements the tests are of.
-        tests: of its suite.
-        folder: that exists.
-        tell: is called with the number of tests that are done.
+        project: project of the requirements.
+        tests: tests of its suite.
+        folder: an existing folder.
+        tell: called with the number of finished tests.
 
     Raises:
         OSError: a log cannot be written.
@@ -62,10 +62,10 @@ def logs(
         for done, test in enumerate(tests, start=1):
             try:
                 if declarations is None or not isinstance(plan, Plan):
-                    raise NoStageError(_first(plan))
+                    raise NotRecordableError(_first(plan))
                 yield _log(plan, test, monitor(test.requirement), Path(temporary), folder)
-            except NoStageError as error:
-                yield StagedTest(test, "cannot be staged", str(error))
+            except NotRecordableError as error:
+                yield LogTestResult(test, "cannot be recorded", str(error))
             tell(done)
 
 
@@ -74,32 +74,32 @@ def _first(plan: Plan | tuple[Diagnostic, ...]) -> str:
     return plan[0].message
 
 
-def _log(plan: Plan, test: Test, monitor: Monitor, temporary: Path, folder: Path) -> StagedTest:
+def _log(plan: Plan, test: Test, monitor: Monitor, temporary: Path, folder: Path) -> LogTestResult:
     claim = next((each for each in plan.claims if each.id == test.requirement), None)
     if claim is None:
-        raise NoStageError(f"{test.requirement} is not audited")
+        raise NotRecordableError(f"{test.requirement} is not audited")
     if claim.chance is not None:
-        raise NoStageError("one run decides nothing of a requirement with a probability")
-    stage = staged(test, plan.declarations, monitor)
+        raise NotRecordableError("one run decides nothing of a requirement with a probability")
+    stage = synthesize(test, plan.declarations, monitor)
     path = temporary / f"{test.name}.mcap"
     _write(stage, test, path)
-    verdicts = {each.requirement: each.verdict for each in audit_log(plan, str(path)).results}
+    verdicts = {result.requirement: result.verdict for result in audit_log(plan, str(path)).results}
     expected, actual = _expected(test, plan), verdicts[test.requirement]
     if actual != expected:
         why = f"the audit of it says {actual}, not {expected}"
-        return StagedTest(test, "not confirmed", why, stage.lead)
+        return LogTestResult(test, "not confirmed", why, stage.lead)
     shutil.move(path, folder / path.name)
-    return StagedTest(test, "confirmed", "", stage.lead)
+    return LogTestResult(test, "confirmed", "", stage.lead)
 
 
 def _expected(test: Test, plan: Plan) -> str:
-    """The verdict of the audit: the clock says what is open at the end."""
+    """Expected verdict of the audit; the clock decides about obligations open at the end."""
     end = Verdict(plan.declarations.clock.end)
     return str(end if test.verdict == INCONCLUSIVE else test.verdict)
 
 
 def _write(stage: SyntheticLog, test: Test, path: Path) -> None:
-    topics = {each.topic: Topic(each.topic, each.type) for each in stage.messages}
+    topics = {message.topic: Topic(message.topic, message.type) for message in stage.messages}
     about = {
         "test": test.name,
         "requirement": test.requirement,
@@ -108,6 +108,6 @@ def _write(stage: SyntheticLog, test: Test, path: Path) -> None:
         "lead": str(stage.lead),
     }
     with recording(path, epoch=EPOCH, topics=tuple(topics.values())) as log:
-        for each in stage.messages:
-            log.write(each.topic, each.message, each.time)
+        for message in stage.messages:
+            log.write(message.topic, message.message, message.time)
         log.finish("test", about)

@@ -1,4 +1,4 @@
-"""Messages of any known ROS type, made around the contents of a few fields."""
+"""Messages of any known ROS type, with given contents of some fields."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fretish.bindings.declarations import Path, Signal, short_type
 from simulation.nodes.messages import TYPES
 
 Content = float | str | Sequence[float]
-"""What is put into a field; of an array whose elements all count, all of them."""
+"""Content of a field; for an array, of all its elements."""
 
 _USUAL: Mapping[str, Any] = {
     "range_min": 0.05,
@@ -22,58 +22,62 @@ _USUAL: Mapping[str, Any] = {
     "max_range": 100.0,
     "w": 1.0,
 }
-"""What fields hold that nobody asks for: a sensor that reaches far, a pose that is turned nowhere.
-All others hold nothing."""
+"""Default contents: a sensor with a long range, a pose without rotation. All other fields are zero
+or empty."""
 
 
-class NoStageError(ValueError):
-    """It cannot be staged; the text says why, in lower case and without a full stop."""
+class NotRecordableError(ValueError):
+    """A test cannot be recorded; the message gives the reason in lower case without a full stop."""
 
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """The field that a signal is read from."""
+    """Field from which a signal is read."""
 
     message: str
-    """The type of it: `sensor_msgs/msg/LaserScan`."""
+    """Type of the message: `sensor_msgs/msg/LaserScan`."""
     base: str
-    """Of the field or of its elements: `float32`, `bool`, `string`."""
+    """Base type of the field or of its elements: `float32`, `bool`, `string`."""
     array: bool
 
     @property
     def has_nan(self) -> bool:
-        """Whether it can say that a number is unknown."""
+        """Whether the type has NaN for an unknown number."""
         return self.base in ("float32", "float64")
 
 
 def field(signal: Signal) -> Field:
-    """Where a signal is read from.
+    """Field from which a signal is read.
 
     Raises:
-        NoStageError: its bindings do not say so, or nothing is known of that type.
+        NotRecordableError: the bindings do not name it, or its type is unknown.
     """
     if signal.type is None:
-        raise NoStageError(f"the binding of `{signal.name}` names no type of message")
+        raise NotRecordableError(f"the binding of `{signal.name}` names no message type")
     package, _, own = short_type(signal.type).partition("/")
     name = f"{package}/msg/{own}"
     if name not in TYPES.fielddefs:
-        raise NoStageError(f"`{signal.type}`, which `{signal.name}` is read from, is not known")
+        raise NotRecordableError(
+            f"`{signal.type}`, which `{signal.name}` is read from, is not known"
+        )
     node: Any = (Nodetype.NAME, name)
     for part in signal.path.fields:
         fields = dict(TYPES.fielddefs[node[1]][1]) if node[0] == Nodetype.NAME else {}
         if part not in fields:
-            raise NoStageError(f"`{signal.type}` has no field `{'.'.join(signal.path.fields)}`")
+            raise NotRecordableError(
+                f"`{signal.type}` has no field `{'.'.join(signal.path.fields)}`"
+            )
         node = fields[part]
     array = node[0] in (Nodetype.ARRAY, Nodetype.SEQUENCE)
     if array:
         node = node[1][0]
     if node[0] != Nodetype.BASE:
-        raise NoStageError(f"`{signal.path}` is neither a number nor a text")
+        raise NotRecordableError(f"`{signal.path}` is neither a number nor a text")
     return Field(name, str(node[1][0]), array)
 
 
 def message(name: str, time: int, contents: Mapping[Path, Content]) -> Any:
-    """A message measured at `time` (nanoseconds) with the contents of some of its fields."""
+    """A message measured at `time` (nanoseconds) with given contents of some of its fields."""
     made = _blank(name, time)
     for path, content in contents.items():
         *way, last = path.fields
@@ -85,7 +89,7 @@ def message(name: str, time: int, contents: Mapping[Path, Content]) -> Any:
 
 
 def _filled(before: Any, path: Path, content: Content) -> Any:
-    """The content of a field, in the type of what it holds."""
+    """Content of a field, converted to its type."""
     if path.index is not None:
         longer = np.zeros(max(len(before), path.index + 1), before.dtype)
         longer[: len(before)] = before

@@ -1,11 +1,11 @@
-"""Missions of the simulated robot that show what tests ask for, found by search.
+"""Search for missions of the simulated robot that show the situations of tests.
 
-The scenarios that come with the simulation are tried first, then variations of those in which a
-requirement came nearest to its bounds. A run shows a situation by the columns of its audit, and as
-kept or broken by FRET's verdict on the whole run.
+The included scenarios are tried first, then variations of those in which a requirement came nearest
+to its bounds. The audit of a mission tells which situations it shows, and FRET's verdict on the
+whole run whether it satisfies or violates the requirement.
 
 Source of the search: falsification by simulation, as in S-TaLiRo (Annpureddy et al., TACAS 2011);
-an evolution of scenarios in place of its optimizers.
+with an evolution of scenarios in place of its optimizers.
 """
 
 from __future__ import annotations
@@ -29,45 +29,45 @@ from fretc.audit.plan import Plan, monitored_requirements, planned
 from fretc.audit.pool import WorkerDied, map_processes
 from fretc.campaigns.campaign import recorded
 from fretc.testing.log_synthesis.variation import varied
-from fretc.testing.suite import Met, Obligation, Polarity, Suite
+from fretc.testing.suite import GoalResult, GoalStatus, Polarity, Suite
 from simulation.recording import TOPICS
 from simulation.world.scenario import Expectations, Scenario, load, names
 
 SEED = 1
-"""Of all missions: the scenario alone says what happens."""
+"""Seed of all missions, so that the scenario alone determines the mission."""
 
 Aim = tuple[str, str, Polarity]
-"""A requirement, the key of a situation, and how it is to be shown."""
+"""A requirement, the key of a situation, and the polarity of the test."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """What the audit of a mission shows."""
+    """Result of the audit of a mission."""
 
     aims: frozenset[Aim]
     verdicts: Mapping[str, str]
     margins: Mapping[str, float]
-    """Requirement → its least margin, as a part of the bound; 0 where one was crossed."""
+    """Requirement → its least margin, relative to the bound; 0 after a violation."""
 
 
 @dataclass(slots=True)
 class Found:
-    """What the search has found so far."""
+    """Results of the search so far."""
 
     shown: dict[Aim, str] = field(default_factory=dict)
-    """Aim → the first scenario that shows it."""
+    """Goal → the first scenario that shows it."""
     scenarios: dict[str, Scenario] = field(default_factory=dict)
-    """Those that show something first, by their names."""
+    """Scenarios that show a goal first, by name."""
     verdicts: dict[str, Mapping[str, str]] = field(default_factory=dict)
     runs: int = 0
 
     def new(self, scenario: str) -> tuple[Aim, ...]:
-        """What a scenario is the first to show."""
+        """Goals that a scenario is the first to show."""
         return tuple(aim for aim, name in self.shown.items() if name == scenario)
 
 
-def stageable(suite: Suite, project: Project) -> tuple[tuple[Aim, ...], Mapping[str, str]]:
-    """What is looked for, and why nothing of other requirements can be staged."""
+def realizable_goals(suite: Suite, project: Project) -> tuple[tuple[Aim, ...], Mapping[str, str]]:
+    """Goals that missions can show, and why those of other requirements cannot be recorded."""
     there = {topic.name for topic in TOPICS}
     declarations, why = project.declarations, {}
     for requirement in project.formalized:
@@ -78,14 +78,16 @@ def stageable(suite: Suite, project: Project) -> tuple[tuple[Aim, ...], Mapping[
         )
         absent = sorted({signal.path.topic for signal in read} - there)
         if free:
-            why[requirement.id] = f"nothing binds `{free[0]}`"
+            why[requirement.id] = f"`{free[0]}` has no binding"
         elif absent:
             why[requirement.id] = f"the simulated robot has no topic `{absent[0]}`"
-    aims = tuple(_aim(one) for one in suite.obligations if one.outcome is Met.MET)
+    aims = tuple(
+        _aim(obligation) for obligation in suite.obligations if obligation.outcome is GoalStatus.MET
+    )
     return tuple(aim for aim in aims if aim[0] not in why), why
 
 
-def _aim(one: Obligation) -> Aim:
+def _aim(one: GoalResult) -> Aim:
     return one.requirement, one.situation, one.polarity
 
 
@@ -97,22 +99,22 @@ def search(
     found: Found,
     tell: Callable[[int, str], None],
 ) -> None:
-    """Look for missions that show the aims.
+    """Search for missions that show the goals.
 
     Args:
-        project: whose requirements are audited.
-        aims: of `stageable`.
-        runs: how many missions at most.
-        jobs: processes.
-        found: takes what is found, mission by mission: what interrupts the search loses nothing.
-        tell: is called with the number of missions, and what is shown.
+        project: project of the requirements.
+        aims: goals of `realizable_goals`.
+        runs: maximum number of missions.
+        jobs: number of processes.
+        found: collects the results mission by mission, so that an interruption loses nothing.
+        tell: called with the number of missions, and a text about the shown goals.
 
     Raises:
         RuntimeError: the process of a mission was killed twice.
     """
     plan = planned(project)
     assert isinstance(plan, Plan), plan
-    monitored_requirements(plan)  # before the processes are born: they inherit it
+    monitored_requirements(plan)  # Set before the processes start, because they inherit it.
     chance = Random(SEED)
     known: list[tuple[Scenario, Shown]] = []
     waiting = [load(name) for name in names()]
@@ -146,7 +148,7 @@ def _note(found: Found, aims: Sequence[Aim], scenario: Scenario, one: Shown) -> 
 def _next(
     known: Sequence[tuple[Scenario, Shown]], missing: Sequence[Aim], chance: Random, number: int
 ) -> Scenario:
-    """A variation of a scenario that came near to what is missing."""
+    """A variation of a scenario that came near to a missing goal."""
     requirement, _, polarity = chance.choice(missing)
 
     def far(entry: tuple[Scenario, Shown]) -> float:
@@ -159,7 +161,7 @@ def _next(
 
 
 def shown(plan: Plan, folder: Path, scenario: Scenario) -> Shown:
-    """Record a mission, and what the audit of its log shows; the log goes away."""
+    """Record and audit a mission; returns what it shows and removes its log."""
     log = folder / f"{scenario.name}.mcap"
     try:
         recorded(scenario, SEED, log)
@@ -184,7 +186,7 @@ def _aims(result: Result) -> Iterator[Aim]:
 
 
 def _margin(result: Result) -> float:
-    """Numbers that were crossed, or never known, have none."""
+    """The margin; none for numbers that were crossed, or never known."""
     return min(
         (0.0 if t.margin is None else t.margin / (abs(t.bound) or 1.0) for t in result.thresholds),
         default=1.0,
@@ -192,12 +194,12 @@ def _margin(result: Result) -> float:
 
 
 def confirmed(project: Project, text: str, aims: Sequence[Aim]) -> bool:
-    """Whether the mission of a file shows the aims, with the verdicts that the file expects.
+    """Whether the mission of a scenario file shows the goals, with the expected verdicts.
 
     Args:
-        project: whose requirements are audited.
-        text: of the file.
-        aims: that it is to show.
+        project: project of the requirements.
+        text: content of the file.
+        aims: goals that it must show.
     """
     plan = planned(project)
     assert isinstance(plan, Plan), plan
@@ -212,7 +214,7 @@ def confirmed(project: Project, text: str, aims: Sequence[Aim]) -> bool:
 def text(
     scenario: Scenario, verdicts: Mapping[str, str], aims: Sequence[Aim], words: Mapping[Aim, str]
 ) -> str:
-    """A scenario as a file: what it shows, what it changes, and which verdicts its log has."""
+    """Scenario file with its goals, its changes, and the verdicts of its log."""
     lists: dict[str, list[str]] = {each.name: [] for each in fields(Expectations)}
     for id, verdict in verdicts.items():
         lists[verdict.replace(" ", "_")].append(id)
@@ -233,7 +235,7 @@ _PLAIN = Scenario(title="", transport={})
 
 
 def _changed(table: Mapping[str, Any], plain: Mapping[str, Any]) -> dict[str, Any]:
-    """What differs from a scenario in which nothing is said."""
+    """Settings that differ from an empty scenario."""
     changed: dict[str, Any] = {}
     for key, value in table.items():
         usual = plain.get(key)

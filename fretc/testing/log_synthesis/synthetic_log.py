@@ -1,4 +1,4 @@
-"""A test as messages: for each tick contents of the fields with which the audit sees that tick."""
+"""Messages for a test: field contents with which the audit reads the values of each tick."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from numpy.typing import NDArray
 
 from fretc.logs.signals.measures import Scope
 from fretc.logs.signals.propositions import FALSE, TRUE, UNKNOWN, truth
-from fretc.testing.log_synthesis.contents import Choice, choices
-from fretc.testing.log_synthesis.messages import Content, Field, NoStageError, field, message
-from fretc.testing.log_synthesis.ticks import Course, Part, course, part
+from fretc.testing.log_synthesis.contents import FieldContent, choices
+from fretc.testing.log_synthesis.messages import Content, Field, NotRecordableError, field, message
+from fretc.testing.log_synthesis.ticks import Part, TickPlan, part, tick_plan
 from fretc.testing.suite import Test
 from fretish.bindings.declarations import Declarations, Path, Signal
 from monitors.kernel import Monitor
 
 EPOCH = 1_700_000_000 * 10**9
-"""Nanoseconds; when each log begins."""
+"""Start of each log in nanoseconds."""
 _MOST_COMBINED = 500_000
-"""Contents of all signals together that are tried for a tick."""
+"""Maximum number of combinations of contents that are tried for a tick."""
 _STATES = {False: FALSE, None: UNKNOWN, True: TRUE}
 
 
@@ -38,56 +38,56 @@ class SyntheticMessage:
 
 @dataclass(frozen=True, slots=True)
 class SyntheticLog:
-    """All messages of a log, by their times."""
+    """All messages of a log in the order of time."""
 
     lead: int
-    """Ticks before those of the test."""
+    """Number of ticks before those of the test."""
     messages: tuple[SyntheticMessage, ...]
 
 
-def staged(test: Test, declarations: Declarations, monitor: Monitor) -> SyntheticLog:
+def synthesize(test: Test, declarations: Declarations, monitor: Monitor) -> SyntheticLog:
     """The messages of a test.
 
     Args:
-        test: of the suite.
-        declarations: the bindings of its propositions.
-        monitor: of its requirement.
+        test: a test of the suite.
+        declarations: bindings of its propositions.
+        monitor: monitor of its requirement.
 
     Raises:
-        NoStageError: what it asks for cannot be brought about by messages, or nothing says how.
+        NotRecordableError: no messages have the required values, or bindings are missing.
     """
     clock = declarations.clock
     if clock.period is None:
-        raise NoStageError("its clock ticks by message")
+        raise NotRecordableError("its clock ticks with messages")
     if clock.phase:
-        raise NoStageError("its clock has a phase")
+        raise NotRecordableError("its clock has a phase")
     absent = next((n for n in monitor.PROPOSITIONS if n not in declarations.propositions), None)
     if absent is not None:
-        raise NoStageError(f"nothing binds `{absent}`")
+        raise NotRecordableError(f"`{absent}` has no binding")
     parts = [part(declarations.propositions[n], clock.period) for n in monitor.PROPOSITIONS]
     names = dict.fromkeys(name for one in parts for name in one.proposition.signals)
     signals = [declarations.signals[name] for name in names]
-    stage = _Stage(parts, signals, {each.name: field(each) for each in signals})
-    found = course(test, parts, monitor)
+    stage = _SignalSearch(parts, signals, {signal.name: field(signal) for signal in signals})
+    found = tick_plan(test, parts, monitor)
     contents = stage.contents(test, found)
-    return SyntheticLog(found.lead, tuple(_spoken(stage, contents, clock.period, declarations)))
+    return SyntheticLog(found.lead, tuple(_messages(stage, contents, clock.period, declarations)))
 
 
-class _Stage:
-    """The signals of a requirement, and what they may be."""
+class _SignalSearch:
+    """The signals of a requirement, and their possible contents."""
 
     def __init__(
         self, parts: Sequence[Part], signals: Sequence[Signal], fields: Mapping[str, Field]
     ) -> None:
         self.signals, self.fields = signals, fields
         self._parts = parts
-        self._known: dict[tuple[object, ...], tuple[Choice, ...] | None] = {}
+        self._known: dict[tuple[object, ...], tuple[FieldContent, ...] | None] = {}
 
-    def contents(self, test: Test, found: Course) -> list[tuple[Choice, ...]]:
-        """Of each tick the choice for each signal, in the order of the signals."""
+    def contents(self, test: Test, found: TickPlan) -> list[tuple[FieldContent, ...]]:
+        """Contents of each tick, in the order of the signals."""
         rows = [row for row in test.rows for _ in range(row.count)]
         rows = [rows[0]] * found.lead + rows
-        made: list[tuple[Choice, ...]] = []
+        made: list[tuple[FieldContent, ...]] = []
         for tick, row in enumerate(rows):
             wanted = tuple(found.wanted[one.proposition.name][tick] for one in self._parts)
             wished = tuple(row.values.get(signal.name, math.nan) for signal in self.signals)
@@ -96,20 +96,20 @@ class _Stage:
                 self._known[key] = self._chosen(wanted, wished)
             chosen = self._known[key]
             if chosen is None:
-                raise NoStageError(self._impossible(wanted, tick - found.lead))
+                raise NotRecordableError(self._impossible(wanted, tick - found.lead))
             made.append(chosen)
         return made
 
     def _chosen(
         self, wanted: Sequence[bool | None], wished: Sequence[object]
-    ) -> tuple[Choice, ...] | None:
-        """The contents with which all parts are as wanted, most of them as wished."""
+    ) -> tuple[FieldContent, ...] | None:
+        """Contents that give all parts their required value, most of them preferred ones."""
         every = [
             self._choices(signal, wish) for signal, wish in zip(self.signals, wished, strict=True)
         ]
         sizes = [len(each) for each in every]
         if math.prod(sizes) > _MOST_COMBINED:
-            raise NoStageError(f"{len(sizes)} signals have too many values together")
+            raise NotRecordableError(f"{len(sizes)} signals have too many values together")
         places = [each.reshape(-1) for each in np.indices(sizes)]
         good = self._good(wanted, every, places)
         if not good.any():
@@ -121,26 +121,26 @@ class _Stage:
         best = int(np.argmin(np.where(good, strange, np.iinfo(np.int64).max)))
         return tuple(each[place[best]] for each, place in zip(every, places, strict=True))
 
-    def _choices(self, signal: Signal, wish: object) -> tuple[Choice, ...]:
+    def _choices(self, signal: Signal, wish: object) -> tuple[FieldContent, ...]:
         read_by = [one.expression for one in self._parts if signal.name in one.proposition.signals]
         wishes = [] if isinstance(wish, float) and math.isnan(wish) else [wish]
         found = choices(signal, self.fields[signal.name], read_by, wishes)
-        return tuple(reversed(found)) if wishes == [None] else found  # what is unknown comes first
+        return tuple(reversed(found)) if wishes == [None] else found  # Unknown values come first.
 
-    def _as_wished(self, choices: Sequence[Choice], wish: object) -> int:
-        """How many of the choices, from the first on, are what is wished for."""
+    def _as_wished(self, choices: Sequence[FieldContent], wish: object) -> int:
+        """Number of leading choices that are the preferred ones."""
         first = choices[0].nominal
         if isinstance(wish, float) and math.isnan(wish):
-            return len(choices)  # nothing is
+            return len(choices)  # No message.
         return next((i for i, each in enumerate(choices) if each.nominal != first), len(choices))
 
     def _good(
         self,
         wanted: Sequence[bool | None],
-        every: Sequence[Sequence[Choice]],
+        every: Sequence[Sequence[FieldContent]],
         places: Sequence[NDArray[np.intp]],
     ) -> NDArray[np.bool_]:
-        """In which combinations all parts are as wanted, by the code that audits logs."""
+        """For each combination, whether the audit reads the required value of all parts."""
         numbers = {
             signal.name: np.array([each.value for each in some], self._kind(signal))[place]
             for signal, some, place in zip(self.signals, every, places, strict=True)
@@ -178,12 +178,15 @@ class _Stage:
 # Messages ---------------------------------------------------------------------------------------
 
 
-def _spoken(
-    stage: _Stage, contents: Sequence[Sequence[Choice]], period: int, declarations: Declarations
+def _messages(
+    stage: _SignalSearch,
+    contents: Sequence[Sequence[FieldContent]],
+    period: int,
+    declarations: Declarations,
 ) -> Iterator[SyntheticMessage]:
-    """All topics, tick by tick; what is unknown by silence has none before it for long enough."""
+    """Messages of all topics, tick by tick; a topic without messages stays silent long enough."""
     topics = dict.fromkeys(signal.path.topic for signal in stage.signals)
-    ticks = {topic: _speaking(stage, topic, contents, period) for topic in topics}
+    ticks = {topic: _message_ticks(stage, topic, contents, period) for topic in topics}
     speaking = set().union(*ticks.values())
     for tick, chosen in enumerate(contents):
         for topic in topics:
@@ -193,13 +196,14 @@ def _spoken(
             yield _pulse(declarations, topics, EPOCH + tick * period)
 
 
-def _speaking(
-    stage: _Stage, topic: str, contents: Sequence[Sequence[Choice]], period: int
+def _message_ticks(
+    stage: _SignalSearch, topic: str, contents: Sequence[Sequence[FieldContent]], period: int
 ) -> set[int]:
-    """The ticks at which a topic has a message.
+    """Ticks at which a topic has a message.
 
     Raises:
-        NoStageError: an older message would count where none is to be known, or the reverse.
+        NotRecordableError: an older message would count where the value must be unknown, or the
+            reverse.
     """
     own = [i for i, signal in enumerate(stage.signals) if signal.path.topic == topic]
     silent = {t for t, chosen in enumerate(contents) if any(chosen[i].content is None for i in own)}
@@ -216,14 +220,16 @@ def _speaking(
             and all(contents[spoken][i] == contents[tick][i] for i in own)
         ):
             names = ", ".join(f"`{stage.signals[i].name}`" for i in own)
-            raise NoStageError(f"{names} cannot become unknown so soon: a message counts longer")
+            raise NotRecordableError(
+                f"{names} cannot become unknown so soon: a message counts longer"
+            )
     return {*range(len(contents))} - quiet
 
 
 def _of_tick(
-    stage: _Stage, topic: str, chosen: Sequence[Choice], tick: int, period: int
+    stage: _SignalSearch, topic: str, chosen: Sequence[FieldContent], tick: int, period: int
 ) -> Iterator[SyntheticMessage]:
-    """The message of a tick, before it as often as its age asks for."""
+    """Messages of a tick, repeated before it as often as their maximum age requires."""
     own = {
         signal: choice
         for signal, choice in zip(stage.signals, chosen, strict=True)
@@ -242,9 +248,11 @@ def _of_tick(
 
 
 def _pulse(declarations: Declarations, topics: Mapping[str, None], time: int) -> SyntheticMessage:
-    """A message of another topic, so that the log lasts where nothing else is said."""
+    """Message of another topic, which makes the log cover ticks without messages."""
     for signal in declarations.signals.values():
         if signal.path.topic not in topics and signal.type is not None:
             name = field(signal).message
             return SyntheticMessage(signal.path.topic, name, time, message(name, time, {}))
-    raise NoStageError("nothing is said at its first or last tick, so no log would have that tick")
+    raise NotRecordableError(
+        "it has no message at its first or last tick, so a log would not contain that tick"
+    )

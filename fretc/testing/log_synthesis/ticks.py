@@ -1,7 +1,7 @@
-"""What each proposition has to be at each tick of a log, so that the audit sees those of a test.
+"""Required truth value of each proposition at each tick of a log for a test.
 
-`... for 200 ms` looks back: what it names has to hold at the ticks before, which may lie before the
-test. Then the log has some ticks more in front, which change nothing of the verdict.
+`... for 200 ms` looks back: its argument must hold at earlier ticks, which may be before the test.
+Then the log has additional ticks at its start, which do not change the verdict.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from fretc.testing.log_synthesis.messages import NoStageError
+from fretc.testing.log_synthesis.messages import NotRecordableError
 from fretc.testing.suite import Test
 from fretish import expressions as e
 from fretish.bindings.declarations import Proposition
@@ -20,61 +20,61 @@ from monitors.kernel.verdicts import Truth
 
 Truths = Sequence[Truth]
 _MOST = 6
-"""Propositions of which all combinations are tried before the test."""
+"""Maximum number of propositions whose combinations are tried before the test."""
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """What the messages of a tick decide of a proposition."""
+    """The part of a proposition that the messages of a tick decide."""
 
     proposition: Proposition
     expression: e.Expression
-    """Without its duration."""
+    """Expression without its duration."""
     back: int
-    """Ticks before the one that sees it over which it has to last."""
+    """Number of earlier ticks over which it must last."""
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class TickPlan:
     """The ticks of a log."""
 
     lead: int
-    """How many stand before those of the test."""
+    """Number of ticks before those of the test."""
     wanted: Mapping[str, Truths]
-    """Proposition → what its part has to be at each tick."""
+    """Proposition → required value of its part at each tick."""
 
 
 def part(proposition: Proposition, period: int) -> Part:
     """A proposition without its duration.
 
     Args:
-        proposition: of the bindings.
-        period: nanoseconds of a tick.
+        proposition: a proposition of the bindings.
+        period: length of a tick in nanoseconds.
 
     Raises:
-        NoStageError: it looks back in another way.
+        NotRecordableError: it looks back in another way.
     """
     expression, back = proposition.expression, 0
     if isinstance(expression, e.Persistence):
         back = -(-expression.duration // period)
         expression = expression.arg
     if any(isinstance(each, e.Persistence) for each in e.parts(expression)):
-        raise NoStageError(f"`for` stands within the expression of `{proposition.name}`")
+        raise NotRecordableError(f"`for` stands within the expression of `{proposition.name}`")
     if ticks_back(expression):
-        raise NoStageError(f"`{proposition.name}` reads numbers of the tick before")
+        raise NotRecordableError(f"`{proposition.name}` reads numbers of the tick before")
     return Part(proposition, expression, back)
 
 
-def course(test: Test, parts: Sequence[Part], monitor: Monitor) -> Course:
-    """The ticks of a test, with others before them where they need some.
+def tick_plan(test: Test, parts: Sequence[Part], monitor: Monitor) -> TickPlan:
+    """The ticks of a test, with additional ticks before them if needed.
 
     Args:
-        test: its rows have the truth of each proposition.
-        parts: of the propositions of the monitor, in its order.
-        monitor: of the requirement.
+        test: test whose rows have the truth of each proposition.
+        parts: parts of the propositions of the monitor, in its order.
+        monitor: monitor of the requirement.
 
     Raises:
-        NoStageError: what looks back cannot be so.
+        NotRecordableError: no ticks give a duration its required values.
     """
     columns = {one.proposition.name: _column(test, one.proposition.name) for one in parts}
     most = max((one.back for one in parts), default=0)
@@ -87,14 +87,14 @@ def course(test: Test, parts: Sequence[Part], monitor: Monitor) -> Course:
                 seen[name] = _seen(wanted[name], one)
             same = all(seen[name][lead:] == columns[name] for name in columns)
             if same and (lead == 0 or _unchanged(test, lead, seen, monitor)):
-                return Course(lead, wanted)
-    raise NoStageError(_impossible(parts))
+                return TickPlan(lead, wanted)
+    raise NotRecordableError(_impossible(parts))
 
 
 def _impossible(parts: Sequence[Part]) -> str:
     names = ", ".join(f"`{one.proposition.name}`" for one in parts if one.back)
     if not names:
-        return "what is unknown in it counts as known"
+        return "it turns unknown values into known ones"
     return f"{names} cannot become true and false so soon: it looks back in time"
 
 
@@ -102,7 +102,7 @@ def _column(test: Test, name: str) -> list[Truth]:
     column: list[Truth] = []
     for row in test.rows:
         if name not in row.values:
-            raise NoStageError(f"the test does not say what `{name}` is")
+            raise NotRecordableError(f"the test has no value for `{name}`")
         value = row.values[name]
         assert value is None or isinstance(value, bool), (test.name, name)
         column += [value] * row.count
@@ -110,7 +110,7 @@ def _column(test: Test, name: str) -> list[Truth]:
 
 
 def _letters(parts: Sequence[Part], columns: Mapping[str, Truths]) -> Iterator[Mapping[str, Truth]]:
-    """What may stand before the test: all that looks back is left open."""
+    """Valuations that may precede the test; propositions with durations are left open."""
     free = [one.proposition.name for one in parts if not one.back]
     first = {name: columns[name][0] for name in free}
     yield first
@@ -119,7 +119,7 @@ def _letters(parts: Sequence[Part], columns: Mapping[str, Truths]) -> Iterator[M
 
 
 def _lasting(before: Sequence[Truth], column: Truths, one: Part) -> list[Truth]:
-    """What a part has to be so that what looks back at it is the column."""
+    """Values of a part that give its duration the column's values."""
     if not one.back:
         return [*before, *column]
     lead = len(before)
@@ -134,7 +134,7 @@ def _lasting(before: Sequence[Truth], column: Truths, one: Part) -> list[Truth]:
 
 
 def _seen(wanted: Truths, one: Part) -> list[Truth]:
-    """What the audit sees of a proposition whose part is so."""
+    """Values of a proposition that the audit reads for these values of its part."""
     seen: list[Truth] = []
     for tick in range(len(wanted)):
         window = wanted[max(0, tick - one.back) : tick + 1]
@@ -145,7 +145,7 @@ def _seen(wanted: Truths, one: Part) -> list[Truth]:
 
 
 def _unchanged(test: Test, lead: int, seen: Mapping[str, Truths], monitor: Monitor) -> bool:
-    """Whether the monitor says of the longer run what it says of the test."""
+    """Whether the monitor gives the longer run the results of the test."""
     monitor.reset()
     for tick in range(lead + test.ticks):
         monitor.advance([tuple(seen[name][tick] for name in monitor.PROPOSITIONS)])

@@ -1,4 +1,4 @@
-"""Scenarios like another one, by chance: things moved, somebody who walks in, and faults."""
+"""Random variations of a scenario: moved objects, a walking person, and faults."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from simulation.world.scene import STORE, Barrel
 Change = Callable[[Scenario, Random], Scenario]
 _TOPICS = ("/scan", "/odom", "/gwendolen_control", "/cmd_vel_filtered")
 _AWAY = 0.8
-"""Metres that a moved obstacle stays away from where the robot begins."""
+"""Minimum distance in metres between a moved obstacle and the robot's start."""
 
 
 def varied(scenario: Scenario, chance: Random) -> Scenario:
-    """The scenario with one to three changes; what it was to show is no longer known."""
+    """The scenario with one to three changes, and without expected results."""
     for change in chance.sample(CHANGES, chance.randint(1, 3)):
         scenario = change(scenario, chance)
     title = "A variation of a mission"
@@ -31,7 +31,9 @@ def varied(scenario: Scenario, chance: Random) -> Scenario:
 
 
 def _moved(scenario: Scenario, chance: Random) -> Scenario:
-    barrel = chance.choice([each.name for each in STORE.obstacles if isinstance(each, Barrel)])
+    barrel = chance.choice(
+        [obstacle.name for obstacle in STORE.obstacles if isinstance(obstacle, Barrel)]
+    )
     place = _place(chance)
     moved = {**scenario.store.moved, barrel: place}
     return replace(scenario, store=replace(scenario.store, moved=moved))
@@ -51,7 +53,7 @@ def _walked(scenario: Scenario, chance: Random) -> Scenario:
 
 
 def _place(chance: Random) -> tuple[float, float]:
-    """On the way of the robot, or beside it."""
+    """A position on the way of the robot, or beside it."""
     stops = [STORE.start, *STORE.goals]
     at = chance.randrange(len(stops) - 1)
     share = chance.uniform(0.1, 0.9)

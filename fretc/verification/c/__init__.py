@@ -1,4 +1,4 @@
-"""Monitors in C: the check of their text, the build as a shared library, and Frama-C's driver.
+"""Monitors in C: check of the layout, build as a shared library, and analysis by Frama-C.
 
 Input is the text of a monitor. Output is a machine that proofs step, or the reason of a refusal.
 """

@@ -1,4 +1,4 @@
-"""A monitor in C and its driver, for an analyzer of C: nothing of it is compiled or run."""
+"""A monitor in C and its driver, prepared for Frama-C; nothing is compiled or run."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import not_checked
 from compiler.targets.c.driver import ENTRY, driver
-from fretc.verification.c.form import without_comments
 from fretc.verification.c.language import base, checked
+from fretc.verification.c.layout import without_comments
 from fretc.verification.compiled.plan import ParsedSource, SourceText
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.verifying import RequirementOutcome
@@ -25,17 +25,17 @@ def analysed(
     limits: Limits,
     others: Sequence[FormalizedRequirement] = (),
 ) -> Iterator[RequirementOutcome]:
-    """What Frama-C says of a monitor, for each of its requirements: it is one answer.
+    """Frama-C's outcome for a monitor; it is the same for each of its requirements.
 
     Args:
-        requirements: those that are asked about; the target accepts them.
-        given: a monitor of them, maybe with others.
-        program: the path of Frama-C.
-        limits: of the analysis.
-        others: further requirements that the texts may implement.
+        requirements: the requirements to prove; the target accepts them.
+        given: a monitor of them, and perhaps of others.
+        program: path of Frama-C.
+        limits: limits of the analysis.
+        others: further requirements that the monitor may implement.
 
     Raises:
-        NotAMonitorError: the texts name no requirement.
+        NotAMonitorError: the monitor contains no requirement.
     """
     artefacts = {name: sha256(text) for name, text in given.texts.items()}
     try:
@@ -48,7 +48,7 @@ def analysed(
     outcome, engine = frama_c.answer(program, run, limits)
     artefacts[f"{PurePath(given.name).stem}_driver.c"] = sha256(run.driver)
     own = {requirement.id for requirement in found.requirements}
-    absent = not_checked("the monitor is of other requirements")
+    absent = not_checked("the monitor is for other requirements")
     for requirement in requirements:
         yield RequirementOutcome(
             requirement, outcome if requirement.id in own else absent, engine, artefacts
@@ -56,11 +56,11 @@ def analysed(
 
 
 def prepared(given: SourceText, found: ParsedSource) -> frama_c.Run:
-    """The texts that are analysed. What stands in comments, as annotations do, is left out.
+    """The texts to analyse, without comments, which could be annotations.
 
     Args:
         given: the texts.
-        found: what is known of their form.
+        found: their parsed layout.
     """
     made = driver(PurePath(given.header_name).stem, base(given), found.requirements)
     return frama_c.Run(

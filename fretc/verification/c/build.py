@@ -1,6 +1,6 @@
 """A monitor in C as a shared library, with the layout of its structs.
 
-The build traps: undefined behaviour that the compiler sees ends the process, and is no answer.
+Undefined behaviour that the compiler can detect aborts the process, so that it gives no result.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ FLAGS = (
     "-fPIC",
     "-shared",
     "-s",
-    "-ftrapv",  # else gcc takes `x + 1 > x` for true, and the sum for none that can overflow
+    "-ftrapv",  # Without this flag gcc assumes that `x + 1 > x` and that sums do not overflow.
     "-fsanitize=undefined",
     "-fsanitize-undefined-trap-on-error",
 )
 
 
 def compiler() -> str | None:
-    """The path of the first C compiler that is installed."""
+    """Path of the first installed C compiler, or None."""
     return next(filter(None, map(shutil.which, COMPILERS)), None)
 
 
@@ -32,13 +32,13 @@ def built(program: str, text: str, header: tuple[str, str], layout: str) -> Bina
     """The library of a monitor.
 
     Args:
-        program: the compiler.
-        text: of the C file.
-        header: the name and the text of its header.
-        layout: further C in the library, which tells the layout of structs.
+        program: path of the compiler.
+        text: text of the C file.
+        header: name and text of its header.
+        layout: further C code that exports the layout of structs.
 
     Raises:
-        ToolError: the compiler does not take the text, or cannot be run.
+        ToolError: the compiler rejects the text, or cannot be run.
     """
     texts = {header[0]: header[1], "fretc_text.c": text, "fretc_layout.c": layout}
     step = ("fretc_text.c", "fretc_layout.c", "-o", "fretc_text.so")
@@ -46,12 +46,12 @@ def built(program: str, text: str, header: tuple[str, str], layout: str) -> Bina
 
 
 def layout(header: str, base: str, cells: Sequence[str]) -> str:
-    """C that tells where the cells of a rail are.
+    """C code that exports the offsets of a rail's cells.
 
     Args:
-        header: its name.
-        base: what the names of its types begin with.
-        cells: all members of the struct of a rail.
+        header: name of the header.
+        base: prefix of the type names.
+        cells: all members of the rail's struct.
     """
     rail = f"{base}_rail"
     places = "".join(

@@ -1,21 +1,20 @@
-"""Two monitors compared without the bits in their delay lines.
+"""Equivalence of two monitors without the bits in their delay lines.
 
 A window `guard S[lo,hi] witness` keeps the witnesses of `lo` ticks: 2^lo states, where each tick
 reads one bit and writes one. So both monitors are stepped without these bits. At each step the bit
-that is read is any, false or true, and the same one on both sides; and beside what the step gives,
-the bits that both sides write are compared.
+that is read is arbitrary, but the same on both sides; besides the results of the step, the bits
+that both sides write are compared.
 
-Why that proves the monitors themselves equal: assume that they differ on a trace, and take the
-first tick at which a reading differs or different bits are written. Before it, both have written
-the same bits. A delay line gives the bit of `lo` ticks ago, at first false, so with lines of the
-same lengths both read the same bits up to that tick. Then this trace, with these bits, is one of
-those that were explored, and it has no difference. That the bits are any adds traces, and takes
-none away: a difference that is found may be no real one, and then the monitors are compared with
-all of their bits.
+This proves that the monitors are equal: assume that they differ on a trace, and take the first tick
+at which a reading differs or different bits are written. Before it, both have written the same
+bits. A delay line returns the bit of `lo` ticks ago, at first false, so with lines of the same
+lengths both read the same bits up to that tick. Then this trace, with these bits, was explored and
+has no difference. Arbitrary bits only add traces: a difference may be spurious, and then the
+monitors are compared with all of their bits.
 
-It rests on what a delay line is: that a step reads its oldest bit, puts the new one in its place,
-and does nothing else with it. In a text that fretc writes it is so, and only such a text is stepped
-like this. The length of each line is counted on the library itself.
+The proof relies on the behaviour of a delay line: a step reads its oldest bit, replaces it by the
+new one, and does nothing else with it. Texts in the layout of fretc satisfy this, and only these
+are stepped in this way. The length of each line is counted on the library itself.
 """
 
 from __future__ import annotations
@@ -32,16 +31,16 @@ class Line(NamedTuple):
 
     length: int
     guarded: bool
-    """Whether the window counts the ticks with its guard."""
+    """Whether the window counts ticks together with its guard."""
 
 
 class FreeLetter(NamedTuple):
-    """What comes at a tick."""
+    """Inputs of a tick."""
 
     values: Letter
-    """Of the propositions."""
+    """Values of the propositions."""
     oldest: tuple[bool, ...]
-    """The bit that each delay line gives."""
+    """The bit that each delay line returns."""
 
 
 class Delayed(Protocol):
@@ -49,30 +48,30 @@ class Delayed(Protocol):
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """In the order of `FreeLetter.oldest`."""
+        """The delay lines, in the order of `FreeLetter.oldest`."""
 
     def save(self) -> Hashable:
-        """All cells but the delay lines."""
+        """All cells except the delay lines."""
 
     def step(self, state: Any, letter: FreeLetter) -> tuple[object, ...]:
-        """The reading one tick after a state, whether the verdict follows, and the bits written."""
+        """The reading after a tick, whether the verdict follows, and the written bits."""
 
 
 class FreeWindow:
-    """A window whose oldest bit is given: the counters around a delay line, as monitors have them.
+    """A window whose oldest bit is an input, with the counters of a monitor's delay line.
 
-    `guard S[lo,hi] witness` is true where a witness became `lo` ticks old at most `hi - lo` ticks
-    ago, with the guard at each tick since the witness.
+    `guard S[lo,hi] witness` is true if a witness became `lo` ticks old at most `hi - lo` ticks ago,
+    with the guard at each tick since the witness.
     """
 
     def __init__(self, lo: int, hi: int, *, guarded: bool) -> None:
-        """Before the first tick, where the guard counts as true for ever if it is not counted."""
+        """The window before the first tick; an uncounted guard counts as always true."""
         self.lo, self.none = lo, hi - lo + 1
         self.oldest = self.written = False
         self._clear, self._age = (0 if guarded else lo), self.none
 
     def step(self, guard: bool, witness: bool) -> bool:
-        """As the window's own `step`."""
+        """Step like the monitor's window."""
         self._clear = min(self._clear + 1, self.lo) if guard else 0
         if self.oldest and self._clear >= self.lo:
             self._age = 0
@@ -88,7 +87,7 @@ class FreeWindow:
         return self._clear, self._age
 
     def restore(self, state: tuple[int, int]) -> None:
-        """Go back to counters that were saved."""
+        """Restore saved counters."""
         self._clear, self._age = state
 
 
@@ -96,11 +95,11 @@ class PythonDelayed:
     """A rail of the monitor in Python with free windows."""
 
     def __init__(self, rail: PythonRail, lines: Sequence[Line]) -> None:
-        """Before the first tick.
+        """The rail before the first tick.
 
         Args:
-            rail: it; its windows are replaced.
-            lines: those of the other monitor; as many as there are windows.
+            rail: the rail, whose windows are replaced.
+            lines: delay lines of the other monitor, as many as there are windows.
         """
         self._rail = rail
         self._windows = [
@@ -110,11 +109,11 @@ class PythonDelayed:
         rail.replace_windows(self._windows)
 
     def save(self) -> Hashable:
-        """All cells but the bits of windows."""
+        """All cells except the bits of windows."""
         return self._rail.save()
 
     def step(self, state: Any, letter: FreeLetter) -> tuple[object, ...]:
-        """The reading one tick after a state, and the bits that are written."""
+        """The reading after a tick, and the written bits."""
         for window, oldest in zip(self._windows, letter.oldest, strict=True):
             window.oldest = oldest
         told = self._rail.step(state, letter.values)

@@ -1,7 +1,7 @@
-"""What a step makes of what, read off its statements.
+"""Data flow of a step: what each changed name depends on.
 
-A statement gives one cell, signal or local truth value to an expression of such and of numbers. It
-has no call, no loop, no pointer and no address, so a step depends on nothing else.
+A statement assigns an expression of names and numbers to one cell, signal or local truth value. It
+has no call, loop, pointer or address, so a step depends on nothing else.
 """
 
 from __future__ import annotations
@@ -12,31 +12,31 @@ from dataclasses import dataclass
 from fretc.verification.compiled.text import NAME, NUMBER, Fields, Tokens, strange
 
 _JOINS = ("&", "|")
-"""With no value before them they take an address or begin a function."""
+"""Operators that need a left operand; without one they take an address or begin a function."""
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
-    """What the readings of one requirement depend on."""
+class Dependencies:
+    """Dependencies of the readings of one requirement."""
 
     cells: frozenset[str]
     """Cells of a rail, among other names."""
     inputs: frozenset[int]
-    """Places of propositions."""
+    """Indices of propositions."""
 
 
 @dataclass(frozen=True, slots=True)
-class Form:
-    """A text in the form that fretc writes."""
+class CheckedLayout:
+    """A checked text in the layout of fretc."""
 
     sources: Mapping[str, frozenset[str]]
-    """Each name that a step changes, with all that it is made of. What is read of a requirement
-    has the name of its outcome, after `&`."""
+    """Each changed name with the names that it depends on. The readings of a requirement have the
+    name of its outcome after `&`."""
     literals: Mapping[str, int]
-    """Each literal, with the place of the proposition that it is read off."""
+    """Each literal with the index of its proposition."""
 
-    def part(self, outcome: str) -> Part:
-        """The part of the requirement whose outcome has this name."""
+    def part(self, outcome: str) -> Dependencies:
+        """Dependencies of the requirement with this outcome name."""
         reached = {f"&{outcome}"}
         waiting = [*reached]
         while waiting:
@@ -44,37 +44,37 @@ class Form:
                 reached.add(name)
                 waiting.append(name)
         inputs = (place for literal, place in self.literals.items() if literal in reached)
-        return Part(frozenset(reached), frozenset(inputs))
+        return Dependencies(frozenset(reached), frozenset(inputs))
 
 
 @dataclass(frozen=True, slots=True)
 class Grammar:
-    """What an expression may be made of, beside local truth values and numbers."""
+    """Allowed elements of an expression, besides local truth values and numbers."""
 
     members: Mapping[tuple[str, str], Collection[str]]
-    """What stands before a member, as `rail` and `->`; and the members."""
+    """Prefixes of members, such as `rail` and `->`; and the members."""
     signs: Collection[str]
     kept: Collection[str] = ()
-    """Words that are no names of local truth values."""
+    """Words that are not names of local truth values."""
 
     def is_member(self, tokens: Sequence[str]) -> bool:
-        """Whether these three tokens are a member."""
+        """Whether the three tokens are a member."""
         return len(tokens) == 3 and tokens[2] in self.members.get((tokens[0], tokens[1]), ())
 
 
 _CALLS = ("(", "!")
-"""What makes a name a call, or a macro of Rust."""
+"""Tokens that make a name a call, or a macro of Rust."""
 
 
 class Flow:
-    """The step as far as it is read."""
+    """Data flow of the statements of a step that were read so far."""
 
     def __init__(self, grammar: Grammar) -> None:
-        """Nothing is read yet."""
+        """The data flow of an empty step."""
         self.sources: dict[str, frozenset[str]] = {}
-        """Each name that is changed, with the names in its values and in the conditions around."""
+        """Each changed name with the names in its values and in the enclosing conditions."""
         self.conditions: list[frozenset[str]] = []
-        """The names in each condition around the present statement."""
+        """Names in each condition around the current statement."""
         self._grammar = grammar
         self._local: set[str] = set()
 
@@ -82,7 +82,7 @@ class Flow:
         """The names in an expression.
 
         Raises:
-            UnexpectedLayoutError: there is anything else in it.
+            UnexpectedLayoutError: the expression contains anything else.
         """
         names, place, grammar = set[str](), 0, self._grammar
         while place < len(value):
@@ -102,22 +102,22 @@ class Flow:
         return frozenset(names)
 
     def change(self, targets: Iterable[str], names: frozenset[str]) -> None:
-        """The targets get a value that is made of these names."""
+        """Record that the targets depend on these names."""
         for name in targets:
             before = self.sources.get(name, frozenset())
             self.sources[name] = before.union(names, *self.conditions)
 
     def give(self, member: Sequence[str], value: Sequence[str], statement: Sequence[str]) -> bool:
-        """A member gets a value; False: it is none that may."""
+        """Record an assignment to a member; False: it is not an allowed member."""
         if not self._grammar.is_member(member):
             return False
         self.change(member[2:], self.names(value, statement))
         return True
 
     def declare(self, name: str, value: Sequence[str], statement: Sequence[str]) -> bool:
-        """A local truth value begins; False: this is no name for one.
+        """Record the declaration of a local truth value; False: the name is not allowed.
 
-        In C a second one of the same name may read itself, before it has a value.
+        In C, a second declaration of the same name could read itself before it has a value.
         """
         if not NAME.fullmatch(name) or name in self._grammar.kept or name in self._local:
             return False
@@ -126,7 +126,7 @@ class Flow:
         return True
 
     def known(self, names: frozenset[str], targets: Iterable[str], local: Iterable[str]) -> None:
-        """A statement that is as fretc writes it: all of its names make each of its targets."""
+        """Record a statement that fretc writes: each target depends on all of its names."""
         self.change(targets, names)
         self._local.update(local)
 
@@ -137,16 +137,16 @@ class Flow:
         own: Sequence[Fields],
         expression: Callable[[str, Tokens], Tokens] = lambda _, value: value,
     ) -> None:
-        """What is read of each requirement, at the end.
+        """Record the readings of each requirement, at the end.
 
         Args:
-            outcomes: their names.
-            given: the fields of each outcome.
-            own: those that fretc writes: their names must be the same.
-            expression: what a field's value is made of.
+            outcomes: names of the requirements' outcomes.
+            given: fields of each outcome.
+            own: fields that fretc writes; the names must be the same.
+            expression: pattern of a field's value.
 
         Raises:
-            UnexpectedLayoutError: they are not made of expressions.
+            UnexpectedLayoutError: a field is not an expression.
         """
         if self.conditions or [*map(_names, given)] != [*map(_names, own)]:
             raise strange([token for fields in given for _, value in fields for token in value])
@@ -156,7 +156,7 @@ class Flow:
 
 
 def _is_value(before: Sequence[str]) -> bool:
-    """Whether an expression can end with this token, of which there is one or none."""
+    """Whether an expression can end with this token, if there is one."""
     return any(
         each == ")"
         or NUMBER.fullmatch(each)

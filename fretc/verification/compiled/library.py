@@ -1,8 +1,8 @@
 """A monitor in a shared library as a machine whose state can be saved, restored and stepped.
 
-Its state is the bytes of the cells that the requirement depends on. The form of the text grants
-that a step reaches no other memory. Memory is not zero before the first state and each step: what
-they leave out is seen.
+The state is the bytes of the cells on which the requirement depends. The checked layout guarantees
+that a step accesses no other memory. Memory is filled with nonzero bytes before initialization and
+each step, so that missing assignments are detected.
 """
 
 from __future__ import annotations
@@ -36,23 +36,23 @@ _HEAD = 6
 
 @dataclass(frozen=True, slots=True)
 class LibraryFile:
-    """A library that the loader takes."""
+    """A shared library in a form that can be loaded."""
 
     path: Path
     base: str
-    """What the names of its functions begin with."""
+    """Prefix of the function names."""
     cells: tuple[str, ...]
-    """All of a rail, in the order of the layout."""
+    """All cells of a rail, in the order of the layout."""
 
     @contextmanager
     def running(self, plan: Plan) -> Iterator[Library]:
-        """The library as one requirement.
+        """The loaded library, as a machine of one requirement.
 
-        A process must load no library from a file that had another one: the loader knows a file by
-        its inode.
+        A process must not load two libraries from the same file, because the loader identifies a
+        file by its inode.
 
         Raises:
-            ToolError: it cannot be loaded, or its structs are not as we read them.
+            ToolError: it cannot be loaded, or its structs have another layout.
         """
         try:
             yield Library(self, plan)
@@ -63,21 +63,21 @@ class LibraryFile:
 def saved(
     binary: Binary, folder: Path, base: str, cells: tuple[str, ...]
 ) -> tuple[LibraryFile, str]:
-    """The library in a folder of its own, and its SHA-256."""
+    """The library written to its own folder, and its SHA-256."""
     path = folder / "monitor.so"
     path.write_bytes(binary.data)
     return LibraryFile(path, base, cells), hashlib.sha256(binary.data).hexdigest()
 
 
 class Library:
-    """The compiled text, with memory of its own for one state."""
+    """The loaded library, with memory for one state."""
 
     def __init__(self, file: LibraryFile, plan: Plan) -> None:
-        """Before the first tick.
+        """The library before the first tick.
 
         Raises:
             OSError: the library cannot be loaded.
-            ToolError: its structs are not as we read them.
+            ToolError: its structs have another layout.
         """
         library: Any = ctypes.CDLL(str(file.path))
         count = _HEAD + 2 * len(file.cells)
@@ -116,17 +116,17 @@ class Library:
         self._starts = self.save(0), self.save(1)
 
     def judging(self) -> CompiledMonitorMachine:
-        """Both rails, before the first tick."""
+        """A machine of both rails, before the first tick."""
         self._restart()
         return CompiledMonitorMachine(self)
 
     def rail(self, letters: Sequence[Letter], *, doubt: bool) -> CompiledRail:
-        """One of them, before the first tick."""
+        """One of the rails, before the first tick."""
         self._restart()
         return CompiledRail(self, doubt=doubt)
 
     def delayed(self, *, doubt: bool) -> CompiledDelayed | None:
-        """One of its rails without the bits of its delay lines, before the first tick.
+        """A rail without the bits of its delay lines, before the first tick.
 
         None: there are none, or the text is not the one that fretc writes.
         """
@@ -140,29 +140,29 @@ class Library:
             self.load(rail, start)
 
     def save(self, rail: int) -> bytes:
-        """The cells of a rail: 0 the certain one, 1 the possible one."""
+        """Cells of a rail: 0 the certain one, 1 the possible one."""
         return self.read(rail, self._cells)
 
     def load(self, rail: int, saved: bytes) -> None:
-        """Go back to cells that were saved."""
+        """Restore saved cells."""
         self.write(rail, self._cells, saved)
 
     def read(self, rail: int, places: Sequence[tuple[int, int]]) -> bytes:
-        """The bytes at some offsets of a rail, with their sizes."""
+        """Bytes of a rail at some offsets."""
         start = ctypes.addressof(self._state) + self._rails[rail]
         return b"".join([ctypes.string_at(start + at, size) for at, size in places])
 
     def write(self, rail: int, places: Sequence[tuple[int, int]], saved: bytes) -> None:
-        """Give them other bytes."""
+        """Replace bytes of a rail."""
         start, done = ctypes.addressof(self._state) + self._rails[rail], 0
         for at, size in places:
             ctypes.memmove(start + at, saved[done : done + size], size)
             done += size
 
     def step(self, letter: Sequence[Truth]) -> tuple[Reading, Reading, tuple[object, ...]]:
-        """Both readings after a tick, and what is judged from them.
+        """Both readings after a tick, and the verdicts from them.
 
-        An input that no value of the letter is for is false.
+        An input without a value is false.
         """
         for i, place in self.order:
             self._inputs[place] = _CODES[letter[i]]
@@ -178,17 +178,17 @@ class Library:
 
 
 class Ring(NamedTuple):
-    """The memory of a delay line in a rail: offsets and sizes in bytes."""
+    """Memory of a delay line in a rail: offsets and sizes in bytes."""
 
     bits: tuple[int, int]
     place: tuple[int, int]
-    """Of the number of the oldest bit."""
+    """Offset and size of the index of the oldest bit."""
     guarded: bool
-    """Whether the window counts the ticks with its guard."""
+    """Whether the window counts ticks together with its guard."""
 
 
 def is_place(name: str) -> bool:
-    """Whether a cell is the place of the oldest bit in a ring."""
+    """Whether a cell is the index of the oldest bit in a ring."""
     return name.startswith("ring_") and name.endswith("_at")
 
 
@@ -197,7 +197,7 @@ def _clear(ring: str) -> str:
 
 
 def _joined(places: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Offsets and sizes in order, with what lies side by side as one."""
+    """Offsets and sizes in order, with adjacent ones joined."""
     found: list[tuple[int, int]] = []
     for at, size in sorted(places):
         if found and sum(found[-1]) == at:
@@ -208,10 +208,10 @@ def _joined(places: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
 
 
 class CompiledMonitorMachine:
-    """A compiled monitor whose propositions are all known, with both of its rails."""
+    """A compiled monitor with known propositions, with both of its rails."""
 
     def __init__(self, library: Library) -> None:
-        """From its present state."""
+        """The machine in the library's present state."""
         self._library = library
 
     def save(self) -> Hashable:
@@ -219,21 +219,21 @@ class CompiledMonitorMachine:
         return self._library.save(0), self._library.save(1)
 
     def load(self, state: Any) -> None:
-        """Go back to a state."""
+        """Restore a state."""
         for rail, cells in enumerate(state):
             self._library.load(rail, cells)
 
     def step(self, letter: Valuation) -> Judgement:
-        """The verdict that it tells, and FRET's finite one."""
+        """The verdict after a tick, and FRET's finite verdict."""
         _, _, (verdict, finite, _) = self._library.step(letter)
         return str(verdict), finite is True
 
 
 class CompiledRail:
-    """One rail of a compiled monitor; the other one goes on from wherever it is."""
+    """One rail of a compiled monitor; the state of the other rail is arbitrary."""
 
     def __init__(self, library: Library, *, doubt: bool) -> None:
-        """From its present state; with `doubt` the rail of what may hold."""
+        """The rail in its present state; with `doubt` the possible one."""
         self._library, self._rail = library, int(doubt)
 
     def save(self) -> bytes:
@@ -241,17 +241,17 @@ class CompiledRail:
         return self._library.save(self._rail)
 
     def step(self, state: bytes, letter: Letter) -> tuple[object, ...]:
-        """What it tells one tick after a state, and whether the verdict follows from both rails."""
+        """The reading after a tick, and whether the verdict follows from both rails."""
         self._library.load(self._rail, state)
         *readings, told = self._library.step(letter)
         return (*readings[self._rail], told == judged(*readings))
 
 
 class CompiledDelayed:
-    """One rail of a compiled monitor whose delay lines give any bits, with their places at 0."""
+    """One rail of a compiled monitor with arbitrary bits in its delay lines, at index 0."""
 
     def __init__(self, library: Library, *, doubt: bool) -> None:
-        """From its present state; with `doubt` the rail of what may hold."""
+        """The rail in its present state; with `doubt` the possible one."""
         self._library, self._rail = library, int(doubt)
         start = library.save(self._rail)
         self._lengths = [self._length(ring) for ring in library.rings]
@@ -259,16 +259,16 @@ class CompiledDelayed:
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """In the order of the cells."""
+        """The delay lines in the order of the cells."""
         pairs = zip(self._lengths, self._library.rings, strict=True)
         return tuple(Line(length, ring.guarded) for length, ring in pairs)
 
     def save(self) -> bytes:
-        """All cells but the delay lines."""
+        """All cells except the delay lines."""
         return self._library.read(self._rail, self._library.others)
 
     def step(self, state: bytes, letter: FreeLetter) -> tuple[object, ...]:
-        """The reading, whether the verdict follows, and the bits written; or what is no bit."""
+        """The reading, whether the verdict follows, and the written bits; or an error."""
         library, rail = self._library, self._rail
         library.write(rail, library.others, state)
         for ring, oldest in zip(library.rings, letter.oldest, strict=True):
@@ -284,7 +284,7 @@ class CompiledDelayed:
         return (*readings[rail], told == judged(*readings), *written)
 
     def _written(self, ring: Ring, length: int, oldest: bool) -> bool | None:
-        """The bit in the place of the oldest one; None where anything else has changed."""
+        """The bit that replaced the oldest one; None if anything else has changed."""
         bits = int.from_bytes(self._library.read(self._rail, [ring.bits]), sys.byteorder)
         others = (1 << 8 * ring.bits[1]) - 2 if oldest else 0
         is_moved = self._place(ring) == (1 if length > 1 else 0)
@@ -294,7 +294,7 @@ class CompiledDelayed:
         return int.from_bytes(self._library.read(self._rail, [ring.place]), sys.byteorder)
 
     def _length(self, ring: Ring) -> int:
-        """Ticks until the place is 0 again, which goes up by one at each; 0: it does not."""
+        """Ticks until the index returns to 0, increasing by one at each; 0: it does not."""
         library = self._library
         letter, capacity = (False,) * len(library.order), 8 * ring.bits[1]
         library.write(self._rail, [ring.place], bytes(ring.place[1]))

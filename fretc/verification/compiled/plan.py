@@ -1,4 +1,4 @@
-"""Where a requirement is in a text of a monitor, and what the text may be run by."""
+"""Position of a requirement in the text of a monitor, and the interface of languages."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Protocol
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of
 from fretc.verification.compiled.delays import Delayed
-from fretc.verification.compiled.flow import Form
+from fretc.verification.compiled.flow import CheckedLayout
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.monitor.equivalence import Machine
 from fretc.verification.monitor.rails import Letter, Stepping
@@ -23,96 +23,97 @@ class SourceText:
     """A monitor in another language than Python."""
 
     name: str
-    """Of its file."""
+    """Name of the file."""
     text: str
     header_name: str = ""
     header: str = ""
-    """Of a monitor in C."""
+    """Header of a monitor in C."""
 
     @property
     def texts(self) -> Mapping[str, str]:
-        """All of it, by the names of the files."""
+        """All texts by file name."""
         return {self.name: self.text, **({self.header_name: self.header} if self.header else {})}
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Where the requirement is; it can be sent to another process."""
+    """Position of a requirement in a monitor; it can be sent to another process."""
 
     needed: frozenset[str]
-    """Names of the cells that the requirement depends on, among others."""
+    """Names of the cells on which the requirement depends, among others."""
     outcome: int
-    """The place of the requirement among the outcomes."""
+    """Index of the requirement's outcome."""
     inputs: tuple[int, ...]
-    """For each value of a letter, the place of its input; -1: there is none."""
+    """Index of the input for each value of a valuation; -1: there is none."""
     width: int
-    """How many inputs there are."""
+    """Number of inputs."""
     is_original: bool = False
-    """Whether the text is, but for comments and layout, the one that fretc writes."""
+    """Whether the text equals the one that fretc writes, except for comments and layout."""
 
 
 @dataclass(frozen=True, slots=True)
 class ParsedSource:
-    """A text that has the form that fretc writes."""
+    """A text in the layout that fretc writes."""
 
     requirements: tuple[FormalizedRequirement, ...]
-    """In the order of its outcomes."""
+    """Requirements in the order of their outcomes."""
     outcomes: tuple[str, ...]
-    """Their names in the text."""
-    form: Form
+    """Names of the outcomes in the text."""
+    form: CheckedLayout
     cells: tuple[str, ...]
-    """All of a rail."""
+    """All cells of a rail."""
     inputs: tuple[str, ...]
-    """The names of the propositions in the text, in their order."""
+    """Names of the propositions in the text, in their order."""
     is_original: bool = False
-    """Whether the text is, but for comments and layout, the one that fretc writes."""
+    """Whether the text equals the one that fretc writes, except for comments and layout."""
 
     def plan(self, requirement: FormalizedRequirement) -> Plan:
-        """Where a requirement is.
+        """Position of a requirement in the text.
 
         Raises:
-            UnexpectedLayoutError: it is not there, or depends on more than its sentence speaks of.
+            UnexpectedLayoutError: it is missing, or depends on names that its sentence does not
+                mention.
         """
         ids = [each.id for each in self.requirements]
         if requirement.id not in ids:
-            raise UnexpectedLayoutError("the monitor is of other requirements")
+            raise UnexpectedLayoutError("the monitor is for other requirements")
         place, own = ids.index(requirement.id), atoms(requirement)
         part = self.form.part(self.outcomes[place])
         names = tuple(dict.fromkeys(name for each in self.requirements for name in each.watched))
         if not {names[i] for i in part.inputs} <= {*own}:
             raise UnexpectedLayoutError(
-                f"{requirement.id} depends on what its sentence does not speak of"
+                f"{requirement.id} depends on names that its sentence does not mention"
             )
         places = tuple(names.index(name) if name in names else -1 for name in own)
         return Plan(part.cells, place, places, len(names), self.is_original)
 
 
 class Machines(Protocol):
-    """A text that runs, seen as one requirement."""
+    """A running monitor, seen as one requirement."""
 
     def delayed(self, *, doubt: bool) -> Delayed | None:
-        """One of its rails without its delay lines, before the first tick.
+        """One of its rails without delay lines, before the first tick.
 
-        None: it has none, or it is not known what they do.
+        None: it has no delay lines, or their behaviour is unknown.
         """
 
     def judging(self) -> Machine:
-        """It, before the first tick, by both verdicts."""
+        """Machine of both verdicts, before the first tick."""
 
     def rail(self, letters: Sequence[Letter], *, doubt: bool) -> Stepping:
         """One of its rails, before the first tick.
 
         Args:
-            letters: all that may come at a tick.
-            doubt: whether it is the rail of what may hold.
+            letters: all valuations of a tick.
+            doubt: whether it is the rail of the possible value.
         """
 
 
 class Executable(Protocol):
-    """A text that can be run; it can be sent to another process."""
+    """A monitor that can be run; it can be sent to another process."""
 
     def running(self, plan: Plan) -> AbstractContextManager[Machines]:
-        """It, as one requirement.
+        """The running monitor, as one requirement.
 
         Raises:
             ToolError: it cannot be run.
@@ -121,71 +122,69 @@ class Executable(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class BuiltLibrary:
-    """A text that was checked, as it is to run."""
+    """A checked monitor, ready to run."""
 
     executable: Executable
     engine: str
-    """What compiled it or is to run it, with version and flags."""
+    """Compiler or interpreter, with version and flags."""
     artefacts: Mapping[str, str]
-    """SHA-256 of what was made of the text, by the names of files."""
+    """SHA-256 of the generated files, by name."""
 
 
 class Language(Protocol):
-    """A module for each language."""
+    """Interface of the module of each language."""
 
     def tool(self) -> str | None:
-        """The path of the program that compiles or runs; None: none is installed."""
+        """Path of the compiler or interpreter; None: none is installed."""
 
     def checked(
         self, given: SourceText, requirements: Sequence[FormalizedRequirement]
     ) -> ParsedSource:
-        """The text in the form that fretc writes.
+        """The parsed layout of the text.
 
         Args:
-            given: it.
-            requirements: those that it may implement.
+            given: the text.
+            requirements: requirements that it may implement.
 
         Raises:
-            NotAMonitorError: it names no requirement.
-            UnexpectedLayoutError: it has another form.
+            NotAMonitorError: it contains no requirement.
+            UnexpectedLayoutError: the layout differs from that of fretc.
         """
 
     def prepared(
         self, program: str, given: SourceText, checked: ParsedSource, folder: Path
     ) -> BuiltLibrary:
-        """The text, compiled; nothing of it has run.
+        """The compiled text; nothing of it has run.
 
         Args:
-            program: that of `tool`.
+            program: the path from `tool`.
             given: the text.
-            checked: what `checked` has said of it.
-            folder: where files are put that the executable needs.
+            checked: the result of `checked`.
+            folder: folder for files that the executable needs.
 
         Raises:
-            ToolError: the program does not take it.
+            ToolError: the program rejects the text.
         """
 
 
 def atoms(requirement: FormalizedRequirement) -> tuple[str, ...]:
-    """The order of the values in a letter."""
+    """Order of the values in a valuation."""
     return tuple(dict.fromkeys((*atoms_of(requirement.sentence), *requirement.watched)))
 
 
 def implemented(
     ids: Sequence[str], requirements: Sequence[FormalizedRequirement]
 ) -> tuple[FormalizedRequirement, ...]:
-    """The requirements with the ids that a text tells.
+    """The requirements with the ids in a text.
 
     Raises:
-        NotAMonitorError: there is none.
-        UnexpectedLayoutError: one of them is not there.
+        NotAMonitorError: there is no id.
+        UnexpectedLayoutError: a requirement is unknown.
     """
-    by_id = {each.id: each for each in requirements}
+    by_id = {requirement.id: requirement for requirement in requirements}
     if not ids:
-        raise NotAMonitorError("it names no requirement")
+        raise NotAMonitorError("it contains no requirement")
     for id in ids:
         if id not in by_id:
-            raise UnexpectedLayoutError(
-                f"it has {id}, which is not among the requirements that are read"
-            )
+            raise UnexpectedLayoutError(f"it has {id}, which is not one of the given requirements")
     return tuple(by_id[id] for id in dict.fromkeys(ids))

@@ -1,7 +1,7 @@
-"""What a rail tells of a requirement after a tick, in any language; and that of the text in Python.
+"""The reading of a rail after a tick, in any language; and the readings of the monitor in Python.
 
-The monitor in Python is the reference for unknown values, triggers, answers, deadlines and open
-demands: `fretc.verification.monitor` proves it from its own text.
+The monitor in Python is the reference for unknown values, triggers, responses, deadlines and open
+obligations: `fretc.verification.monitor` proves it from its own text.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from monitors.kernel.verdicts import Truth
 
 
 class Reading(NamedTuple):
-    """One rail of a requirement after a tick."""
+    """Result of one rail for a requirement after a tick."""
 
     left: int
-    """Ticks to the deadline of the open demand; -1: none is ahead."""
+    """Ticks to the deadline of the open obligation; -1: there is no deadline ahead."""
     violated: int
     failed: int
     trigger: int
@@ -35,16 +35,16 @@ class Reading(NamedTuple):
 
 
 VERDICTS = ("pending", "satisfied", "violated")
-"""In the order of their numbers."""
+"""Verdicts in the order of their numbers."""
 NAMES = (
     *(f"value of `{name}`" for name in Reading._fields),
     "verdict, or what is owed, from the two readings",
 )
-"""Of the values that a step tells."""
+"""Names of the values that a step returns."""
 
 
 def judged(certain: Reading, possible: Reading) -> tuple[str, Truth, Truth]:
-    """The verdict whatever follows, FRET's finite one, and what is owed, from both rails."""
+    """Final verdict, FRET's finite verdict, and open obligation, from both rails."""
     if certain.violated == 1:
         verdict = "violated"
     else:
@@ -56,7 +56,7 @@ def judged(certain: Reading, possible: Reading) -> tuple[str, Truth, Truth]:
 
 
 class PythonRail:
-    """A rail of a monitor in Python, with what it remembers in ticks from now."""
+    """A rail of a monitor in Python, with stored ticks relative to the present one."""
 
     def __init__(
         self,
@@ -66,12 +66,12 @@ class PythonRail:
         *,
         doubt: bool,
     ) -> None:
-        """Before the first tick.
+        """The rail before the first tick.
 
         Args:
-            monitor: that of the requirement alone, as fretc writes it.
-            requirement: it.
-            atoms: the order of the values in a letter.
+            monitor: monitor of the requirement alone, as fretc writes it.
+            requirement: the requirement.
+            atoms: order of the values in a valuation.
             doubt: whether unknown values count as true.
         """
         self._rail: Any = monitor.RAIL(doubt=doubt)
@@ -87,22 +87,22 @@ class PythonRail:
         self._now = 0 if self._horizon is None else self._horizon + 2
 
     def windows(self) -> list[Any]:
-        """Its windows, in the order of the text."""
+        """Windows of the rail, in the order of the text."""
         return [getattr(self._rail, name) for name in self._cells.windows]
 
     def replace_windows(self, windows: Sequence[object]) -> None:
-        """Let others with the same methods take their places."""
+        """Replace the windows by others with the same methods."""
         for name, window in zip(self._cells.windows, windows, strict=True):
             setattr(self._rail, name, window)
 
     def save(self) -> Hashable:
-        """Its cells, whether it is broken or doomed, and how old a demand is."""
+        """Cells, whether the requirement is violated or will be, and the age of an obligation."""
         latched = tuple(self._mark(name) >= 0 for name in ("broken", "doomed"))
         ages = tuple([self._age(name) for name in self._ages])
         return self._cells.save(), latched, ages
 
     def step(self, state: Any, letter: Letter) -> tuple[object, ...]:
-        """What it tells one tick after a state; and that the verdict follows from it."""
+        """The reading after a tick; the verdict always follows from it."""
         cells, latched, ages = state
         self._cells.load(cells)
         self._rail.tick = self._now
@@ -119,18 +119,18 @@ class PythonRail:
         return int(getattr(self._rail, self._names[name]))
 
     def _age(self, name: str) -> int:
-        """How old it is, at most one tick more than matters; -1: there is none."""
+        """Age in ticks, at most one more than matters; -1: there is none."""
         tick = self._mark(name)
         assert self._horizon is not None
         return min(self._rail.tick - tick, self._horizon + 1) if tick >= 0 else -1
 
 
 def reading_of(rail: Any, horizon: int | None) -> Reading:
-    """What a rail in Python tells of its only requirement.
+    """The reading of a rail in Python for its only requirement.
 
     Args:
-        rail: after a tick.
-        horizon: the ticks from a trigger to its deadline; None: there is none.
+        rail: the rail after a tick.
+        horizon: ticks from a trigger to its deadline; None: there is none.
     """
     signals, marks = rail.signals()[0], rail.marks()[0]
     left = -1
@@ -149,14 +149,14 @@ def reading_of(rail: Any, horizon: int | None) -> Reading:
 
 
 class PythonJudging:
-    """The monitor in Python by both verdicts, which must follow from what its rail reads."""
+    """The monitor in Python with both verdicts, which must follow from the readings."""
 
     def __init__(self, monitor: Monitor, atoms: Sequence[str]) -> None:
-        """Before the first tick.
+        """The monitor before the first tick.
 
         Args:
-            monitor: of one requirement, as fretc writes it.
-            atoms: the order of the values in a valuation.
+            monitor: monitor of one requirement, as fretc writes it.
+            atoms: order of the values in a valuation.
         """
         self._machine = Stepped(monitor, 0, atoms)
         self._rail: Any = monitor.must
@@ -167,11 +167,11 @@ class PythonJudging:
         return self._machine.save()
 
     def load(self, state: Hashable) -> None:
-        """Go back to a state."""
+        """Restore a state."""
         self._machine.load(state)
 
     def step(self, letter: Valuation) -> Judgement:
-        """Both verdicts after a tick; no verdict where they do not follow from the reading."""
+        """Both verdicts after a tick; no verdict if they do not follow from the reading."""
         judgement = self._machine.step(letter)
         reading = reading_of(self._rail, self._horizon)
         verdict, finite, _ = judged(reading, reading)

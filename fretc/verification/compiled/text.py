@@ -1,6 +1,6 @@
-"""Texts of programs as tokens, and where two of them differ.
+"""Programs as tokens, and the first difference between two of them.
 
-What is not free to change is compared token for token, so comments and layout are free.
+Fixed parts are compared token for token, so comments and layout are free.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 
 class Token(str):
-    """A token that knows its place."""
+    """A token with its line."""
 
     __slots__ = ("line",)
     line: int
@@ -32,30 +32,30 @@ _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
 
 
 class UnexpectedLayoutError(Exception):
-    """The text is not laid out as fretc writes it; the message says where."""
+    """The text is not laid out as fretc writes it; the message gives the position."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lexis:
-    """The tokens of a language, as far as fretc writes them."""
+    """Tokens of a language, as far as fretc uses them."""
 
     token: re.Pattern[str]
-    """A token, or layout and comments as the group `gap`."""
+    """Pattern of a token, or of layout and comments as the group `gap`."""
     moving: re.Pattern[str]
-    """What moves the end of a line or of a comment: no text has it."""
+    """Pattern of characters that move the end of a line or of a comment; no text may have them."""
     line_bound: frozenset[str] = frozenset()
-    """Tokens after which the end of a line ends the statement, and is a token so."""
+    """Tokens after which the end of a line ends the statement, so that it is a token."""
 
     def tokens(self, text: str) -> Tokens:
-        """The text without comments and layout.
+        """The tokens of a text without comments and layout.
 
         Raises:
-            UnexpectedLayoutError: there is something in it that fretc never writes.
+            UnexpectedLayoutError: the text contains a token that fretc never writes.
         """
         moving = self.moving.search(text)
         if moving:
             raise UnexpectedLayoutError(
-                f"line {_line(text, moving.start())} ends elsewhere than it seems"
+                f"line {_line(text, moving.start())} contains a hidden line break"
             )
         found, place, line = list[str](), 0, 1
         while place < len(text):
@@ -76,14 +76,14 @@ def _line(text: str, place: int) -> int:
 
 
 def strange(statement: Sequence[str]) -> UnexpectedLayoutError:
-    """Of a statement that fretc would not write."""
+    """The error about a statement that fretc would not write."""
     words = " ".join(statement).replace("\n", "\\n")
     line = next((f"line {token.line}" for token in statement if isinstance(token, Token)), "it")
     return UnexpectedLayoutError(f"{line} is not laid out as fretc writes it: `{words[:80]}`")
 
 
 def same(given: Tokens, written: Tokens) -> None:
-    """Raises UnexpectedLayoutError, with the place, where two texts differ."""
+    """Raise UnexpectedLayoutError, with the position, if two texts differ."""
     if given == written:
         return
     pairs = zip(given, written, strict=False)
@@ -95,11 +95,11 @@ def split(text: Tokens, functions: Sequence[Tokens]) -> tuple[Tokens, list[Token
     """The text without the bodies of some functions; and the bodies.
 
     Args:
-        text: the whole.
-        functions: the tokens that each begins with, in the order of the text.
+        text: the whole text.
+        functions: first tokens of each function, in the order of the text.
 
     Raises:
-        UnexpectedLayoutError: one is not there.
+        UnexpectedLayoutError: a function is missing.
     """
     outside, bodies, place = list[str](), list[Tokens](), 0
     for head in functions:
@@ -119,7 +119,7 @@ def _place(text: Tokens, head: Tokens, start: int) -> int:
 
 
 def _end(text: Tokens, start: int) -> int:
-    """Behind the brace that closes the one before the start."""
+    """Index after the brace that closes the one before the start."""
     end, depth = start, 1
     while depth and end < len(text):
         depth += {"{": 1, "}": -1}.get(text[end], 0)
@@ -128,7 +128,7 @@ def _end(text: Tokens, start: int) -> int:
 
 
 def end_of(text: Tokens, start: int, end: str) -> int:
-    """The place of the next such token that is in no brackets; else the end of the text."""
+    """Index of the next such token outside brackets; else the end of the text."""
     depth = 0
     for place in range(start, len(text)):
         token = text[place]
@@ -139,7 +139,7 @@ def end_of(text: Tokens, start: int, end: str) -> int:
 
 
 def parts(text: Tokens, end: str) -> Iterator[Tokens]:
-    """What stands before each of these ends that are in no brackets, and what is left at last."""
+    """The parts before each of these tokens outside brackets, and the rest."""
     start = 0
     while start < len(text):
         place = end_of(text, start, end)
@@ -148,17 +148,17 @@ def parts(text: Tokens, end: str) -> Iterator[Tokens]:
 
 
 def is_constant(value: Sequence[str]) -> bool:
-    """Whether it is a truth value or a whole number."""
+    """Whether the token is a truth value or an integer."""
     *sign, last = value or ("",)
     return sign in ([], ["-"]) and bool(last in ("true", "false") or NUMBER.fullmatch(last))
 
 
 def same_but_constants(given: Sequence[Tokens], own: Sequence[Tokens]) -> None:
-    """Raises UnexpectedLayoutError where fields differ in more than their constants.
+    """Raise UnexpectedLayoutError if fields differ in more than their constants.
 
     Args:
         given: fields with their values, `name : value`.
-        own: as fretc writes them.
+        own: fields that fretc writes.
     """
     if len(given) != len(own):
         raise strange(given[-1] if given else ())
@@ -169,18 +169,18 @@ def same_but_constants(given: Sequence[Tokens], own: Sequence[Tokens]) -> None:
 
 
 Fields = list[tuple[str, Tokens]]
-"""Each field of a record with its value."""
+"""Field → value of a record."""
 
 
 def records(text: Tokens, head: Tokens) -> list[Fields]:
-    """Those of an array.
+    """The records of an array.
 
     Args:
-        text: with its brackets.
-        head: what each record begins with, up to its brace.
+        text: the array with its brackets.
+        head: first tokens of each record, up to its brace.
 
     Raises:
-        UnexpectedLayoutError: it is no array of records.
+        UnexpectedLayoutError: it is not an array of records.
     """
     if text[:1] != ("[",) or text[-1:] != ("]",):
         raise strange(text)

@@ -1,4 +1,4 @@
-"""What compiles or runs a monitor: programs of others, with limits."""
+"""Compilers and interpreters of monitors: external programs with limits."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ _SECONDS = 60.0
 
 @dataclass(frozen=True, slots=True)
 class Binary:
-    """What a compiler has made."""
+    """Output of a compiler."""
 
     data: bytes
     engine: str
-    """The compiler with its version and its flags."""
+    """Compiler with version and flags."""
 
 
 class ToolError(Exception):
-    """There is no binary, or nothing runs the text; the message says why."""
+    """The text cannot be compiled or run; the message gives the reason."""
 
 
 def compiled(
@@ -32,17 +32,17 @@ def compiled(
     steps: Sequence[Sequence[str]],
     result: str,
 ) -> Binary:
-    """A binary.
+    """A compiled binary.
 
     Args:
-        program: the compiler.
-        flags: of all steps.
-        texts: by the names of their files.
+        program: path of the compiler.
+        flags: flags of all steps.
+        texts: texts by file name.
         steps: further arguments of each call of the compiler.
-        result: the file that the last step writes.
+        result: file that the last step writes.
 
     Raises:
-        ToolError: the compiler does not take the text, or cannot be run.
+        ToolError: the compiler rejects the text, or cannot be run.
     """
     with TemporaryDirectory(prefix="fretc-") as name:
         folder = Path(name)
@@ -60,12 +60,12 @@ def compiled(
         try:
             data = (folder / result).read_bytes()
         except OSError:
-            raise ToolError(f"{known} compiles it, and writes no `{result}`") from None
+            raise ToolError(f"{known} compiles it, but writes no `{result}`") from None
         return Binary(data, f"{known} {' '.join(flags)}")
 
 
 def version(program: str) -> str:
-    """The first line of what it prints about itself.
+    """The first line of a program's version output.
 
     Raises:
         ToolError: it cannot be run.
@@ -76,4 +76,4 @@ def version(program: str) -> str:
         except OSError as error:
             raise ToolError(f"`{program}` cannot be run: {error}") from None
     first, *_ = end.text.splitlines() or [""]
-    return first or "a program that tells no version"
+    return first or "a program that prints no version"

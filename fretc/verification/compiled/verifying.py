@@ -1,9 +1,9 @@
-"""Prove that a monitor in another language than Python means what its sentence means.
+"""Prove that a monitor in another language than Python satisfies its sentence.
 
-Its text has the form that fretc writes, so that a step depends on nothing but its cells and inputs.
-It is compiled or run, and explored in two comparisons, each until no new pair of states appears:
-with the counter automaton of the sentence by both verdicts, for known values; and, rail by rail,
-with the monitor in Python by all that a reading has, with unknown values too.
+The layout of the text guarantees that a step depends only on its cells and inputs. The monitor is
+compiled or run, and explored in two comparisons, each until no new pair of states appears: with the
+counter automaton of the sentence (both verdicts, known values); and, rail by rail, with the monitor
+in Python (all values of a reading, also with unknown inputs).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from fretc.verification.compiled.plan import (
 from fretc.verification.compiled.readings import NAMES, PythonJudging, PythonRail
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.tools import ToolError
-from fretc.verification.engines.sandbox import Limits, Session, Stopped
+from fretc.verification.engines.sandbox import Limits, NoResult, Session
 from fretc.verification.monitor import rails
 from fretc.verification.monitor.equivalence import Difference
 from fretc.verification.monitor.verifying import MOST_STATES, judged_wrongly, lock_step, noted
@@ -44,14 +44,14 @@ from monitors.loading import load
 
 
 class RequirementOutcome(NamedTuple):
-    """An outcome, with what it rests on."""
+    """An outcome, with its inputs."""
 
     requirement: FormalizedRequirement
     outcome: Outcome
     engine: str
-    """What compiled or ran the text, with version and flags; empty where nothing did."""
+    """Compiler or interpreter, with version and flags; empty if there was none."""
     artefacts: dict[str, str]
-    """SHA-256 of the texts and of what was made of them."""
+    """SHA-256 of the texts and of the generated files."""
 
 
 def verified(
@@ -62,14 +62,14 @@ def verified(
     limits: Limits,
     others: Sequence[FormalizedRequirement] = (),
 ) -> Iterator[RequirementOutcome]:
-    """Compare a text with each of its requirements, in processes of their own.
+    """Compare a monitor with each of its requirements, in separate processes.
 
     Args:
-        requirements: those that are asked about; the target accepts them, and they have a clock.
-        given: a monitor of them, maybe with others.
-        language: of the text.
-        program: its tool.
-        limits: of each exploration.
+        requirements: the requirements to prove; the target accepts them, and they have a clock.
+        given: a monitor of them, and perhaps of others.
+        language: language of the text.
+        program: path of its tool.
+        limits: limits of each exploration.
         others: further requirements that the text may implement.
     """
     artefacts = {name: sha256(text) for name, text in given.texts.items()}
@@ -98,8 +98,8 @@ def _confined(
     except UnexpectedLayoutError as error:
         return not_checked(str(error))
     outcome = session.call(explored, requirement, executable, plan, MOST_STATES)
-    if isinstance(outcome, Stopped):
-        return not_checked(f"{outcome.reason}; so may end what the text must not do")
+    if isinstance(outcome, NoResult):
+        return not_checked(f"{outcome.reason}; the text may contain code that does not terminate")
     return outcome
 
 
@@ -109,13 +109,13 @@ def _confined(
 def explored(
     requirement: FormalizedRequirement, executable: Executable, plan: Plan, limit: int
 ) -> Outcome:
-    """Run the text, and compare it; a crash of a library is one of this process.
+    """Run and compare the monitor in this process, which a crash of the library ends.
 
     Args:
         requirement: the requirement.
-        executable: the text.
-        plan: where the requirement is in it.
-        limit: the most states of either comparison.
+        executable: the monitor.
+        plan: position of the requirement in it.
+        limit: maximum number of states of either comparison.
     """
     try:
         with executable.running(plan) as machines:
@@ -138,19 +138,19 @@ def _explored(requirement: FormalizedRequirement, machines: Machines, limit: int
         return states
     return proved(
         f"the same at every tick of every trace ({judged.states} states, {judged.steps} steps); "
-        "with unknown values too, triggers, answers, open demands, deadlines and what is settled "
-        f"are those of the monitor in Python ({states} states)"
+        "also with unknown values, its triggers, responses, open obligations, deadlines and "
+        f"final verdicts are those of the monitor in Python ({states} states)"
     )
 
 
 def _without_delays(
     requirement: FormalizedRequirement, machines: Machines, limit: int
 ) -> Outcome | None:
-    """Proved, if both monitors are the same whatever bits their delay lines give.
+    """Proved if both monitors are equal for arbitrary bits in their delay lines.
 
-    Then each verdict of the text is that of the monitor in Python, for it follows from both rails
-    as there; so that monitor is compared with the automaton of the sentence. Not checked, where
-    that is too large. None: nothing is known, and all states are to be compared.
+    Then each verdict of the text is that of the monitor in Python, because both derive it from both
+    rails; so the monitor in Python is compared with the automaton of the sentence. Not checked if
+    that comparison is too large. None: unknown, so that all states must be compared.
     """
     names, monitor, states = atoms(requirement), load("reference", python.text(requirement)), 0
     if len(names) > rails.MOST_PROPOSITIONS:
@@ -161,7 +161,9 @@ def _without_delays(
             PythonRail(monitor, requirement, names, doubt=doubt),
         )
         windows = right.windows()
-        if left is None or [line.length for line in left.lines] != [each.lo for each in windows]:
+        if left is None or [line.length for line in left.lines] != [
+            window.lo for window in windows
+        ]:
             return None
         letters = [
             FreeLetter(values, oldest)
@@ -183,14 +185,14 @@ def _without_delays(
     if isinstance(judged, Difference):
         return None
     return proved(
-        f"at every tick of every trace, with unknown values too, it gives what the monitor in "
-        f"Python gives ({states} states, whatever its delay lines hold), and that one is the same "
-        f"as the sentence ({judged.states} states, {judged.steps} steps)"
+        "at every tick of every trace, also with unknown values, its results are those of the "
+        f"monitor in Python ({states} states, for all contents of its delay lines), whose "
+        f"verdicts are those of the sentence ({judged.states} states, {judged.steps} steps)"
     )
 
 
 _PERIODS = 4
-"""How often a delay line goes round in a drawn run: its places are explored at 0 only."""
+"""Number of cycles of a delay line in a random run; the exploration covers index 0 only."""
 
 
 def _agree(
@@ -201,7 +203,7 @@ def _agree(
     *,
     doubt: bool,
 ) -> bool:
-    """Whether both monitors, with all their bits, give the same on a drawn run."""
+    """Whether both monitors, with all their bits, agree on a random run."""
     monitor, draw = load("reference", python.text(requirement)), Random(0)
     left = machines.rail(letters, doubt=doubt)
     right = PythonRail(monitor, requirement, atoms(requirement), doubt=doubt)
@@ -215,18 +217,18 @@ def _agree(
 
 
 def _letters(requirement: FormalizedRequirement, names: Sequence[str]) -> Sequence[rails.Letter]:
-    """The values that may come at a tick, unknown ones among them."""
+    """Possible values of a tick, including unknown ones."""
     every = tuple(product((False, True, None), repeat=len(names)))
     return only_possible(every, names, impossible_combinations(requirement))
 
 
 def _read(requirement: FormalizedRequirement, machines: Machines, limit: int) -> int | Outcome:
-    """The states in which each rail tells what that of the monitor in Python tells."""
+    """Number of states whose readings equal those of the monitor in Python, or the failure."""
     names = atoms(requirement)
     if len(names) > rails.MOST_PROPOSITIONS:
         most = rails.MOST_PROPOSITIONS
         return not_checked(
-            f"{len(names)} propositions, more than {most}, are too many for unknown values"
+            f"{len(names)} propositions, more than {most}, are too many to check unknown values"
         )
     every = _letters(requirement, names)
     monitor, states = load("reference", python.text(requirement)), 0
@@ -249,7 +251,7 @@ def _read(requirement: FormalizedRequirement, machines: Machines, limit: int) ->
                 return not_checked(f"with unknown values there are more than {limit} states")
             case rails.Distinguished(word, signal):
                 which = "possible" if doubt else "certain"
-                fault = f"the monitor in Python tells another {signal} in `{which}` on a trace"
+                fault = f"the monitor in Python has another {signal} in `{which}` on a trace"
                 return refuted(f"{fault}{noted(note)}", Trace(names, word))
             case rails.Equivalent(count):
                 states += count

@@ -1,8 +1,8 @@
 """CrossHair, for the core of the interceptor.
 
-It runs in a process of its own, with limits. A claim is proved only where the whole output says so:
-with a missing line or another exit status the claim is not checked. Where CrossHair finds no proof,
-nothing is refuted.
+It runs in a separate process, with limits. A claim is proved only if the whole output confirms it:
+with a missing line or another exit status the claim is not checked. A failed search refutes
+nothing.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from fretish.diagnostics.extras import install_help
 CROSSHAIR_SECONDS = 60.0
 _ABSENT = f"CrossHair is not installed: {install_help('crosshair')}"
 _MODULE = "interceptor_core"
-_WHOLE = "the numbers of a velocity are whole; no function names one of them"
+_WHOLE = "the fields of a velocity are integers; no function reads one of them"
 _APART = (ast.Subscript, ast.For, ast.Starred, ast.comprehension, ast.MatchSequence)
 _MESSAGE = re.compile(rf"^.*{_MODULE}\.py:(\d+): (info|error|warning): (.*)$")
 _POST = re.compile(r"^\s*post\s*(?:\[[^\]]*\])?\s*:\s*(.*?)\s*$")
@@ -38,7 +38,7 @@ class _Contract:
 
 
 def contract_texts(text: str) -> dict[str, str]:
-    """The docstrings of functions and classes with a contract in them: CrossHair executes it."""
+    """Docstrings of functions and classes that contain a contract, which CrossHair executes."""
     docstrings = {
         node.name: ast.get_docstring(node) or ""
         for node in ast.walk(ast.parse(text))
@@ -48,7 +48,7 @@ def contract_texts(text: str) -> dict[str, str]:
 
 
 _START = re.compile(r"(pre|post|inv|raises)\s*[\[:]")
-"""The beginning of a contract, wherever CrossHair might read one."""
+"""Beginning of a contract, wherever CrossHair might read one."""
 
 
 def with_crosshair(
@@ -58,19 +58,19 @@ def with_crosshair(
     seconds: float = CROSSHAIR_SECONDS,
     progress: Callable[[str], None] = lambda function: None,
 ) -> tuple[Proof, ...]:
-    """Let CrossHair look for inputs that break the contracts of an interceptor's core.
+    """Search with CrossHair for inputs that violate the contracts of an interceptor's core.
 
-    Numbers of a velocity are whole ones for CrossHair where no function names any of them: it knows
-    several kinds of floats, and six of them are hundreds of cases of which none matters.
+    Velocity fields that no function reads are given to CrossHair as `int`: six symbolic floats
+    would multiply the cases without adding any.
 
     Args:
         text: the core, with `post:` lines in its docstrings (PEP 316). It is executed.
-        requirement: what the lines of evidence are filed under.
-        seconds: for each function; its contracts share them.
-        progress: is called with the name of each function before it is looked at.
+        requirement: name under which the evidence is filed.
+        seconds: time limit for each function; its contracts share it.
+        progress: called with the name of each function before it is examined.
 
     Returns:
-        One line for each contract: proved if CrossHair has confirmed it over all paths, refuted
+        One proof for each contract: proved if CrossHair has confirmed it over all paths, refuted
         with the inputs if it found any, else not checked. And one for each function that fails.
     """
     try:
@@ -102,9 +102,9 @@ def with_crosshair(
 
 
 def _with_whole_velocities(text: str) -> str | None:
-    """The text with whole numbers in `Velocity`, on the same lines; None where that may matter.
+    """The text with integers in `Velocity`, on the same lines; None if that may change a result.
 
-    It cannot where no function names a field of it or takes anything apart: by an index, a loop, a
+    It cannot if no function names a field of it or takes a value apart: by an index, a loop, a
     pattern, or in arguments.
     """
     tree = ast.parse(text)
@@ -128,7 +128,7 @@ def _with_whole_velocities(text: str) -> str | None:
 
 
 def _takes_apart(node: ast.AST) -> bool:
-    """Whether it could look into a tuple without naming a field."""
+    """Whether the code could read parts of a tuple without naming a field."""
     match node:
         case ast.Tuple(ctx=ast.Store()) | ast.MatchClass(cls=ast.Name("Velocity")):
             return True
@@ -184,15 +184,15 @@ def _outcome(message: tuple[str, str] | None, end: Completion) -> Outcome:
     """The outcome of a contract.
 
     Args:
-        message: its kind and its text; None: CrossHair has none about the contract.
-        end: of CrossHair.
+        message: kind and text of CrossHair's message; None: there is none about the contract.
+        end: exit status and output of CrossHair.
     """
     if message is not None and message[0] == "error":
         return refuted(message[1])
     if end.status is None:
         return not_checked("CrossHair did not finish in time")
     if end.status not in (0, 1) or message is None:
-        return not_checked(f"CrossHair says nothing of it (exit status {end.status})")
+        return not_checked(f"CrossHair gives no result for it (exit status {end.status})")
     if message == ("info", "Confirmed over all paths."):
         return proved("confirmed over all paths")
     return not_checked(f"CrossHair: {message[1].rstrip('.').lower()}")

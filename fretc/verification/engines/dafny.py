@@ -1,8 +1,8 @@
 """Dafny, for the files of `--emit dafny`.
 
-It runs in a process of its own, with limits. A claim is proved only where the whole output says so:
+It runs in a separate process, with limits. A claim is proved only if the whole output confirms it:
 with a missing line, another exit status, or fewer verified parts than the text has, the claim is
-not checked. Where Dafny finds no proof, nothing is refuted.
+not checked. A failed proof refutes nothing.
 """
 
 from __future__ import annotations
@@ -26,7 +26,10 @@ _ABSENT = (
     "Dafny is not installed: put `dafny` on the PATH (Debian and Ubuntu: `apt-get install dafny`; "
     "elsewhere: github.com/dafny-lang/dafny)"
 )
-_OTHER = "the text is not what fretc makes of this requirement: make it anew with `--emit dafny`"
+_OTHER = (
+    "the file is not what fretc generates for this requirement: generate it again with "
+    "`--emit dafny`"
+)
 _FINISHED = re.compile(r"^Dafny program verifier finished with (\d+) verified, (\d+) errors?$")
 _ERROR = re.compile(r"^\S+?\.dfy\((\d+),\d+\): Error\b:?\s*(?:BP\d+: )?(.*)$")
 _MEMBER = re.compile(
@@ -43,15 +46,15 @@ def with_dafny(
     *,
     seconds: float = DAFNY_SECONDS,
 ) -> tuple[Proof, ...]:
-    """Let Dafny verify the file of a requirement: one line for each claim of the file.
+    """Verify the file of a requirement with Dafny: one proof for each claim of the file.
 
-    Dafny gives one verdict for a file. So either all claims are proved, or none is.
+    Dafny gives one verdict for a file, so either all claims are proved, or none is.
 
     Args:
-        requirement: one that the target does not refuse.
-        text: the file of `--emit dafny`; with any other text nothing is checked.
-        declarations: those of the file.
-        seconds: the limit of Dafny.
+        requirement: a requirement that the target accepts.
+        text: file of `--emit dafny`; any other text is not checked.
+        declarations: declarations of the requirement's file.
+        seconds: time limit of Dafny.
     """
     if text == dafny.text(requirement, declarations):
         outcome, engine = answer(text, seconds=seconds)
@@ -76,7 +79,7 @@ def answer(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Outcome, str]:
     """The outcome of a text, and the name and version of Dafny.
 
     Proved: Dafny verifies at least every lemma, method and constructor, and reports no error. Else
-    not checked, with the places without a proof.
+    not checked, with the parts that have no proof.
     """
     program = shutil.which("dafny")
     if program is None:
@@ -86,7 +89,7 @@ def answer(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Outcome, str]:
         try:
             known = _version(program, folder)
             if known is None:
-                return not_checked("`dafny` tells no version: it is not Dafny"), "Dafny"
+                return not_checked("`dafny` prints no version: it is not Dafny"), "Dafny"
             (folder / "text.dfy").write_text(text, encoding="utf-8")
             command = [program, *_options(program, known, folder, seconds), "text.dfy"]
             end = run(command, folder, seconds=seconds, memory=MEMORY)
@@ -96,7 +99,7 @@ def answer(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Outcome, str]:
 
 
 def _version(program: str, folder: Path) -> str | None:
-    """2.x prints it above a complaint, 4.x alone."""
+    """The version; 2.x prints it above a complaint, 4.x alone."""
     for question in ("--version", "/version"):
         end = run([program, question], folder, seconds=STARTED, memory=MEMORY)
         for line in end.text.splitlines():
@@ -107,7 +110,7 @@ def _version(program: str, folder: Path) -> str | None:
 
 
 def _options(program: str, known: str, folder: Path, seconds: float) -> list[str]:
-    """4 has commands; from some version on warnings are errors unless they are allowed."""
+    """Options by version: 4 has commands; later versions treat warnings as errors by default."""
     limit = max(int(seconds) - 1, 1)
     if int(known.partition(".")[0]) < 4:
         return ["/compile:0", f"/timeLimit:{limit}"]
@@ -132,15 +135,15 @@ def _outcome(text: str, end: Completion, seconds: float) -> Outcome:
         return not_checked(f"Dafny ended with exit status {end.status} and no verdict")
     count, errors = map(int, finished[0].groups())
     if end.status != 0 or errors:
-        return not_checked(f"Dafny tells of {errors} errors, and its exit status is {end.status}")
+        return not_checked(f"Dafny reports {errors} errors, and its exit status is {end.status}")
     least = len(_OBLIGATION.findall(text))
     if count < least:
-        return not_checked(f"Dafny verified {count} parts, and the file has at least {least}")
+        return not_checked(f"Dafny verified {count} parts, but the file has at least {least}")
     return proved(f"{count} parts verified, among them all {least} lemmas and methods")
 
 
 def _member(text: str, line: int) -> str:
-    """What is declared at a line of the text or above it."""
+    """Name of the declaration at a line of the text or above it."""
     for above in reversed(text.splitlines()[:line]):
         match = _MEMBER.match(above)
         if match:

@@ -1,4 +1,4 @@
-"""A program of others, run with limits of time and memory; it does not outlive the call."""
+"""An external program with limits of time and memory; it is killed when the call ends."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ from pathlib import Path
 from compiler.files.processes import isolate_imports
 
 _MOST_OUTPUT = 32 * 2**20
-"""Bytes that a program may write to one file."""
+"""Maximum number of bytes that a program may write to one file."""
 _LIMITED = f'ulimit -c 0; ulimit -f {_MOST_OUTPUT // 512}; ulimit -d "$0" && exec "$@"'
-"""For `sh`: no core file, no endless output, and memory as data: what a run time reserves and
-never writes does not count."""
+"""For `sh`: no core file, limited output, and memory counted as data, so that reserved but unused
+memory does not count."""
 
 MEMORY = 4 * 2**30
 """Bytes for each process of a prover."""
 STARTED = 30.0
-"""Seconds in which a prover prints its version, or reads its text."""
+"""Seconds in which a prover must print its version, or read its text."""
 
 
 @dataclass(frozen=True, slots=True)
 class Completion:
-    """The end of a program, and its output."""
+    """Exit status and output of a program."""
 
     status: int | None
-    """Its exit status, negative for a signal; None: it was stopped, for it took too long."""
+    """Exit status, negative for a signal; None: it exceeded its time limit."""
     text: str
-    """Everything that it wrote, on both streams."""
+    """Output on both streams."""
 
 
 def run(command: Sequence[str], folder: Path, *, seconds: float, memory: int) -> Completion:
-    """Run a program to its end, or to the limit; its process group does not outlive the call.
+    """Run a program to its end or its time limit, and end its process group.
 
     Args:
-        command: the program and its arguments; no shell reads them.
-        folder: a temporary folder, where the program runs and its output is kept meanwhile.
-        seconds: so long it may take.
+        command: the program and its arguments, without a shell.
+        folder: temporary folder, in which the program runs and its output is kept.
+        seconds: time limit.
         memory: bytes that each of its processes may write to.
 
     Raises:
@@ -61,7 +61,7 @@ def run(command: Sequence[str], folder: Path, *, seconds: float, memory: int) ->
             status: int | None = process.wait(seconds)
         except subprocess.TimeoutExpired:
             status = None
-        finally:  # also where the user stops us
+        finally:  # Also if the user stops fretc.
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()

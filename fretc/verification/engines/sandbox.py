@@ -1,7 +1,7 @@
-"""Calls that may take too long or too much: each in a process of its own, with limits.
+"""Calls in a separate process, with limits of time and memory.
 
-An engine in C++ cannot be interrupted from Python, and some of them take gigabytes before they
-answer. The process is started anew, not forked: it holds nothing but what the function needs.
+An engine in C++ cannot be interrupted from Python, and some need gigabytes. The process is started
+anew, not forked, so that it contains only what the function needs.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ R = TypeVar("R")
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What a call may take."""
+    """Limits of a call."""
 
     seconds: int = 60
-    """Of a processor; half a minute and three times as many may pass on the wall clock."""
+    """CPU seconds; on the wall clock three times as many and half a minute may pass."""
     memory: int = 4 * 2**30
     """Bytes of address space."""
 
@@ -42,18 +42,18 @@ class Limits:
 
     @property
     def wall(self) -> float:
-        """Seconds: other processes take their share, and a process takes time to start."""
+        """Wall time in seconds, which includes other processes and the start."""
         return 3.0 * self.seconds + 30.0
 
 
 DEFAULT = Limits()
 _RARELY = (100_000, 50, 50)
-"""How many new objects Python looks through for cycles that are no longer used: a search keeps all
-that it makes, and would be looked through again and again for a third of its time."""
+"""Number of new objects after which Python searches for unused cycles. A search keeps all its
+objects, and frequent garbage collection would take a third of its time."""
 
 
 @dataclass(frozen=True, slots=True)
-class Stopped:
+class NoResult:
     """The call has no result, for this reason."""
 
     reason: str
@@ -61,24 +61,24 @@ class Stopped:
 
 def confined(
     limits: Limits, function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs
-) -> R | Stopped:
-    """The result of one call in a process of its own: as `Session.call`."""
+) -> R | NoResult:
+    """The result of one call in a separate process, as by `Session.call`."""
     with Session(limits) as session:
         return session.call(function, *args, **kwargs)
 
 
 class Session:
-    """Calls in a process of their own, one after the other, each with limits of its own.
+    """Calls in a separate process, one after the other, each with its own limits.
 
-    One process serves them, until it is stopped or crashes: then the next call gets a new one.
-    An interruption (Ctrl-C) ends the process.
+    One process serves them until it is stopped or crashes; then the next call starts a new one. An
+    interruption (Ctrl-C) ends the process.
     """
 
     def __init__(self, limits: Limits) -> None:
-        """No process begins before the first call.
+        """A session without a process; the first call starts one.
 
         Args:
-            limits: of time for each call, and of memory for the process.
+            limits: time for each call, and memory for the process.
         """
         self._limits = limits
         self._process: SpawnProcess | None = None
@@ -89,28 +89,28 @@ class Session:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """The process ends."""
+        """End the process."""
         self._end()
 
-    def call(self, function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> R | Stopped:
+    def call(self, function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> R | NoResult:
         """The result of the function, or why there is none.
 
         Args:
-            function: of a module that can be imported, and not of the program: that is not executed
-                in another process.
-            args: what can be sent between processes, as can the result.
-            kwargs: likewise.
+            function: function of an importable module, not of the main program, which the other
+                process does not execute.
+            args: arguments that can be sent between processes, as can the result.
+            kwargs: keyword arguments, likewise.
 
         Raises:
-            Exception: what the function raises.
+            Exception: the exception of the function.
         """
         complete = False
         try:
             connection, process = self._begun()
-            with suppress(BrokenPipeError):  # then it has ended, and there is no answer
+            with suppress(BrokenPipeError):  # Then the process has ended without a result.
                 connection.send((function, args, kwargs))
-            answer: R | Stopped = _answer(connection, process, self._limits)
-            complete = not isinstance(answer, Stopped)
+            answer: R | NoResult = _answer(connection, process, self._limits)
+            complete = not isinstance(answer, NoResult)
             return answer
         finally:
             if not complete:
@@ -122,7 +122,7 @@ class Session:
             context = multiprocessing.get_context("spawn")
             self._connection, theirs = context.Pipe()
             self._process = context.Process(target=_serve, args=(theirs, self._limits), daemon=True)
-            ensure_running()  # else `start` would do it, which unblocks the signals
+            ensure_running()  # Otherwise `start` would do this, and unblock the signals.
             with _without_main(), stops_blocked():
                 self._process.start()
             theirs.close()
@@ -139,7 +139,7 @@ class Session:
 
 @contextmanager
 def _without_main() -> Iterator[None]:
-    """Hide the program from a process that starts: it would execute the whole of it once more."""
+    """Hide the main program from a starting process, which would execute it again."""
     main = sys.modules["__main__"]
     sys.modules["__main__"] = ModuleType("__main__")
     try:
@@ -150,24 +150,24 @@ def _without_main() -> Iterator[None]:
 
 def _answer(connection: Connection, process: SpawnProcess, limits: Limits) -> Any:
     if not connection.poll(limits.wall):
-        return Stopped(f"out of time: no answer within {limits.wall:g} s")
+        return NoResult(f"out of time: no answer within {limits.wall:g} s")
     try:
         complete, result = connection.recv()
     except (EOFError, OSError):
         process.join()
-        return Stopped(_ended(process.exitcode or 0, limits))
+        return NoResult(_ended(process.exitcode or 0, limits))
     if complete:
         return result
     if isinstance(result, MemoryError):
-        return Stopped(_out_of_memory(limits))
+        return NoResult(_out_of_memory(limits))
     raise result
 
 
 def _ended(status: int, limits: Limits) -> str:
-    """Why a process ended without a word."""
+    """Why a process ended without a result."""
     if status in (-signal.SIGXCPU, -signal.SIGKILL):
         more = "" if status == -signal.SIGXCPU else ", or it was killed"
-        return f"out of time: more than {limits.seconds} s of a processor{more}"
+        return f"out of time: more than {limits.seconds} CPU seconds{more}"
     how = f"signal {-status}" if status < 0 else f"exit status {status}"
     return f"the process crashed ({how}); it may have had too little memory"
 
@@ -177,7 +177,7 @@ def _out_of_memory(limits: Limits) -> str:
 
 
 def _serve(connection: Connection, limits: Limits) -> None:
-    """Answer calls until no further one comes."""
+    """Answer calls until the connection is closed."""
     ignore_interrupts()
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
@@ -191,7 +191,7 @@ def _serve(connection: Connection, limits: Limits) -> None:
 
 
 def _allow(seconds: int) -> None:
-    """So many CPU seconds from now on."""
+    """Set the CPU limit to so many seconds from now."""
     used = resource.getrusage(resource.RUSAGE_SELF)
     most = resource.getrlimit(resource.RLIMIT_CPU)[1]
     soon = ceil(used.ru_utime + used.ru_stime) + seconds

@@ -1,10 +1,10 @@
-"""Prove that the text of an interceptor keeps its contracts, by exploring all that it can do.
+"""Prove that the text of an interceptor satisfies its contracts, by exploring all its states.
 
-The core is executed in every state that it can come to, with every kind of message, breadth first.
-The history of its messages goes beside it, independent of the core: the demand of a contract
-depends on the history, never on the core's own state. Commands are opaque
+The core is executed in every reachable state, with every kind of message, breadth first. The
+history of its messages is computed beside it and independent of it, so that a contract depends on
+the history, never on the core's own state. Commands are opaque
 (`fretc.verification.interceptor.opaque`), so a result holds for all velocities. A shortest run
-shows where a contract is broken.
+shows a violation.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from fretc.verification.interceptor.incoming import (
 from monitors.interceptor import Options
 
 MOST_STATES = 200_000
-"""Some ten seconds and half a gigabyte."""
+"""Maximum number of states: some ten seconds and half a gigabyte."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,13 +41,13 @@ class Contract:
 def contracts(
     text: str, options: Options, requirement: str = "interceptor", most: int = MOST_STATES
 ) -> tuple[Proof, ...]:
-    """Every contract of an interceptor with the options, each proved, refuted or not checked.
+    """Every contract of an interceptor with these options: proved, refuted or not checked.
 
     Args:
-        text: what `--emit interceptor` wrote; the core is executed once it is known to be pure.
-        options: those that the bindings declare.
-        requirement: the name of the proofs.
-        most: states; with more, nothing is known.
+        text: output of `--emit interceptor`; the core is executed only if it is pure.
+        options: options that the bindings declare.
+        requirement: name of the proofs.
+        most: maximum number of states; with more, the contracts are not checked.
     """
     claims = tuple(_contracts(options))
     outcomes = _outcomes(text, options, claims, most)
@@ -66,11 +66,14 @@ def contracts(
 
 
 def _assumptions(options: Options) -> Iterator[str]:
-    yield "the ROS node hands every message to the core, one at a time, and publishes what it says"
+    yield (
+        "the ROS node passes every message to the core, one at a time, and publishes the "
+        "core's output"
+    )
     if options.event_driven:
-        yield "no silence is noticed: form = event in [interceptor]"
+        yield "silence is not detected: form = event in [interceptor]"
         return
-    yield "the timer rings at every period in [interceptor]"
+    yield "the timer expires at every period in [interceptor]"
     for name, channel in (("stop", "the safety function"), ("scan", "the sensor")):
         if not getattr(options, f"{name}_timeout"):
             yield f"{channel} is never silent for long: no {name}_timeout in [interceptor]"
@@ -80,7 +83,7 @@ def _assumptions(options: Options) -> Iterator[str]:
 
 
 def _contracts(options: Options) -> Iterator[Contract]:
-    """Those that the options call for."""
+    """The contracts for these options."""
     yield from _of_the_paper(options)
     yield from _of_a_stop(options)
     for name, channel in CHANNELS:
@@ -97,7 +100,7 @@ def _contracts(options: Options) -> Iterator[Contract]:
 def _of_the_paper(options: Options) -> Iterator[Contract]:
     """The three proof obligations of the paper."""
     yield Contract(
-        "at first no stop is in force",
+        "initially no stop is in force",
         lambda m: m.event == "" and bool(m.state.stop),
     )
     latch = ", and no message clears it" if options.latching else " or clears it"
@@ -218,7 +221,7 @@ _OUTPUTS: Mapping[str, str] = {
 
 
 def _trace(run: list[Step], options: Options) -> Trace:
-    """A row for each step."""
+    """The steps of a run as a table."""
     watched = [name for name, _ in CHANNELS if getattr(options, f"{name}_timeout")]
     names = ("stop requested", "must stand", "zero", "command", *(f"{w} silent" for w in watched))
     rows = tuple(

@@ -1,8 +1,7 @@
-"""Explore all that the core of an interceptor can do, beside the history of its messages.
+"""Exploration of the core of an interceptor, with the history of its messages.
 
-Every state that it can come to, with every kind of message, breadth first. Commands are opaque
-(`fretc.verification.interceptor.opaque`); states that differ only in which commands they hold are
-one.
+Every reachable state, with every kind of message, breadth first. Commands are opaque
+(`fretc.verification.interceptor.opaque`); states that differ only in their commands are one.
 """
 
 from __future__ import annotations
@@ -34,25 +33,25 @@ class Step(NamedTuple):
     """A step of the core from a state."""
 
     origin: Key
-    """The state before it."""
+    """State before the step."""
     event: str
     output: str
     history: History
-    """After it."""
+    """History after the step."""
 
 
 @dataclass(slots=True)
 class Search:
-    """The states, with the way to each."""
+    """The states, with a path to each."""
 
     origins: dict[Key, Step | None]
     """State → the step to it; None: it is the first state."""
     breaches: dict[int, Step | None]
-    """Contract → the step that breaks it; None: the first state does."""
+    """Contract → the step that violates it; None: the first state does."""
     steps: int = 0
 
     def run(self, contract: int) -> list[Step] | None:
-        """The steps to the first breach, the last of them breaks the contract; None: no breach."""
+        """Steps to the first violation, which the last step shows; None: no violation."""
         if contract not in self.breaches:
             return None
         run: list[Step] = []
@@ -66,13 +65,13 @@ class Search:
 def explore(
     text: str, options: Options, broken: Sequence[Callable[[Moment], bool]], most: int
 ) -> Search | str:
-    """Walk until every state is known; or why that cannot be.
+    """Explore all states; or why that is impossible.
 
     Args:
-        text: of an interceptor; its core is executed once it is known to be pure.
-        options: those that its own have to be.
-        broken: whether a step breaks a contract, for each contract.
-        most: states.
+        text: text of an interceptor; its core is executed only if it is pure.
+        options: required options of the text.
+        broken: for each contract, whether a step violates it.
+        most: maximum number of states.
     """
     try:
         return _Walk(text, options, broken, most).search()
@@ -81,16 +80,16 @@ def explore(
 
 
 class _Place(NamedTuple):
-    """A state of the core beside a history."""
+    """A state of the core with a history."""
 
     key: Key
     values: dict[str, Any]
-    """Of the state's fields."""
+    """Values of the state's fields."""
     history: History
 
 
 class _Walk:
-    """The breadth-first walk through the product of the core and the history."""
+    """Breadth-first search through the product of the core and the history."""
 
     def __init__(
         self, text: str, options: Options, broken: Sequence[Callable[[Moment], bool]], most: int
@@ -99,11 +98,11 @@ class _Walk:
         self.declared, self.broken, self.most = options, broken, most
         own = getattr(self.core.module, "OPTIONS", self.core.options)
         if own != self.core.options:
-            raise NotAnInterceptorError("its options are not those that are declared")
+            raise NotAnInterceptorError("its options differ from the declared options")
         self.tokens = tuple(Opaque() for _ in range(2 * len(self.core.state_fields) + 4))
 
     def search(self) -> Search:
-        """Walk until no state is new."""
+        """Search until no state is new."""
         history = first(self.declared)
         state = self.core.initial()
         place = self._normal(state, history)
@@ -120,7 +119,7 @@ class _Walk:
         return search
 
     def _successors(self, place: _Place, search: Search) -> Iterator[_Place]:
-        """The new places that one message leads to."""
+        """The new states after one message."""
         state = self.core.module.State(**place.values)
         kept = {id(place.history.last), *map(id, place.values.values())}
         command = next(token for token in self.tokens if id(token) not in kept)
@@ -146,7 +145,7 @@ class _Walk:
         yield RING, call(module.TimerRang)
 
     def _breaches(self, moment: Moment) -> Iterator[int]:
-        """The contracts that a step breaks, by number."""
+        """Indices of the contracts that a step violates."""
         for i, broken in enumerate(self.broken):
             try:
                 if broken(moment):
@@ -156,10 +155,10 @@ class _Walk:
                     "its state has a command in the place of a number"
                 ) from None
             except (AttributeError, TypeError) as error:
-                raise NotAnInterceptorError(f"its state is another one: {error}") from None
+                raise NotAnInterceptorError(f"its state is not the declared one: {error}") from None
 
     def _output(self, velocity: Any, now: History) -> str:
-        """`Moment.output`, of a velocity that the core publishes."""
+        """`Moment.output` of a velocity that the core publishes."""
         if velocity is None:
             return "nothing"
         if is_opaque(velocity):
@@ -167,7 +166,7 @@ class _Walk:
         return "zero" if self.core.is_zero(velocity) else "other"
 
     def _normal(self, state: Any, history: History) -> _Place:
-        """One of all states that differ only in which commands they hold."""
+        """Representative of all states that differ only in their commands."""
         numbers: dict[int, int] = {}
         key: list[object] = []
         values: dict[str, Any] = {}
@@ -179,7 +178,9 @@ class _Walk:
                 key.append(("command", number))
             elif value is None or isinstance(value, int | float):
                 values[name] = value
-                key.append((type(value), value))  # beyond 2^53 equal numbers add up differently
+                key.append(
+                    (type(value), value)
+                )  # Beyond 2^53 equal integers and floats add up differently.
             elif self.core.is_zero(value):
                 values[name] = self.core.module.ZERO
                 key.append("zero")

@@ -1,8 +1,8 @@
-"""An interceptor's file: a core, its options, and the node below; one module when it flies.
+"""An interceptor's file: a core, its options, and the node below; deployed as one module.
 
-The core may be any that is pure (`fretc.verification.interceptor.purity`): then what is explored of
-it is all that it does. Its options and the node below it must be those that fretc writes for the
-bindings, and the core binds no name of a node.
+The core may be any pure code (`fretc.verification.interceptor.purity`), so that exploring it covers
+its behaviour. Its options and the node must be those that fretc writes for the bindings, and the
+core must not bind a name of the node.
 """
 
 from __future__ import annotations
@@ -29,25 +29,25 @@ _NEEDED = (
 
 @dataclass(frozen=True, slots=True)
 class Head:
-    """The text of a core that is known to be pure, without the node below it."""
+    """Text of a pure core, without the node below it."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Core:
-    """The core, executed."""
+    """The executed core."""
 
     module: Any
-    """A module; its attributes are classes, functions and constants."""
+    """A module with classes, functions and constants as attributes."""
 
 
 def core(text: str, name: str = "interceptor") -> Core | str:
-    """Execute the core of an interceptor once it is known to be pure; else, why it is not.
+    """Execute the core of an interceptor if it is pure; else, why it is not.
 
     Args:
-        text: what `--emit interceptor` wrote, or the core alone.
-        name: for tracebacks.
+        text: output of `--emit interceptor`, or the core alone.
+        name: module name for tracebacks.
     """
     known = head(text)
     if isinstance(known, str):
@@ -60,10 +60,10 @@ def core(text: str, name: str = "interceptor") -> Core | str:
 
 
 def head(text: str) -> Head | str:
-    """The core of an interceptor where it is pure; else, why it is not. Nothing is executed.
+    """The core of an interceptor if it is pure; else, why it is not. Nothing is executed.
 
     Args:
-        text: what `--emit interceptor` wrote, or the core alone.
+        text: output of `--emit interceptor`, or the core alone.
     """
     if not is_utf8(text):
         return "Python reads it in another encoding than UTF-8"
@@ -78,39 +78,40 @@ def head(text: str) -> Head | str:
             return "its core has no `OPTIONS`"
         if marked:
             if not is_guarded(tree):
-                return "it may import what stands beside it: emit it again"
+                return "it may import modules from its own folder: emit it again"
             _check_node(node)
             _check_whole(text, tree, node)
     except (SyntaxError, ValueError, RecursionError) as error:
-        return f"it is no Python: {error}"
+        return f"it is not valid Python: {error}"
     except UnexpectedCodeError as error:
-        return f"its core is not as fretc can read it: {error}"
+        return f"fretc cannot read its core: {error}"
     return Head(above)
 
 
 def otherwise(text: str, interception: Interception) -> str | None:
-    """Why the file is of another interceptor than the bindings declare; None: it is of this one.
+    """Why the file does not match the declared interceptor; None: it does.
 
-    The core may be another: it is what is looked at. Its options and the node around it may not,
-    which is that of either ROS: a package of ROS 1 has that of ROS 1, whatever `ros` says.
+    The core may differ, because it is the subject of the proof. Its options and its node may not;
+    the node may be that of ROS 1 or ROS 2, whatever `ros` says, because packages of ROS 1 contain
+    that of ROS 1.
     """
     try:
         options, node = _around(text)
     except (SyntaxError, ValueError, RecursionError) as error:
-        return f"it is no Python: {error}"
+        return f"it is not valid Python: {error}"
     of_both = (replace(interception, ros=ros) for ros in (1, 2))
     written = [_around(interceptor.text(each, "bindings.toml")) for each in of_both]
     if (options, node) == ([], None):
         return None
     if options != written[0][0]:
-        return "its options are not those that the bindings declare: emit it again"
+        return "its options differ from those that the bindings declare: emit it again"
     if node not in [each for _, each in written]:
-        return "its node is not one that fretc writes for these bindings: emit it again"
+        return "its node is not the one that fretc generates for these bindings: emit it again"
     return None
 
 
 def is_original(text: str) -> bool:
-    """Whether the core is the one that fretc writes, but for comments."""
+    """Whether the core equals the one that fretc writes, except for comments."""
     above, _, _ = text.partition(f"{MARKER}\n")
     parts = [part for part in ast.parse(above).body if not _is_options(part)]
     written = ast.parse(f"{original().imports}\n{original().text}").body
@@ -118,7 +119,7 @@ def is_original(text: str) -> bool:
 
 
 def _around(text: str) -> tuple[list[str], str | None]:
-    """What binds `OPTIONS`, and the node (None: there is none), exactly but for comments."""
+    """The statement that binds `OPTIONS`, and the node or None, without comments."""
     above, marked, node = text.partition(f"{MARKER}\n")
     options = [ast.unparse(part) for part in ast.parse(above).body if _is_options(part)]
     return options, ast.dump(ast.parse(node)) if marked else None
@@ -137,24 +138,24 @@ def _defined(tree: ast.Module) -> Iterator[str]:
 
 
 def _check_node(node: str) -> None:
-    """It is one that fretc writes, up to its numbers and texts.
+    """Check that the node is one that fretc writes, up to its numbers and texts.
 
-    Python has no end of ways to change a module from below, so that nothing else is looked into.
+    Python has many ways to change a module from below, so other nodes are refused.
     """
     if _shape(node) not in _shapes():
-        raise UnexpectedCodeError("the node below it is not one that fretc writes")
+        raise UnexpectedCodeError("the node below it is not one that fretc generates")
 
 
 def _check_whole(text: str, core: ast.Module, node: str) -> None:
-    """Core and node are the module, one below the other."""
+    """Check that the module is the core, directly followed by the node."""
     parts = [*core.body, *ast.parse(node).body]
     if [ast.dump(part) for part in ast.parse(text).body] != [ast.dump(part) for part in parts]:
-        raise UnexpectedCodeError("core and node are not one below the other")
+        raise UnexpectedCodeError("the node does not directly follow the core")
 
 
 @cache
 def _nodes() -> tuple[str, ...]:
-    """Those that fretc writes for each ROS and form, with and without a scan."""
+    """Nodes that fretc writes for each ROS version and form, with and without a scan."""
     interceptions = (
         Interception("/a", "/b", "/c", scan, 10**8, form=form, ros=ros)
         for scan in (None, "/d")
@@ -172,12 +173,12 @@ def _shapes() -> frozenset[str]:
 
 @cache
 def _names_of_nodes() -> frozenset[str]:
-    """What a node binds at its outermost level: a core that has it too is another one in flight."""
+    """Names that a node binds at module level, which a core must not bind."""
     return frozenset(name for node in _nodes() for name in _outermost(ast.parse(node)))
 
 
 def _outermost(node: ast.AST) -> Iterator[str]:
-    """The names that statements bind, without those inside of functions and classes."""
+    """Names that statements bind, without those inside functions and classes."""
     for child in ast.iter_child_nodes(node):
         match child:
             case ast.FunctionDef(name) | ast.AsyncFunctionDef(name) | ast.ClassDef(name):
@@ -194,7 +195,7 @@ def _outermost(node: ast.AST) -> Iterator[str]:
 
 
 def _shape(node: str) -> str:
-    """Its tree without what constants say."""
+    """Syntax tree without the values of constants."""
     return ast.dump(_Blank().visit(ast.parse(node)))
 
 

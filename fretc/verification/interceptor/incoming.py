@@ -1,6 +1,6 @@
-"""The history of the messages to an interceptor, and what it demands.
+"""The history of an interceptor's messages, and what it demands.
 
-Nothing here knows how a core keeps its own.
+It is independent of the way in which a core stores its history.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ STOP, RELEASE, COMMAND, SCAN, RING = (
     "no stop is requested",
     "a command comes",
     "a scan comes",
-    "the timer rings",
+    "the timer expires",
 )
-"""The events, as the actions of a trace begin."""
+"""The events, as the beginnings of a trace's actions."""
 
 
 CHANNELS = (
@@ -27,10 +27,10 @@ CHANNELS = (
 
 
 class History(NamedTuple):
-    """The facts about all events up to now; durations in ticks."""
+    """Facts about all events up to now; durations in ticks."""
 
     requested: bool
-    """By the last message of the safety function."""
+    """Whether the last message of the safety function requests a stop."""
     ever: bool
     owed: int
     """Ticks for which zero must still be published after the last request."""
@@ -43,20 +43,20 @@ class History(NamedTuple):
 
 
 class Moment(NamedTuple):
-    """One step, as contracts judge it."""
+    """One step, as contracts evaluate it."""
 
     before: History
     event: str
-    """Empty before the first step."""
+    """The event; empty before the first step."""
     after: History
     output: str
-    """`nothing`, `zero`, `last` (the last command, which may just have come) or `other`."""
+    """`nothing`, `zero`, `last` (the last command, which may be the present one) or `other`."""
     state: Any
-    """The core's, after the step."""
+    """State of the core after the step."""
 
 
 def first(options: Options) -> History:
-    """Before the first event: each channel with a timeout is silent."""
+    """The history before the first event: each channel with a timeout is silent."""
     return History(
         requested=False,
         ever=False,
@@ -69,7 +69,7 @@ def first(options: Options) -> History:
 
 
 def after(history: History, event: str, command: object, options: Options) -> History:
-    """The history after one more event; `command` is the one that comes with `COMMAND`."""
+    """The history after one more event; `command` belongs to `COMMAND`."""
     match event:
         case "a stop is requested":
             return history._replace(requested=True, ever=True, owed=options.hold, stop=0)

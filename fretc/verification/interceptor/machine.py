@@ -22,44 +22,44 @@ from monitors.interceptor import Options
 
 
 class NotAnInterceptorError(Exception):
-    """The text cannot be explored as an interceptor; the message says why."""
+    """The text cannot be explored as an interceptor; the message gives the reason."""
 
 
 class Event(Enum):
-    """The messages to an interceptor, and its timer, as far as a model distinguishes them."""
+    """Messages to an interceptor, and its timer, as far as a model distinguishes them."""
 
-    STOP = "`true` is heard"
-    RELEASE = "`false` is heard"
-    MOVE = "a command to move is heard"
-    STAND = "a command to stand is heard"
-    SCAN = "a scan is heard"
-    RING = "the timer rings"
+    STOP = "`true` is received"
+    RELEASE = "`false` is received"
+    MOVE = "a command to move is received"
+    STAND = "a command to stand is received"
+    SCAN = "a scan is received"
+    RING = "the timer expires"
 
 
 State = tuple[int | bool, ...]
-"""An encoded state: the fields of a raw one in their order; of `command`, whether it moves."""
+"""An encoded state: the fields of a raw state in order, with whether it moves for `command`."""
 
 Output = bool | None
 """Whether the published velocity moves the wheels; None: nothing is published."""
 
 
 _KEPT, _NEXT = Opaque(), Opaque()
-"""Velocities that move: the one that a state keeps, and the one of the next command."""
+"""Moving velocities: the stored one of a state, and that of the next command."""
 
 
 class CheckedCore:
-    """The executed core of an interceptor's text, with a check of whatever it returns.
+    """The executed core of an interceptor's text, with a check of its results.
 
-    Any method raises NotAnInterceptorError where the core fails, or returns something else than the
-    core of an interceptor may.
+    Every method raises NotAnInterceptorError if the core fails, or returns a value that no core of
+    an interceptor may return.
     """
 
     def __init__(self, text: str, options: Options) -> None:
-        """Execute the definitions of a text that is known to be pure.
+        """Execute the definitions of a pure text.
 
         Args:
-            text: of an interceptor, or of its core alone.
-            options: for it, in ticks of its timer.
+            text: an interceptor, or its core alone.
+            options: its options, in ticks of its timer.
         """
         executed = core(text)
         if isinstance(executed, str):
@@ -70,21 +70,21 @@ class CheckedCore:
         try:
             self.options = module.Options(**named)
         except TypeError as error:
-            raise NotAnInterceptorError(f"its options are others: {error}") from None
+            raise NotAnInterceptorError(f"its options differ: {error}") from None
 
     def initial(self) -> Any:
         """The raw state before the first message."""
         return self._checked_state(self.call(self.module.initial, self.options))
 
     def step(self, state: Any, message: Any) -> tuple[Any, Any]:
-        """The raw state after a message, and the velocity that is published; None: nothing is."""
+        """The raw state after a message, and the published velocity; None: nothing is published."""
         pair = self.call(self.module.step, state, message, self.options)
         if type(pair) is not tuple or len(pair) != 2:
-            raise NotAnInterceptorError("a step gives no state and command")
+            raise NotAnInterceptorError("a step returns no state and command")
         return self._checked_state(pair[0]), pair[1]
 
     def is_zero(self, velocity: Any) -> bool:
-        """Whether it is a `Velocity` of the text with zeros alone: the robot stands."""
+        """Whether the value is a `Velocity` of zeros: the robot stands."""
         return is_zero(velocity, self.module.Velocity)
 
     def call(self, function: Any, *arguments: Any) -> Any:
@@ -93,34 +93,34 @@ class CheckedCore:
             return function(*arguments)
         except InspectedError:
             raise NotAnInterceptorError(
-                "it looks into a command: what is shown with one would not hold for all"
+                "it reads the content of a command: a proof with one command would not hold for all"
             ) from None
         except Exception as error:
             why = f"a step fails: {type(error).__name__}: {error}"
             raise NotAnInterceptorError(why) from None
 
     def _checked_state(self, state: Any) -> Any:
-        """The state itself, which is a `State` of the text."""
+        """The value, checked to be a `State` of the text."""
         if type(state) is not self.module.State:
-            raise NotAnInterceptorError("a step gives no `State`")
+            raise NotAnInterceptorError("a step returns no `State`")
         return state
 
 
 class InterceptorMachine:
-    """The transitions of an interceptor's text between encoded states, each computed once."""
+    """Transitions of an interceptor's text between encoded states, each computed once."""
 
     def __init__(self, text: str, options: Options, max_states: int = 10**6) -> None:
         """Execute the core of the text.
 
         Args:
-            text: of an interceptor, or of its core alone.
-            options: for it, in ticks of its timer.
-            max_states: encoded states that may be met. A core that counts without a bound would
-                have no end of them.
+            text: an interceptor, or its core alone.
+            options: its options, in ticks of its timer.
+            max_states: maximum number of encoded states; an unbounded counter would have infinitely
+                many.
 
         Raises:
-            NotAnInterceptorError: the text cannot be explored. `step` raises it, too: whether there
-                are too many states shows only there.
+            NotAnInterceptorError: the text cannot be explored. `step` raises it for too many
+                states.
         """
         self._max_states = max_states
         self._core = CheckedCore(text, options)
@@ -139,7 +139,7 @@ class InterceptorMachine:
         self._steps: dict[tuple[State, Event], tuple[State, Output]] = {}
         self._blocks: dict[State, bool] = {}
         self._raw: dict[State, Any] = {}
-        """A raw state for each encoded one that was met."""
+        """A raw state for each encoded state."""
         self.initial = self._encoded(self._core.initial())
 
     def step(self, state: State, event: Event) -> tuple[State, Output]:
@@ -151,7 +151,7 @@ class InterceptorMachine:
         return pair
 
     def blocks_commands(self, state: State) -> bool:
-        """Whether no command gets through, not even one right after a scan.
+        """Whether no command is passed on, not even one right after a scan.
 
         The scan comes first so that the watchdog of the sensor alone does not count as a stop.
         """
@@ -166,25 +166,25 @@ class InterceptorMachine:
         return self._module.initial(self._options)
 
     def raw_step(self, state: Any, event: Event) -> tuple[Any, Output]:
-        """One step from a raw state: nothing is encoded, and nothing taken from an earlier step."""
+        """One step from a raw state, without encoding or caching."""
         after, velocity = self._module.step(state, self._messages[event], self._options)
         return after, self._output(velocity)
 
     def is_halted(self, state: Any) -> bool:
-        """What `halted` of the text says of a raw state."""
+        """Value of the text's `halted` for a raw state."""
         return bool(self._module.halted(state, self._options))
 
     def _encoded(self, state: Any) -> State:
-        """The encoded form of a raw state; `_raw` has a raw state for it from now on."""
+        """The encoded form of a raw state, which `_raw` stores."""
         values = {name: getattr(state, name) for name in self._core.state_fields}
         moves = self._output(values["command"])
         if moves is None or not all(
             type(value) in (bool, int) for name, value in values.items() if name != "command"
         ):
-            raise NotAnInterceptorError("its State holds something else than it declares")
+            raise NotAnInterceptorError("its State holds values that it does not declare")
         encoded = tuple({**values, "command": moves}.values())
         if encoded not in self._raw:
-            # The velocities of all states that move are one, so that one raw state stands for all.
+            # All moving velocities are one, so that one raw state represents all.
             command = _KEPT if moves else self._module.ZERO
             self._raw[encoded] = self._module.State(**{**values, "command": command})
         if len(self._raw) > self._max_states:
@@ -192,11 +192,11 @@ class InterceptorMachine:
         return encoded
 
     def _output(self, velocity: Any) -> Output:
-        """What the wheels do with it: it must be nothing, a command that came, or zero."""
+        """Effect on the wheels: the velocity must be nothing, a received command, or zero."""
         if velocity is None:
             return None
         if is_opaque(velocity):
             return True
         if self._core.is_zero(velocity):
             return False
-        raise NotAnInterceptorError("it makes a velocity that it has not heard")
+        raise NotAnInterceptorError("it publishes a velocity that it has not received")

@@ -1,6 +1,6 @@
-"""A command that a core can keep, hand on or drop, and nothing else.
+"""A command that a core can store, pass on or drop, but not inspect.
 
-A proof with such a command in the place of a velocity holds for every velocity.
+A proof with such a command in place of a velocity holds for every velocity.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 
 class InspectedError(Exception):
-    """A text has looked into a command."""
+    """The code has inspected a command."""
 
 
 def _inspected(*_: object, **__: object) -> NoReturn:
@@ -17,7 +17,7 @@ def _inspected(*_: object, **__: object) -> NoReturn:
 
 
 class Opaque:
-    """Only `is` distinguishes two of them, and no pure core uses it."""
+    """A value that only `is` can distinguish, which no pure core uses."""
 
     __slots__ = ()
 
@@ -33,13 +33,13 @@ for _name in (
 
 
 def is_opaque(value: Any) -> bool:
-    """Whether it is one; it is not inspected."""
+    """Whether the value is opaque; it is not inspected."""
     return type(value) is Opaque
 
 
 def is_zero(value: Any, velocity: type[tuple[Any, ...]]) -> bool:
-    """Whether it is a velocity of that class with nothing but zeros; no opaque one is inspected.
+    """Whether the value is a velocity of zeros; opaque values are not inspected.
 
-    Zeros are floats: ROS 2 takes no other numbers, and whole ones add up differently beyond 2^53.
+    Zeros are floats: ROS 2 takes no other numbers, and integers add up differently beyond 2^53.
     """
     return type(value) is velocity and all(type(part) is float and part == 0 for part in value)

@@ -1,10 +1,10 @@
-"""Whether the core of an interceptor is pure: then what is explored of it is all that it does.
+"""Check that the core of an interceptor is pure, so that exploring it covers its behaviour.
 
-What the tree may consist of is listed here, and all else is refused, before anything is executed.
-There is no loop and no recursion, so every step ends; no attribute is written, no name bound twice,
-nothing called but the core's own functions and constructors, `min`, `max` and `replace`, and no
-function is a value. No statement distinguishes equal objects, and no constant is read but
-`ZERO`, so that a state is the values of its fields. Annotations are types and nothing else: other
+The allowed syntax is listed here, and everything else is refused before anything is executed. There
+is no loop and no recursion, so every step ends; no attribute is written, no name bound twice,
+nothing called except the core's own functions and constructors, `min`, `max` and `replace`, and no
+function is a value. No statement distinguishes equal objects, and `ZERO` is the only constant that
+is read, so that a state is the values of its fields. Annotations only name types, because other
 programs evaluate them.
 """
 
@@ -24,25 +24,25 @@ _IMPORTS = {
     "typing": {"NamedTuple"},
 }
 _BUILTINS = frozenset(dir(builtins))
-"""No name of them is given to anything else: the node below uses them too."""
+"""Names that the core must not rebind, because the node below uses them too."""
 _CHOSEN = frozenset({"min", "max"})
 _CALLED = _CHOSEN | {"replace"}
 _TYPES = frozenset({"bool", "int", "float"})
 _NOT_FIELDS = frozenset(name for kind in (bool, int, float, tuple, str) for name in dir(kind))
-"""What numbers and tuples have themselves. Methods tell equal numbers apart: `x.real is y.real`."""
+"""Attributes of numbers and tuples. Methods distinguish equal numbers: `x.real is y.real`."""
 _UNARY = (ast.Not, ast.USub)
 _COMPARED = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq)
 
 
 class UnexpectedCodeError(Exception):
-    """What is not on the list."""
+    """The code contains syntax that is not allowed."""
 
 
 def bound_names(tree: ast.Module, taken: Collection[str]) -> frozenset[str]:
-    """The names that a core binds; it is pure.
+    """The names that a core binds; checks that it is pure.
 
     Args:
-        tree: of the core.
+        tree: syntax tree of the core.
         taken: names that it must not bind.
 
     Raises:
@@ -66,7 +66,7 @@ def _line(node: ast.AST) -> str:
 
 @cache
 def _velocity() -> str:
-    """The class of that name as fretc writes it: six numbers, all of them 0.0 by default."""
+    """Check that the class is the one that fretc writes: six numbers, 0.0 by default."""
     (velocity,) = (n for n in ast.parse(original().text).body if _is_class(n, "Velocity"))
     return ast.dump(_bare(velocity))
 
@@ -76,7 +76,7 @@ def _is_class(node: ast.AST, name: str) -> bool:
 
 
 def _bare(node: ast.AST) -> ast.Module:
-    """The statements of a class without texts: they do nothing."""
+    """Statements of a class without docstrings."""
     assert isinstance(node, ast.ClassDef)
     body = [part for part in node.body if not _is_docstring(part)]
     return ast.Module([ast.ClassDef(node.name, node.bases, [], body, [])], [])
@@ -91,13 +91,13 @@ def _is_docstring(node: ast.AST) -> bool:
 
 
 def is_guarded(tree: ast.Module) -> bool:
-    """Whether nothing beside the file is imported in place of the standard library."""
+    """Whether no module beside the file can replace the standard library."""
     guard = ast.parse(ALONE).body
     return list(map(ast.dump, tree.body[: len(guard)])) == list(map(ast.dump, guard))
 
 
 def below_the_guard(tree: ast.Module) -> list[ast.stmt]:
-    """The statements but for those that `is_guarded` asks for."""
+    """The statements without those of `is_guarded`."""
     return tree.body[len(ast.parse(ALONE).body) :] if is_guarded(tree) else tree.body
 
 
@@ -109,12 +109,12 @@ class _Module:
         self.bound: set[str] = set()
         self.classes: set[str] = set()
         self.fields: set[str] = set()
-        """Of all classes."""
+        """Fields of all classes."""
         self.functions: dict[str, set[str]] = {}
-        """What each of them calls."""
+        """Function → functions that it calls."""
 
     def check(self, tree: ast.Module) -> frozenset[str]:
-        """The names that it binds."""
+        """Check the statements; returns the names that they bind."""
         self._collect(tree)
         for node in below_the_guard(tree):
             self._statement(node)
@@ -166,7 +166,7 @@ class _Module:
         self.bound.add(name)
 
     def _class(self, node: ast.ClassDef) -> None:
-        """Fields with or without a constant, in a frozen dataclass; `Velocity` is a NamedTuple."""
+        """Check a class: fields with or without a constant, in a frozen dataclass or NamedTuple."""
         written = [ast.unparse(part) for part in (*node.decorator_list, *node.bases)]
         _demand(written in (["dataclass(frozen=True, slots=True)"], ["NamedTuple"]), node)
         _demand(len(node.bases) == (written == ["NamedTuple"]) and not node.keywords, node)
@@ -186,7 +186,7 @@ class _Module:
             _demand(ast.dump(_bare(node)) == _velocity(), node)
 
     def check_type(self, annotation: ast.expr | None, node: ast.AST) -> None:
-        """It names types and does nothing, no matter who evaluates it."""
+        """Check that an annotation only names types."""
         match annotation:
             case None | ast.Constant(None):
                 pass
@@ -202,7 +202,7 @@ class _Module:
                 raise _strange(node)
 
     def _check_ends(self) -> None:
-        """No function comes to call itself."""
+        """Check that no function is recursive."""
         ends: set[str] = set()
         rest = set(self.functions)
         while free := {name for name in rest if self.functions[name] <= ends}:
@@ -212,7 +212,7 @@ class _Module:
             raise UnexpectedCodeError(f"`{self._in_a_circle(min(rest), rest)}` calls itself")
 
     def _in_a_circle(self, name: str, rest: set[str]) -> str:
-        """One that calls itself; each of `rest` calls another one of them."""
+        """A recursive function among `rest`; each of them calls another one of them."""
         visited: set[str] = set()
         while name not in visited:
             visited.add(name)
@@ -221,7 +221,7 @@ class _Module:
 
 
 def _is_number(node: ast.AST) -> bool:
-    """A constant that is a finite number, a truth value or None."""
+    """Whether the node is a constant finite number, truth value or None."""
     match node:
         case ast.Constant(None | bool() | int()):
             return True
@@ -232,14 +232,14 @@ def _is_number(node: ast.AST) -> bool:
 
 
 class _Function:
-    """One function: its statements and expressions."""
+    """Statements and expressions of one function."""
 
     def __init__(self, module: _Module, node: ast.FunctionDef) -> None:
         self.module, self.node = module, node
         self.local = {argument.arg for argument in node.args.args}
 
     def check(self) -> None:
-        """It is pure and ends."""
+        """Check that the function is pure and ends."""
         node, given = self.node, self.node.args
         plain = not (given.vararg or given.kwarg or given.kwonlyargs or given.posonlyargs)
         _demand(plain and not given.defaults and not node.decorator_list, node)
@@ -307,7 +307,7 @@ class _Function:
                 raise _strange(whole)
 
     def _expression(self, node: ast.expr) -> None:
-        """A name is a value: no function is one, so that nothing is called but by its name."""
+        """Check an expression; functions are not values, so that calls are by name only."""
         match node:
             case ast.Name(name):
                 _demand(name in self.local or name == "ZERO", node)
@@ -339,7 +339,7 @@ class _Function:
             self._expression(node)
 
     def _call(self, node: ast.Call, name: str, count: int, words: list[str | None]) -> None:
-        """What is called, with so many arguments by place and these by name."""
+        """Check the callee and the number and names of its arguments."""
         named = all(word is not None and not word.startswith("_") for word in words)
         if name in self.module.classes:
             _demand(named, node)

@@ -14,27 +14,27 @@ from compiler.program.program import Program, Requirement, Window
 from compiler.targets.javascript.monitor import text
 from fretc.verification.compiled.plan import BuiltLibrary, ParsedSource, SourceText, implemented
 from fretc.verification.compiled.tools import version
-from fretc.verification.javascript.form import formed
+from fretc.verification.javascript.layout import check_layout
 from fretc.verification.javascript.node import FLAGS, Module, placed
 
 _IDS = re.compile(r'^[ \t]*\{ id: ("(?:[^"\\]|\\.)*"), sentence: ', re.MULTILINE)
 
 
 def tool() -> str | None:
-    """The path of Node, if it is installed."""
+    """Path of Node, or None."""
     return shutil.which("node")
 
 
 def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) -> ParsedSource:
-    """The text in the form that fretc writes.
+    """The parsed layout of the text.
 
     Raises:
-        UnexpectedLayoutError: it has another form.
+        UnexpectedLayoutError: the layout differs from that of fretc.
     """
     own_rules = implemented([json.loads(id) for id in _IDS.findall(given.text)], requirements)
     made = _program(own_rules)
     cells, ids = tuple(cell.name for cell in made.cells), tuple(each.id for each in own_rules)
-    form = formed(given.text, text(*own_rules), cells, _windows(made), ids)
+    form = check_layout(given.text, text(*own_rules), cells, _windows(made), ids)
     return ParsedSource(own_rules, ids, form, cells, ())
 
 
@@ -56,12 +56,12 @@ def _program(requirements: Sequence[FormalizedRequirement]) -> Program:
 
 
 def _windows(program: Program) -> dict[str, int]:
-    """Each window with the age of the oldest that it looks at."""
+    """Window → maximum age of its values."""
     return {cell.name: cell.hi for cell in program.cells if isinstance(cell, Window)}
 
 
 def _ages(requirement: Requirement) -> tuple[str, ...]:
-    """The marks whose age counts: those that a deadline is reported by."""
+    """Marks whose age is read, to report a deadline."""
     if requirement.horizon is None:
         return ()
     return ("open", "last") if requirement.renewed else ("open",)

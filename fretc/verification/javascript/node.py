@@ -1,9 +1,9 @@
-"""A monitor in JavaScript as a machine whose state can be saved, restored and stepped: Node.
+"""A monitor in JavaScript, run by Node, as a machine whose state can be saved and restored.
 
-Node explores, and we compare: a message asks for a state, and the answer has the steps of that one
-and of many that come next, so that there are few messages. A state is the cells and marks that the
-requirement depends on, in ticks from now: what a step does with the number of its tick is in the
-part of the text that is as fretc writes it, and looks at differences alone.
+Node explores the states: a message asks for the steps of one state, and the answer contains those
+of many following states, so that there are few messages. A state is the cells and marks on which
+the requirement depends, in ticks relative to the present one; the fixed part of the text uses the
+tick number only in differences.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from monitors.kernel.verdicts import Truth
 
 FLAGS = ("--disallow-code-generation-from-strings",)
 _ENDING = 10.0
-"""Seconds in which a process is gone that has closed its output."""
+"""Seconds in which a process must end after it has closed its output."""
 _TRUTHS: tuple[Truth, ...] = (False, True, None)
 _EXPLORER = """
 import { createInterface } from "node:readline";
@@ -134,21 +134,21 @@ for await (const line of createInterface({ input: process.stdin })) {
 
 @dataclass(frozen=True, slots=True)
 class Module:
-    """A module that was checked."""
+    """A checked module."""
 
     program: str
     folder: Path
-    """Of the one who asks: it is gone at the end, even where Node and we are killed."""
+    """Folder that the caller removes, also if Node or fretc is killed."""
     cells: tuple[str, ...]
-    """All of a rail."""
+    """All cells of a rail."""
     windows: Mapping[str, int]
-    """Those that are windows, with the age of what they keep."""
+    """Windows with the maximum age of their values."""
     ages: Mapping[int, tuple[str, ...]]
-    """For the place of each requirement, the marks whose age it reads."""
+    """For each requirement, the marks whose age it reads."""
 
     @contextmanager
     def running(self, plan: Plan) -> Iterator[Node]:
-        """Node runs it, until the end.
+        """The module, run by Node until the end of the context.
 
         Raises:
             ToolError: Node cannot be started, or ends.
@@ -159,14 +159,14 @@ class Module:
 
 
 def placed(text: str, folder: Path) -> None:
-    """The text and its explorer, where Node runs them."""
+    """The module and the exploring program in the folder."""
     (folder / "monitor.mjs").write_text(text, encoding="utf-8")
     (folder / "explorer.mjs").write_text(_EXPLORER, encoding="utf-8")
 
 
 @contextmanager
 def _started(module: Module, errors: Any) -> Iterator[subprocess.Popen[bytes]]:
-    """Node, without options of the user's: `NODE_OPTIONS` can load modules."""
+    """Start Node without `NODE_OPTIONS` of the user, which could load modules."""
     plain = {name: value for name, value in os.environ.items() if not name.startswith("NODE_")}
     try:
         process = subprocess.Popen(
@@ -192,7 +192,7 @@ class Node:
     def __init__(
         self, module: Module, plan: Plan, process: subprocess.Popen[bytes], errors: Path
     ) -> None:
-        """Nothing is explored yet."""
+        """The requirement before any exploration."""
         self._module, self._plan = module, plan
         self._process, self._errors = process, errors
 
@@ -200,12 +200,12 @@ class Node:
         """None: its windows are those of the monitor in Python, and are explored with all bits."""
 
     def judging(self) -> NodeMonitorMachine:
-        """Both rails, before the first tick."""
+        """A machine of both rails, before the first tick."""
         letters = tuple(product((False, True), repeat=len(self._plan.inputs)))
         return NodeMonitorMachine(self._table((0, 1), letters))
 
     def rail(self, letters: Sequence[Letter], *, doubt: bool) -> TableRail:
-        """One of them, before the first tick."""
+        """One of the rails, before the first tick."""
         return TableRail(self._table((int(doubt),), letters), doubt=doubt)
 
     def _table(self, rails: Sequence[int], letters: Sequence[Letter]) -> Table:
@@ -234,11 +234,11 @@ class Node:
         """The answer to a message.
 
         Raises:
-            ToolError: Node gives none.
+            ToolError: Node does not answer.
         """
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        with suppress(BrokenPipeError):  # then Node has ended, and there is no answer
+        with suppress(BrokenPipeError):  # Then Node has ended without an answer.
             self._process.stdin.write(f"{json.dumps(order)}\n".encode())
             self._process.stdin.flush()
         line = self._process.stdout.readline()
@@ -253,29 +253,29 @@ class Node:
 
 
 class Observation(NamedTuple):
-    """What is reported after a step."""
+    """Result of a step."""
 
     rails: tuple[Reading, Reading]
-    """What holds for certain, and what may hold."""
+    """Certain and possible value."""
     verdicts: tuple[object, ...]
-    """The verdict, FRET's finite one, and what is owed."""
+    """Verdict, FRET's finite verdict, and open obligation."""
     is_real: bool
-    """Whether what is certain is possible, too: a rail that goes on from wherever it is may be in
-    no state that it can have at this tick."""
+    """Whether a certain value is also possible; a rail combined with any other rail may be in a
+    state that it cannot have at this tick."""
 
 
 @dataclass(slots=True)
 class Table:
-    """The states that are known, by their numbers, and their steps."""
+    """The explored states, by number, and their steps."""
 
     node: Node
     letters: Mapping[Letter, int]
     rows: list[list[tuple[int, int]]] = field(default_factory=list)
-    """Of each state and letter the next state, and the number of what is reported."""
+    """For each state and valuation the next state, and the number of the observation."""
     outcomes: list[Observation] = field(default_factory=list)
 
     def take(self, answer: Any) -> None:
-        """The steps of further states."""
+        """Add the steps of further states."""
         self.rows += answer["rows"]
         for certain, possible, verdict, *truths, is_real in answer["told"]:
             rails = Reading(*certain), Reading(*possible)
@@ -283,47 +283,47 @@ class Table:
             self.outcomes.append(Observation(rails, (verdict, *both), is_real))
 
     def step(self, state: int, letter: Letter) -> tuple[int, int]:
-        """The next state, and the number of what is reported."""
+        """The next state, and the number of the observation."""
         if state >= len(self.rows):
             self.take(self.node.ask({"until": state}))
         return self.rows[state][self.letters[letter]]
 
 
 class NodeMonitorMachine:
-    """Both rails, where all propositions are known."""
+    """Both rails, for known propositions."""
 
     def __init__(self, table: Table) -> None:
-        """Before the first tick."""
+        """The machine before the first tick."""
         self._table, self._state = table, 0
 
     def save(self) -> int:
-        """The number of the state."""
+        """Number of the state."""
         return self._state
 
     def load(self, state: Any) -> None:
-        """Go back to a state."""
+        """Restore a state."""
         self._state = state
 
     def step(self, letter: Valuation) -> Judgement:
-        """The verdict that it tells, and FRET's finite one."""
+        """The verdict after a tick, and FRET's finite verdict."""
         self._state, told = self._table.step(self._state, letter)
         verdict, finite, _ = self._table.outcomes[told].verdicts
         return str(verdict), finite is True
 
 
 class TableRail:
-    """One rail; the other one goes on from wherever it is."""
+    """One rail; the state of the other rail is arbitrary."""
 
     def __init__(self, table: Table, *, doubt: bool) -> None:
-        """Before the first tick; with `doubt` the rail of what may hold."""
+        """The rail before the first tick; with `doubt` the possible one."""
         self._table, self._rail, self._state = table, int(doubt), 0
 
     def save(self) -> int:
-        """The number of the state."""
+        """Number of the state."""
         return self._state
 
     def step(self, state: int, letter: Letter) -> tuple[object, ...]:
-        """What it tells one tick after a state, and whether the verdict follows from both rails."""
+        """The reading after a tick, and whether the verdict follows from both rails."""
         self._state, number = self._table.step(state, letter)
         told = self._table.outcomes[number]
         follows = not told.is_real or told.verdicts == judged(*told.rails)

@@ -1,7 +1,7 @@
-"""Layer AGENT: the text of an agent has its properties.
+"""Layer AGENT: the text of an agent satisfies its properties.
 
-Of a requirement that plans none, the agent of its bundle is examined only if the user names the
-layer.
+For a requirement whose header does not plan the layer, the agent of its bundle is examined only if
+the user names the layer.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ from compiler.project.project import Project
 from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
 from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, Stopped
+from fretc.verification.engines.sandbox import Limits, NoResult
 from fretc.verification.layers.request import Request, named_text, unexamined, unknown
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.printer import timing as printing_of
 
 CLAIM = "the agent has its properties"
 _OF_AGENT = (Layer.AGENT, Layer.AJPF)
-"""Who plans AJPF's own verdict means that agent, too."""
+"""Planning AJPF's own verdict also plans this layer."""
 
 
 def prove(
     requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> tuple[Proof, ...] | Diagnostic:
-    """Of the agent that is given; else of the one that the bundle of each requirement has."""
+    """Proofs about the given agent, or about the agent in the bundle of each requirement."""
     request.progress("agent: its properties")
     agent, properties = request.agent, request.properties
     if agent is None or properties is None:
@@ -39,7 +39,7 @@ def prove(
             for proof in _bundle(requirement, request.limits)
         )
     proofs = processes.confined(request.limits, check_agent, agent, properties, request.percepts)
-    if isinstance(proofs, Stopped):
+    if isinstance(proofs, NoResult):
         return (unknown("agent", Layer.AGENT, CLAIM, proofs.reason, named_text(agent)),)
     return proofs
 
@@ -53,7 +53,7 @@ def _bundle(requirement: FormalizedRequirement, limits: Limits) -> tuple[Proof, 
     )
     if isinstance(agent, Diagnostic):
         return (_without_agent(requirement, agent.message),)
-    if isinstance(agent, Stopped):
+    if isinstance(agent, NoResult):
         return (unknown(requirement.id, Layer.AGENT, CLAIM, agent.reason),)
     remark = ajpf.remark(requirement)
     refuted = any(line.result is Result.COUNTEREXAMPLE for line in agent.evidence)
@@ -62,16 +62,15 @@ def _bundle(requirement: FormalizedRequirement, limits: Limits) -> tuple[Proof, 
         return (
             _without_agent(
                 requirement,
-                f"an agent cannot keep the timing `{timing}` of {requirement.id}: it needs some "
-                "nine "
-                "states from a percept to its response",
+                f"an agent cannot keep the timing `{timing}` of {requirement.id}: it needs about "
+                "nine states from a percept to its response",
             ),
         )
     return agent.evidence
 
 
 _TOO_SOON = (Code.STATE_ZERO, Code.NO_TIME_TO_REACT)
-"""What no reasoning cycle can keep: the agent that breaks it is one that no bundle has."""
+"""Timings that no reasoning cycle can satisfy; no bundle has such an agent."""
 
 
 def _without_agent(requirement: FormalizedRequirement, reason: str) -> Proof:

@@ -1,4 +1,4 @@
-"""Layer AJPF: what AJPF itself says of an agent."""
+"""Layer AJPF: results of AJPF about an agent."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fretc.verification.layers.request import Request, unknown
 def prove(
     requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
-    """The results of AJPF; if nothing else is asked, requirements without one are not checked."""
+    """Proofs from AJPF's results; unchecked claims if only this layer is requested."""
     yield from request.ajpf
     if set(request.layers) == {Layer.AJPF}:
         known = {proof.requirement for proof in request.ajpf}

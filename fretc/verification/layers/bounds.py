@@ -1,4 +1,4 @@
-"""Layer BOUNDS: an answer comes in time, whatever the times are."""
+"""Layer BOUNDS: a response comes in time, for all latencies, losses and braking times."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fretc.verification.loop.bounds import bounds_proofs
 def prove(
     requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
-    """Two proofs for each requirement: the law of the answers, and the declared bound."""
+    """Two proofs for each requirement: the general bound, and the declared bound."""
     for requirement in requirements:
         request.progress(f"{requirement.id}: bounds")
         yield from bounds_proofs(

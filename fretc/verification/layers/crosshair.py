@@ -21,9 +21,9 @@ CLAIM = "CrossHair confirms the contracts in the text"
 def prove(
     requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
-    """A proof for each contract of the core: the node would be executed, and takes commands apart.
+    """A proof for each contract of the core; the node is left out, because it would be executed.
 
-    None where there is no interceptor.
+    None if there is no interceptor.
     """
     file = interceptor_of(project, request)
     if file is None:
@@ -33,7 +33,7 @@ def prove(
         yield unknown("interceptor", Layer.INTERCEPTOR, CLAIM, core, file)
         return
     proofs = with_crosshair(
-        ast.unparse(ast.parse(core.text)),  # CrossHair takes orders from comments
+        ast.unparse(ast.parse(core.text)),  # CrossHair reads directives in comments.
         seconds=float(request.limits.seconds),
         progress=lambda name: request.progress(f"interceptor: CrossHair, `{name}`"),
     )
@@ -46,4 +46,6 @@ def _core(text: str) -> Head | str:
     core = head(text)
     if isinstance(core, str) or contract_texts(core.text) == contract_texts(original().text):
         return core
-    return "its `pre:` and `post:` lines are not those of fretc, and CrossHair executes them"
+    return (
+        "its `pre:` and `post:` lines differ from those of fretc, and CrossHair would execute them"
+    )

@@ -1,4 +1,4 @@
-"""Prover Frama-C: a monitor in C does nothing undefined, whatever its inputs are."""
+"""Prover Frama-C: a monitor in C has no undefined behaviour, for all inputs."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from fretc.verification.engines import frama_c
 from fretc.verification.layers.request import Request
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
-CLAIM = "the text in C does nothing that C leaves undefined, and each counter keeps its range"
+CLAIM = "the C code has no undefined behaviour, and each counter stays in its range"
 
 
 def refusal(request: Request) -> Diagnostic | None:
-    """F908 where Frama-C is not installed, F907 for a monitor that is not in C."""
+    """F908 if Frama-C is not installed, F907 for a monitor that is not in C."""
     if frama_c.program() is None:
         return Diagnostic(
             Code.MISSING_EXTRA,
-            "`--with frama-c` needs Frama-C, and there is no `frama-c` on the PATH",
+            "`--with frama-c` needs Frama-C, but there is no `frama-c` on the PATH",
             help="Debian and Ubuntu: `apt install frama-c-base`; elsewhere: frama-c.com",
         )
     if request.monitor is not None and request.header is None:
         return Diagnostic(
             Code.BAD_USAGE,
-            f"`--with frama-c` takes a monitor in C, and `{request.monitor.name}` is none",
+            f"`--with frama-c` needs a monitor in C, and `{request.monitor.name}` is not in C",
             help="name a file that `--emit c` wrote",
         )
     return None
@@ -38,10 +38,10 @@ def refusal(request: Request) -> Diagnostic | None:
 def prove(
     requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
-    """A proof for each requirement: of the given monitor, else of the one that fretc writes.
+    """A proof for each requirement, about the given monitor or a generated one.
 
     Raises:
-        NotAMonitorError: the given text names no requirement.
+        NotAMonitorError: the given text contains no requirement.
     """
     refused, program = refusal(request), frama_c.program()
     if refused is not None or program is None:
@@ -76,17 +76,19 @@ def _not_checked(requirement: FormalizedRequirement, reason: str) -> Proof:
 def _given(
     requirements: Sequence[FormalizedRequirement], request: Request
 ) -> Iterator[tuple[SourceText, Sequence[FormalizedRequirement]]]:
-    """The given text, else one for each requirement; with the requirements that it is about."""
+    """The given monitor, or a generated one for each requirement; with its requirements."""
     if request.monitor is not None and request.header is not None:
         texts = (request.monitor, request.header)
         yield _named([(PurePath(each.name).name, each.text) for each in texts]), requirements
         return
     for requirement in requirements:
-        monitor = TARGET.emit((requirement,))[:2]  # what stands behind it says what samples mean
+        monitor = TARGET.emit((requirement,))[
+            :2
+        ]  # The rest of the text computes inputs from samples.
         yield _named([(str(each.path), each.text) for each in monitor]), [requirement]
 
 
 def _named(texts: Sequence[tuple[str, str]]) -> SourceText:
-    """The file in C comes before its header."""
+    """The file in C and its header, in this order."""
     (name, text), (header_name, header) = texts
     return SourceText(name, text, header_name, header)

@@ -1,4 +1,4 @@
-"""Layer INTERCEPTOR: the text of the interceptor keeps its contracts."""
+"""Layer INTERCEPTOR: the text of the interceptor satisfies its contracts."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from compiler.logic.claims import Layer, Proof, not_applicable
 from compiler.project.project import Project
 from compiler.targets.interceptor_options import options
 from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, Stopped
+from fretc.verification.engines.sandbox import Limits, NoResult
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import otherwise
 from fretc.verification.layers.request import Request, interceptor_of, unexamined, unknown
@@ -37,14 +37,14 @@ def prove(
 
 
 def _contracts(file: NamedText, declared: Interception, limits: Limits) -> Iterator[Proof]:
-    """Of the deployed module: its core may be any, the rest is what fretc writes."""
+    """Contracts of the deployed module: any core, within the node that fretc writes."""
     deviation = otherwise(file.text, declared)
-    proofs: Stopped | tuple[Proof, ...]
+    proofs: NoResult | tuple[Proof, ...]
     if deviation is not None:
-        proofs = Stopped(deviation)
+        proofs = NoResult(deviation)
     else:
         proofs = processes.confined(limits, contracts, file.text, options(declared))
-    if isinstance(proofs, Stopped):
+    if isinstance(proofs, NoResult):
         yield unknown("interceptor", Layer.INTERCEPTOR, CLAIM, proofs.reason, file)
     else:
         artefacts = {file.name: sha256(file.text)}

@@ -1,4 +1,4 @@
-"""The languages of monitors that can be proved, beside Python."""
+"""Languages of provable monitors, besides Python."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A language of the table; its module is imported when it is asked for."""
+    """A language of the table; its module is imported on demand."""
 
     name: str
     suffixes: tuple[str, ...]
-    """Of its files."""
+    """Suffixes of its files."""
     emit: str
-    """The kind of `--emit` that writes it."""
+    """The `--emit` kind that writes it."""
     room: str
-    """The package below `fretc.verification`."""
+    """The package in `fretc.verification`."""
     missing: str
-    """What its monitors need, where that is not installed."""
+    """Message about the missing tool of its monitors."""
     install: str
     under: str
-    """What is assumed of the tool, before its name."""
+    """Assumption about the tool, before its name."""
 
     @property
     def module(self) -> Language:
-        """What reads, compiles and runs its texts."""
+        """Module that checks, compiles and runs its texts."""
         name = f"fretc.verification.{self.room}.language"
         return cast("Language", import_module(name))
 
@@ -41,27 +41,27 @@ TABLE = (
         (".c",),
         "c",
         "c",
-        "compiled for its proof, and there is none of `gcc`, `clang`, `cc`",
+        "compiled for its proof, but none of `gcc`, `clang`, `cc` is installed",
         "install a C compiler, as with `apt install gcc`",
-        "the binary is what was proved",
+        "the deployed binary is the one that was proved",
     ),
     Row(
         "Rust",
         (".rs",),
         "rust",
         "rust",
-        "compiled for its proof, and there is no `rustc`",
+        "compiled for its proof, but `rustc` is not installed",
         "install Rust: see rustup.rs, or `apt install rustc`",
-        "the binary is what was proved",
+        "the deployed binary is the one that was proved",
     ),
     Row(
         "JavaScript",
         (".mjs", ".js"),
         "js",
         "javascript",
-        "run for its proof, and there is no `node`",
+        "run for its proof, but `node` is not installed",
         "install Node.js: see nodejs.org, or `apt install nodejs`",
-        "other engines run the text as this one did",
+        "other JavaScript engines run the file as this one did",
     ),
 )
 

@@ -1,6 +1,6 @@
-"""Layer LOOP of `fretc verify`: monitor, interceptor and any environment keep the requirement.
+"""Layer LOOP of `fretc verify`: monitor, interceptor and any environment satisfy the requirement.
 
-`fretc.verification.loop` proves it; this module asks for one requirement after the other.
+`fretc.verification.loop` proves it, one requirement after the other.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from fretc.verification.loop.closed_loop import loop_proofs
 def prove(
     requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
-    """Two proofs for each requirement: it is kept, and a stop is released in the end."""
+    """Two proofs for each requirement: it is satisfied, and a stop is finally released."""
     for requirement in requirements:
         request.progress(f"{requirement.id}: loop")
         setup = setup_of(requirement, project, request)

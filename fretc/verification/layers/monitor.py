@@ -1,4 +1,4 @@
-"""Layer MONITOR: the text of a monitor means what its sentence says."""
+"""Layer MONITOR: the text of a monitor has the meaning of its sentence."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof, not_checked, proof
 from compiler.project.project import Project
 from fretc.verification.compiled.plan import SourceText
-from fretc.verification.engines.sandbox import Session, Stopped
+from fretc.verification.engines.sandbox import NoResult, Session
 from fretc.verification.layers.languages import Row, language_of
 from fretc.verification.layers.request import Request, named_text, setup_of
 from fretc.verification.monitor.verifying import verified_beside, written
@@ -22,12 +22,12 @@ ENGINE = "fretc, lock step with the counter automaton of the sentence"
 def prove(
     requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterable[Proof] | Diagnostic:
-    """One proof for each requirement; the text may hold monitors of other requirements, too.
+    """One proof for each requirement; the text may contain monitors of other requirements, too.
 
-    A diagnostic where no tool is installed that compiles or runs it.
+    A diagnostic if the compiler or interpreter is not installed.
 
     Raises:
-        NotAMonitorError: the given text is no generated monitor.
+        NotAMonitorError: the given text is not a generated monitor.
     """
     language = language_of(request.monitor.name) if request.monitor else None
     if request.monitor is None or language is None:
@@ -55,7 +55,7 @@ def _of_python(
             request.progress(f"{requirement.id}: monitor")
             beside = file.text if given is None else whole if isinstance(whole, str) else None
             outcome = session.call(verified_beside, requirement, file.text, beside)
-            if isinstance(outcome, Stopped):
+            if isinstance(outcome, NoResult):
                 outcome = not_checked(outcome.reason)
             artefacts = {file.name: sha256(file.text)}
             yield proof(requirement.id, Layer.MONITOR, CLAIM, outcome, ENGINE, (), artefacts)
@@ -71,10 +71,10 @@ def _of_language(
     """Proofs of a monitor in a language.
 
     Args:
-        requirements: those that are asked about.
+        requirements: the requirements to prove.
         project: all requirements.
         request: the limits.
-        language: it.
+        language: the language.
         made: its tool, and the text.
     """
     from fretc.verification.compiled.verifying import verified as examined

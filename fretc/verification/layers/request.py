@@ -1,4 +1,4 @@
-"""What is asked of the layers: which of them, about which texts, and with which limits."""
+"""The request to the layers: which of them, about which texts, and with which limits."""
 
 from __future__ import annotations
 
@@ -18,37 +18,37 @@ from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
 
 Progress = Callable[[str], None]
-"""Is called with what is being worked on from now on, in words."""
+"""Callback that gets the name of the next activity."""
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """The layers and provers, and the texts; None: the text that fretc makes."""
+    """The layers and provers, and the texts; None: the generated text."""
 
     layers: Collection[Layer]
     limits: Limits
     demanded: Collection[Layer] = ()
-    """Those of them that the user names, for every requirement; the others count where they apply,
-    and where the header of a requirement plans them."""
+    """Layers and provers that the user names, for every requirement; others count if they apply,
+    and if the header of a requirement plans them."""
     monitor: Source | None = None
     header: Source | None = None
-    """Of the monitor, which is in C then."""
+    """Header of a monitor in C."""
     interceptor: Source | None = None
     agent: Source | None = None
     properties: Source | None = None
     percepts: tuple[str, ...] = ()
     provers: Collection[str] = ()
     ajpf: Sequence[Proof] = ()
-    """The results of AJPF."""
+    """Results of AJPF."""
     progress: Progress = lambda words: None
-    """Is called before each claim that takes its time."""
+    """Called before each claim that takes time."""
 
     def names(self, name: str) -> bool:
-        """Whether a layer or a prover is asked."""
+        """Whether a layer or a prover is requested."""
         return name in self.layers or name in self.provers
 
     def demands(self, layer: Layer, requirement: RequirementEntry) -> bool:
-        """Whether a claim of a layer is open as long as nothing is known of it."""
+        """Whether a claim of a layer counts as open without a result."""
         return layer in self.demanded or str(layer) in requirement.verify
 
 
@@ -65,7 +65,7 @@ def setup_of(requirement: FormalizedRequirement, project: Project, request: Requ
 
 
 def interceptor_of(project: Project, request: Request) -> NamedText | None:
-    """The interceptor that is given, or the one of the bindings; None: they declare none."""
+    """The given interceptor, or the one of the bindings; None: they declare none."""
     declared = project.declarations
     if request.interceptor is not None or declared is None or declared.interceptor is None:
         return named_text(request.interceptor)
@@ -88,6 +88,6 @@ def unknown(
 def unexamined(
     requirement: str, layer: Layer, claim: str, outcome: Outcome, text: NamedText | None = None
 ) -> Proof:
-    """A claim that no engine was asked about."""
+    """A claim that no engine has examined."""
     artefacts = {text.name: sha256(text.text)} if text else {}
     return proof(requirement, layer, claim, outcome, "fretc", (), artefacts)

@@ -1,7 +1,6 @@
 """The layers and provers of `fretc verify`, in one table.
 
-The table is there at once; the module of a row is imported when it is asked for, so that help is
-quick.
+The module of a row is imported on demand, so that help is quick.
 """
 
 from __future__ import annotations
@@ -23,30 +22,29 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Method:
-    """A layer, or a prover that is asked beside the layers."""
+    """A layer, or an additional prover."""
 
     name: str
-    """That of `--layer` or `--with`; a module of this package has it, with `_` for `-`, and `prove`
-    in it."""
+    """Value of `--layer` or `--with`, and with `_` for `-` the name of the module."""
     claim: str
-    """What it proves, as the help of `fretc verify` says it."""
+    """The claim, as in the help of `fretc verify`."""
     of_requirement: bool = False
-    """Whether each proof is about one requirement; else about what all have."""
+    """Whether each proof is about one requirement, not about a shared part."""
     needs_monitor: bool = False
-    """Whether it steps the monitor of a requirement, and its runs are runs of that monitor."""
+    """Whether it steps the monitor of a requirement, so that its runs are runs of that monitor."""
 
     def prove(
         self, requirements: Sequence[FormalizedRequirement], project: Project, request: Request
     ) -> Iterable[Proof] | Diagnostic:
-        """The proofs about the requirements; a diagnostic where a given text has a mistake.
+        """The proofs about the requirements; a diagnostic if a given text has an error.
 
         Args:
-            requirements: those that are asked about.
-            project: all requirements, and what the bindings declare.
-            request: the texts that are given, the limits, and the other wishes.
+            requirements: the requirements to prove.
+            project: all requirements, and the bindings.
+            request: the given texts, the limits, and other options.
 
         Raises:
-            NotAMonitorError: the given text is no generated monitor.
+            NotAMonitorError: the given text is not a generated monitor.
         """
         name = self.name.replace("-", "_")
         module = import_module(f"fretc.verification.layers.{name}")
@@ -84,9 +82,9 @@ TABLE = (
     Method(Layer.AGENT, "the agent's text has its properties"),
     Method(Layer.AJPF, "results of AJPF itself"),
 )
-"""In the order of the proofs."""
+"""All methods in the order of the proofs."""
 OF_MONITOR = frozenset(method.name for method in TABLE if method.needs_monitor)
-"""Layers whose claims are about the text of a requirement's monitor."""
+"""Layers with claims about the text of a requirement's monitor."""
 
 
 def in_words() -> str:

@@ -1,10 +1,11 @@
-"""An abstraction of the closed loop, its twin: six whole numbers and one relation between them.
+"""An integer abstraction of the closed loop: six numbers and one relation between them.
 
-It keeps the oldest open demand: its age, the fate of the first request that was not lost since the
-present stop began, and how long the wheels have zero. Requests at every tick count as a heartbeat
-of one tick. The twin may take more steps than the loop, never fewer: `covered` checks that step by
-step where the loop is small. So an inductive invariant of the twin holds of the loop. Times are
-cells, those of `fretc.verification.loop.model`. Solvers and Python share the relation.
+It stores the oldest open obligation: its age, the state of the first request that was not lost
+since the present stop began, and how long the wheels have had zero. Requests at every tick count as
+a heartbeat of one tick. The abstraction may take more steps than the loop, never fewer: `covered`
+checks that step by step for small parameters. So an inductive invariant of the abstraction holds
+for the loop. Times are cells, those of `fretc.verification.loop.model`. Solvers and Python share
+the relation.
 """
 
 from __future__ import annotations
@@ -19,28 +20,28 @@ from fretc.verification.loop.actuation_model import Channel, Queue
 from fretc.verification.loop.model import Loop, Node, Tick
 
 NONE, ARRIVED = -1, -2
-"""In place of the age of a request: none is in flight; one has arrived."""
+"""Values in place of the age of a request: none is in flight; one has arrived."""
 
 
-class Numbers(NamedTuple):
-    """The twin at the end of a tick; whole numbers, or terms of a solver."""
+class TwinState(NamedTuple):
+    """State of the abstraction at the end of a tick; integers, or terms of a solver."""
 
     open: Any
-    """Ticks since the trigger of the oldest open demand; -1: none is open."""
+    """Ticks since the trigger of the oldest open obligation; -1: none is open."""
     age: Any
     """Cells since the sending of the first request of this stop that was not lost."""
     losses: Any
     """Messages lost since the last one that was not."""
     still: Any
-    """Ends of cells since the wheels have zero, at most `braking + 1`; -1: they move."""
+    """Ends of cells since the wheels have had zero, at most `braking + 1`; -1: they move."""
     requested: Any
-    """1: a stop is requested, whether a message says so or not; 0: none is."""
+    """1: a stop is requested, whether a message was sent or not; 0: none is."""
     silent: Any
     """Ticks from the last message to the next tick."""
 
 
-class Choice(NamedTuple):
-    """The free choices of a step."""
+class StepChoice(NamedTuple):
+    """Free choices of a step."""
 
     stands: Any
     sent: Any
@@ -51,58 +52,60 @@ class Choice(NamedTuple):
 
 
 class Times(NamedTuple):
-    """The parameters; `cells` and `heartbeat` are always numbers, the others may be terms."""
+    """Parameters; `cells` and `heartbeat` are always numbers, the others may be terms."""
 
     cells: int
     heartbeat: int
-    """Ticks: after so many without a message the next one is sent, lost or not."""
+    """Maximum silence in ticks, after which the next message is sent, lost or not."""
     latency: Any
     lost: Any
     braking: Any
 
 
 class Logic(Protocol):
-    """And, or: of truth values or of terms."""
+    """Conjunction and disjunction, of truth values or of terms."""
 
     def both(self, *parts: Any) -> Any:
-        """All of them."""
+        """Conjunction."""
 
     def either(self, *parts: Any) -> Any:
-        """At least one of them."""
+        """Disjunction."""
 
     def no(self, part: Any) -> Any:
-        """Not."""
+        """Negation."""
 
 
 class Plain:
-    """Truth values of Python."""
+    """Logic of Python truth values."""
 
     def both(self, *parts: Any) -> bool:
-        """All of them."""
+        """Conjunction."""
         return all(parts)
 
     def either(self, *parts: Any) -> bool:
-        """At least one of them."""
+        """Disjunction."""
         return any(parts)
 
     def no(self, part: Any) -> bool:
-        """Not."""
+        """Negation."""
         return not part
 
 
-INITIAL = Numbers(-1, NONE, 0, None, 0, 0)
-"""`still` is left out: it is `braking + 1`, for the robot stands."""
+INITIAL = TwinState(-1, NONE, 0, None, 0, 0)
+"""Initial values; `still` is `braking + 1`, because the robot stands."""
 
 
-def begins(now: Numbers, times: Times, logic: Logic) -> Any:
-    """Before the first tick."""
+def begins(now: TwinState, times: Times, logic: Logic) -> Any:
+    """The state before the first tick."""
     standing = now.still == times.braking + 1
     quiet = logic.both(now.losses == 0, now.requested == 0, now.silent == 0)
     return logic.both(now.open == -1, now.age == NONE, standing, quiet)
 
 
-def relation(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
-    """Whether the twin can go from one end of a tick to the next, by that choice."""
+def relation(
+    now: TwinState, then: TwinState, choice: StepChoice, times: Times, logic: Logic
+) -> Any:
+    """Whether the choice leads from one state at the end of a tick to the next."""
     both, either, no = logic.both, logic.either, logic.no
     sampled = both(
         either(no(choice.stands), now.still >= 0),
@@ -126,8 +129,10 @@ def relation(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: L
     return both(sampled, message, ranges, either(released, request))
 
 
-def _message(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
-    """The fate of the message: each change has one, and silence has an end."""
+def _message(
+    now: TwinState, then: TwinState, choice: StepChoice, times: Times, logic: Logic
+) -> Any:
+    """Sending: each change is sent or lost, and a silence ends after the heartbeat."""
     both, either, no = logic.both, logic.either, logic.no
     quiet = both(
         then.requested == now.requested, now.silent < times.heartbeat, then.silent == now.silent + 1
@@ -140,8 +145,10 @@ def _message(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: L
     )
 
 
-def _requested(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
-    """The fate of the request in a tick in which a stop is requested."""
+def _requested(
+    now: TwinState, then: TwinState, choice: StepChoice, times: Times, logic: Logic
+) -> Any:
+    """The request, in a tick in which a stop is requested."""
     both, either, no = logic.both, logic.either, logic.no
     none = either(now.requested == 0, now.age == NONE)
     unsent, sent = either(no(choice.sent), choice.lost), both(choice.sent, no(choice.lost))
@@ -158,7 +165,7 @@ def _requested(now: Numbers, then: Numbers, choice: Choice, times: Times, logic:
     )
 
 
-def _arrival(age: Any, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
+def _arrival(age: Any, then: TwinState, choice: StepChoice, times: Times, logic: Logic) -> Any:
     """A request of that age arrives in the chosen cell; from then on zero is published."""
     both, either = logic.both, logic.either
     k = times.cells
@@ -175,22 +182,22 @@ def _arrival(age: Any, then: Numbers, choice: Choice, times: Times, logic: Logic
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """The result of following the loop step by step."""
+    """Result of comparing the loop with the abstraction step by step."""
 
     steps: int
     longest: int
-    """The most ticks for which a demand is open; -1: there is never one."""
-    uncovered: tuple[Numbers, Numbers] | None
-    """A step that the loop takes and the twin cannot; None: there is no such step."""
+    """Maximum number of ticks for which an obligation is open; -1: there is none."""
+    uncovered: tuple[TwinState, TwinState] | None
+    """A step of the loop that the abstraction cannot take; None: there is none."""
 
 
 def covered(loop: Loop, limit: int, longest: int) -> Coverage:
-    """Whether the twin can take every step of the loop, over all states.
+    """Whether the abstraction can take every step of the loop, over all states.
 
     Args:
-        loop: whose safety function has no deadline, or up to its violation.
-        limit: the most states.
-        longest: ticks; the search stops where a demand is open for longer.
+        loop: a loop without a deadline, or up to its violation.
+        limit: maximum number of states.
+        longest: ticks; the search stops if an obligation is open for longer.
 
     Raises:
         TooManyStatesError: there are more states than the limit.
@@ -200,8 +207,8 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
     times = times_of(channel)
     begin = INITIAL._replace(still=channel.stands)
     visited: set[tuple[Node, int, int]] = {(loop.initial, begin.open, begin.age)}
-    allowed: dict[tuple[Numbers, Numbers], bool] = {}
-    ended: dict[tuple[Numbers, Node, bool, bool | None], int] = {}
+    allowed: dict[tuple[TwinState, TwinState], bool] = {}
+    ended: dict[tuple[TwinState, Node, bool, bool | None], int] = {}
     waiting, steps, most = list(visited), 0, -1
     for node, open_, age in waiting:
         now = _numbers(open_, age, node)
@@ -209,16 +216,16 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
             if tick.violated:
                 continue
             case = now, begun, tick.owed, tick.sent
-            if case in ended:  # the same steps, of another letter
+            if case in ended:  # The same steps belong to another valuation.
                 steps += ended[case]
                 continue
             before = steps
-            follow: dict[tuple[int, Queue], Numbers] = {}
+            follow: dict[tuple[int, Queue], TwinState] = {}
             for after in loop.ends(begun):
                 steps += 1
                 wheels = after.wheels.still, after.wheels.queue
                 then = follow.get(wheels)
-                if then is None:  # the interceptor's own state is nothing to the twin
+                if then is None:  # The abstraction ignores the interceptor's own state.
                     then = follow[wheels] = _followed(now, tick, after, channel)
                     most = max(most, then.open)
                     if (now, then) not in allowed:
@@ -235,8 +242,8 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
     return Coverage(steps, most, None)
 
 
-def _followed(now: Numbers, tick: Tick, after: Node, channel: Channel) -> Numbers:
-    """The numbers of the twin after a step of the loop."""
+def _followed(now: TwinState, tick: Tick, after: Node, channel: Channel) -> TwinState:
+    """State of the abstraction after a step of the loop."""
     if not tick.requested:
         return _numbers(-1, NONE, after)
     age = now.age if now.requested else NONE
@@ -249,21 +256,21 @@ def _followed(now: Numbers, tick: Tick, after: Node, channel: Channel) -> Number
     return _numbers(now.open + 1 if tick.owed else -1, age, after)
 
 
-def _numbers(open_: int, age: int, node: Node) -> Numbers:
-    return Numbers(open_, age, node.losses, node.wheels.still, int(node.requested), node.silent)
+def _numbers(open_: int, age: int, node: Node) -> TwinState:
+    return TwinState(open_, age, node.losses, node.wheels.still, int(node.requested), node.silent)
 
 
 def times_of(channel: Channel) -> Times:
-    """The times of a channel that repeats its requests: at every tick, or after a silence."""
+    """Times of a channel that repeats its requests: at every tick, or after a silence."""
     beat = channel.heartbeat if channel.edge else 1
     return Times(channel.cells, beat, channel.latency, channel.lost, channel.braking)
 
 
-def _is_step(now: Numbers, then: Numbers, times: Times) -> bool:
+def _is_step(now: TwinState, then: TwinState, times: Times) -> bool:
     return any(relation(now, then, choice, times, Plain()) for choice in _choices(times))
 
 
-def _choices(times: Times) -> Iterator[Choice]:
+def _choices(times: Times) -> Iterator[StepChoice]:
     fates = ((False, False), (True, False), (True, True))
     for stands, (sent, lost), cell in product((False, True), fates, range(-1, times.cells)):
-        yield Choice(stands, sent, lost, cell)
+        yield StepChoice(stands, sent, lost, cell)

@@ -1,7 +1,7 @@
-"""The part of the closed loop from the channel to the wheels, and what may happen in it in a tick.
+"""The part of the closed loop from the channel to the wheels, and its behaviour in a tick.
 
-It does not depend on the monitors: loops with the same interceptor and channel may share one drive,
-which computes each passage from one tick to the next once.
+It is independent of the monitors: loops with the same interceptor and channel share one model,
+which computes each transition from one tick to the next once.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ Queue = tuple[tuple[bool, int], ...]
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """The assumptions about everything that is not a text. Times are cells."""
+    """Assumptions about everything that is not code. Times are cells."""
 
     cells: int
-    """To a tick."""
+    """Number of cells in a tick."""
     latency: int = 0
     lost: int = 0
-    """The most stop messages lost in a row."""
+    """Maximum number of stop messages that are lost in a row."""
     edge: bool = False
-    """Requests are sent on change, not at every tick."""
+    """Whether requests are sent on change, not at every tick."""
     punctual: bool = False
-    """At least one command comes in every tick."""
+    """Whether at least one command comes in every tick."""
     braking: int = 0
     scans: bool = False
-    """The interceptor takes scans."""
+    """Whether the interceptor receives scans."""
     heartbeat: int = 0
-    """With `edge`, in ticks: a request is repeated after such a silence, or earlier; 0: never."""
+    """Ticks; with `edge`, a request is repeated after at most this silence; 0: never."""
 
     def __post_init__(self) -> None:
         assert self.cells >= 1
@@ -41,31 +41,31 @@ class Channel:
 
     @property
     def stands(self) -> int:
-        """Ends of cells after which wheels with zero stand for certain."""
+        """Ends of cells after which wheels with zero certainly stand."""
         return self.braking + 1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ActuationState:
-    """A state of the drive. A drive has one object for each: equal ones are the same.
+    """A state of the model. Equal states are the same object.
 
-    Sets of millions of nodes compare and hash them, so neither looks inside.
+    Sets of millions of nodes compare and hash states, so both operations use the identity.
     """
 
     interceptor: State
     still: int
-    """Ends of cells since the wheels have zero, counted up to `Channel.stands`; -1: they move."""
+    """Ends of cells since the wheels have had zero, up to `Channel.stands`; -1: they move."""
     queue: Queue
 
 
 Word = tuple[Event | None, "Word | None"]
-"""The last event, and all events before it; None: a cell ends."""
+"""Last event, and all events before it; None: a cell ends."""
 _Layer = dict[tuple[ActuationState, bool], Word]
-"""What can be reached; and whether enough commands have come, where each tick brings some."""
+"""Reachable states; and whether enough commands have come, if each tick brings some."""
 
 
 class ActuationModel:
-    """Channel, interceptor and wheels, moved by messages, the timer and time."""
+    """Channel, interceptor and wheels, driven by messages, the timer and time."""
 
     def __init__(self, interceptor: InterceptorMachine, channel: Channel) -> None:
         self.interceptor, self.channel = interceptor, channel
@@ -78,7 +78,7 @@ class ActuationModel:
         self.initial = self.wheels(interceptor.initial, channel.stands, ())
 
     def wheels(self, interceptor: State, still: int, queue: Queue) -> ActuationState:
-        """The one object for a state."""
+        """The unique object of a state."""
         key = interceptor, still, queue
         wheels = self._known.get(key)
         if wheels is None:
@@ -86,11 +86,11 @@ class ActuationModel:
         return wheels
 
     def begun(self, wheels: ActuationState, still: int, sent: Queue) -> ActuationState:
-        """The wheels as a tick begins: sampled so, and with a message more in flight, if any."""
+        """The state at the beginning of a tick, with another message in flight, if any."""
         return self.wheels(wheels.interceptor, still, wheels.queue + sent)
 
     def passages(self, wheels: ActuationState) -> Mapping[ActuationState, Word]:
-        """The states of the wheels at the next tick, each with a word of events on the way."""
+        """The states at the next tick, each with the events on the way."""
         passages = self._passages.get(wheels)
         if passages is None:
             passages = self._passages[wheels] = self._passing(wheels)
@@ -122,7 +122,7 @@ class ActuationModel:
         return wheels, word
 
     def _closed(self, layer: _Layer) -> _Layer:
-        """Any number of messages, in any order but that of the queue."""
+        """States after any number of messages, in any order except that of the queue."""
         closure = dict(layer)
         waiting = list(layer)
         for key in waiting:
@@ -136,7 +136,7 @@ class ActuationModel:
         return closure
 
     def _hearing(self, wheels: ActuationState) -> tuple[tuple[Event, bool, ActuationState], ...]:
-        """Every message that may come next, whether it is a command, and the wheels after it."""
+        """Each message that can come next, whether it is a command, and the state after it."""
         queued = [_message(wheels.queue)] if wheels.queue else []
         heard = self._heard[wheels] = tuple(
             (event, event in (Event.MOVE, Event.STAND), self._take(wheels, event))
@@ -145,7 +145,7 @@ class ActuationModel:
         return heard
 
     def _ringing(self, wheels: ActuationState) -> ActuationState:
-        """The wheels after the timer has rung."""
+        """The state after the timer has expired."""
         rung = self._rung.get(wheels)
         if rung is None:
             rung = self._rung[wheels] = self._take(wheels, Event.RING)
@@ -159,7 +159,7 @@ class ActuationModel:
         return self.wheels(interceptor, -1 if output else max(wheels.still, 0), queue)
 
     def _older(self, layer: _Layer) -> _Layer:
-        """A cell ends; states with a message in flight for too long drop out."""
+        """The end of a cell; states with a message in flight for too long are dropped."""
         result: _Layer = {}
         for (wheels, enough), word in layer.items():
             if wheels not in self._later:
@@ -170,7 +170,7 @@ class ActuationModel:
         return result
 
     def _aged(self, wheels: ActuationState) -> ActuationState | None:
-        """The wheels a cell later; None: a message would have been in flight for too long."""
+        """The state a cell later; None: a message would have been in flight for too long."""
         still, queue = wheels.still, wheels.queue
         if queue and queue[0][1] + 1 >= self.channel.latency:
             return None

@@ -1,10 +1,10 @@
-"""Layer BOUNDS: how long an answer takes at most, for every latency, loss and braking time.
+"""Layer BOUNDS: the maximum response time, for every latency, loss and braking time.
 
-The closed loop has a twin in whole numbers (`fretc.verification.loop.abstraction`). z3 proves an
-inductive invariant of it for all times: a demand is open for less than any D with `D *
-tick >= lost * heartbeat + latency + braking` and `D * tick > lost * heartbeat`, where requests at
-every tick have a heartbeat of a tick. Beside the proof, the twin is compared with the texts at
-small times, and a run of the texts shows that under the declared times a lower bound fails.
+The closed loop has an integer abstraction (`fretc.verification.loop.abstraction`). z3 proves an
+inductive invariant of it for all times: an obligation is open for less than any D with `D * tick >=
+lost * heartbeat + latency + braking` and `D * tick > lost * heartbeat`, where requests at every
+tick have a heartbeat of a tick. In addition, the abstraction is compared with the code at small
+times, and a run of the code shows that a lower bound fails under the declared times.
 
 Source: Manna, Pnueli, Temporal verification of reactive systems: safety, 1995, chapter 1
 (invariance).
@@ -31,15 +31,15 @@ from compiler.logic.claims import (
 from compiler.logic.kripke import TooManyStatesError
 from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, Stopped
+from fretc.verification.engines.sandbox import Limits, NoResult
 from fretc.verification.interceptor.file import is_original
 from fretc.verification.interceptor.machine import NotAnInterceptorError
 from fretc.verification.loop.abstraction import (
     ARRIVED,
     NONE,
-    Choice,
-    Numbers,
+    StepChoice,
     Times,
+    TwinState,
     begins,
     covered,
     relation,
@@ -56,24 +56,25 @@ from fretish.documents import RequirementEntry
 from fretish.printer import canonical
 from monitors.interceptor import Options
 
-_MORE = "as many more, at least one, as `latency` and `braking` fill together"
+_MORE = "the ticks of `latency` and `braking` together, at least one"
 ANSWERED = f"every demand is answered within `lost` ticks and {_MORE}"
 _SMALL = ((1, 0, 0, 0), (1, 1, 1, 1), (2, 1, 1, 2), (1, 2, 2, 0), (3, 4, 1, 2))
-"""Cells to a tick, latency, losses in a row, braking: for comparing the twin with the texts."""
+"""Cells in a tick, latency, losses in a row, and braking, for comparing the abstraction with the
+code."""
 _QUERY = 20_000
 """Milliseconds for each query of z3."""
 
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """The question for another process."""
+    """The proof problem, in a form for another process."""
 
     case: Case
     sentence: s.Sentence
     ticks: int | None
-    """The bound of the sentence; None: it has none."""
+    """Bound of the sentence; None: it has none."""
     tick: int
-    """Nanoseconds."""
+    """Length of a tick in nanoseconds."""
 
     @property
     def unknown(self) -> str | None:
@@ -81,14 +82,14 @@ class Question:
         if is_original(self.case.interceptor):
             return None
         return (
-            "the interceptor's core is not the one that fretc writes: what it does at the times "
-            "that are looked at says nothing of longer ones"
+            "the interceptor's core is not the one that fretc generates: a check of some "
+            "times proves nothing about longer times"
         )
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The results of both claims, and the version of z3."""
+    """Results of both claims, and the version of z3."""
 
     answered: Outcome
     enough: Outcome
@@ -98,17 +99,17 @@ class Answer:
 def bounds_proofs(
     requirement: FormalizedRequirement, setup: Setup, limits: Limits
 ) -> tuple[Proof, ...]:
-    """Both claims: an answer comes in time, whatever the times are; and the bound is enough."""
+    """Proofs of both claims: a response comes in time for all times; and the bound is enough."""
     reason = _inapplicable(requirement, setup)
     query = reason or question(requirement, setup)
-    answer: Answer | Stopped
+    answer: Answer | NoResult
     if reason is not None:
         answer = Answer(not_applicable(reason), not_applicable(reason))
     elif isinstance(query, str):
-        answer = Stopped(query)
+        answer = NoResult(query)
     else:
         answer = processes.confined(limits, search, query)
-    if isinstance(answer, Stopped):
+    if isinstance(answer, NoResult):
         answer = Answer(not_checked(answer.reason), not_checked(answer.reason))
     at_declared, at_any = (
         ()
@@ -155,7 +156,7 @@ def _ticks(amount: int) -> str:
 
 
 def _inapplicable(requirement: FormalizedRequirement, setup: Setup) -> str | None:
-    """Why there is no bound to ask about; None: there is one."""
+    """Why the requirement has no bound to prove; None: it has one."""
     reason, sentence = inapplicable(requirement, setup), requirement.sentence
     if reason is not None:
         return reason
@@ -167,7 +168,7 @@ def _inapplicable(requirement: FormalizedRequirement, setup: Setup) -> str | Non
 
 
 def question(requirement: FormalizedRequirement, setup: Setup) -> Question | str:
-    """The question to prove, of a requirement that has a bound; or why it cannot be asked."""
+    """The proof problem of a requirement with a bound; or why it cannot be examined."""
     problem = case(requirement, setup)
     if isinstance(problem, str):
         return problem
@@ -181,12 +182,15 @@ def question(requirement: FormalizedRequirement, setup: Setup) -> Question | str
     assert requirement.clock is not None
     bound = requirement.ticks if s.deadline(sentence.timing) else None
     if not is_same(problem.safety, problem.observer):
-        return "the monitor is not the one that fretc writes for it, and only that is looked at"
+        return (
+            "the monitor is not the one that fretc generates for it, and only generated "
+            "monitors are examined"
+        )
     return Question(problem, sentence, bound, requirement.clock.period or 0)
 
 
 def _answers(sentence: s.Sentence, stands: str) -> bool:
-    """Whether the response holds wherever the robot stands."""
+    """Whether the response holds whenever the robot stands."""
     atoms = atoms_of(sentence)
     letters = letters_by_valuation(sentence, atoms)
     place = atoms.index(stands)
@@ -197,7 +201,7 @@ def _answers(sentence: s.Sentence, stands: str) -> bool:
 
 
 def search(query: Question) -> Answer:
-    """Prove the invariant, compare the twin with the texts, and look for the least bound."""
+    """Prove the invariant, compare abstraction and code, and search for the least bound."""
     try:
         endless = _endless(query)
         parts = Parts.of(endless)
@@ -216,19 +220,19 @@ def search(query: Question) -> Answer:
 
 
 def _covered(query: Question, endless: Case, parts: Parts) -> tuple[int, int, int]:
-    """Compare loops with the twin.
+    """Compare loops with the abstraction.
 
     Args:
-        query: the question.
+        query: the proof problem.
         endless: its case without a bound, so that no run ends at a deadline.
-        parts: those of the endless case.
+        parts: the parts of the endless case.
 
     Returns:
-        For how many ticks a demand of the endless case is open at most, -1 if there is none; how
-        many steps were compared, and of how many loops.
+        Maximum number of ticks for which an obligation of the endless case is open, -1 if there is
+        none; number of compared steps, and of loops.
 
     Raises:
-        NotALoopError: one of the steps is no step of the twin.
+        NotALoopError: a step is not a step of the abstraction.
     """
     small = _short(query.case.settings)
     cases = (
@@ -244,7 +248,7 @@ def _covered(query: Question, endless: Case, parts: Parts) -> tuple[int, int, in
     for loop in loops:
         coverage = covered(loop, endless.limit, longest=_formula(loop.channel) + 1)
         if coverage.uncovered is not None:
-            raise NotALoopError("the loop does what its model in whole numbers does not")
+            raise NotALoopError("the loop has a step that its integer model does not have")
         longest.append(coverage.longest)
         steps += coverage.steps
     return longest[0], steps, len(loops)
@@ -263,7 +267,7 @@ def _channel(declared: Channel, cells: int, latency: int, lost: int, braking: in
 
 
 def _short(settings: Options) -> Options:
-    """The same settings with short times: the twin does not depend on them."""
+    """The same settings with short times, on which the abstraction does not depend."""
     return replace(
         settings,
         hold=min(settings.hold, 2),
@@ -274,13 +278,13 @@ def _short(settings: Options) -> Options:
 
 
 def _formula(channel: Channel) -> int:
-    """D: ticks after which each demand is answered, as the claim says."""
+    """D: ticks within which each obligation is met, as in the claim."""
     filled = -(-(channel.latency + channel.braking) // channel.cells)
     return channel.lost * times_of(channel).heartbeat + max(1, filled)
 
 
 def _endless(query: Question) -> Case:
-    """The case with `eventually` in place of the bound: no run ends at a deadline."""
+    """The case with `eventually` in place of the bound, so that no run ends at a deadline."""
     return _with(query, s.Eventually())
 
 
@@ -297,13 +301,13 @@ def _least(query: Question, least: int, drive: ActuationModel) -> Outcome:
     """Whether the bound is enough.
 
     Args:
-        query: the question.
-        least: ticks, the least bound that is enough; 0: no demand is ever open.
-        drive: of the case.
+        query: the proof problem.
+        least: least sufficient bound in ticks; 0: no obligation is ever open.
+        drive: actuation model of the case.
     """
     if least == 0:
         return not_checked("no demand is ever open")
-    detail = f"the least that is kept is {_ticks(least)} ({in_words(least * query.tick)})"
+    detail = f"the smallest satisfied bound is {_ticks(least)} ({in_words(least * query.tick)})"
     before = _with(query, _bound(least - 1))
     violation = reach(Parts.of(before, drive).loop, before.limit).violation
     assert violation is not None, "a demand is open for longer than it can be"
@@ -320,7 +324,7 @@ def _bound(ticks: int) -> s.Timing:
 
 
 def _violating(query: Question, drive: ActuationModel) -> Any:
-    """The shortest run that violates the sentence as it is."""
+    """A shortest run that violates the original sentence."""
     assert query.ticks is not None
     parts = Parts.of(_with(query, _bound(query.ticks)), drive)
     violation = reach(parts.loop, query.case.limit).violation
@@ -337,7 +341,7 @@ def _proved(declared: Times) -> tuple[str | None, str]:
     """Why the invariant is not proved, None if it is; and z3's version.
 
     Args:
-        declared: only `cells` and `heartbeat` count; z3 treats the others as unknowns.
+        declared: only `cells` and `heartbeat` count; the others are unknowns for z3.
     """
     import z3
 
@@ -357,20 +361,20 @@ def _proved(declared: Times) -> tuple[str | None, str]:
     cells, beat = declared.cells, declared.heartbeat
     times = Times(cells, beat, *z3.Ints("latency lost braking"))
     bound, some = z3.Ints("D n")
-    now, then = (Numbers(*z3.Ints(f"e{i} a{i} w{i} z{i} r{i} s{i}")) for i in (0, 1))
+    now, then = (TwinState(*z3.Ints(f"e{i} a{i} w{i} z{i} r{i} s{i}")) for i in (0, 1))
     stands, sent, lost = z3.Bools("stands is_sent is_lost")
-    choice = Choice(stands, sent, lost, z3.Int("cell"))
+    choice = StepChoice(stands, sent, lost, z3.Int("cell"))
     enough = cells * bound >= cells * beat * times.lost + times.latency + times.braking
     premises = z3.And(
         times.latency >= 0, times.lost >= 0, times.braking >= 0, bound > beat * times.lost, enough
     )
     here, there = (_invariant(numbers, times, bound, logic) for numbers in (now, then))
     queries = {
-        "it does not hold at first": z3.And(begins(now, times, logic), z3.Not(here)),
-        "a step does not keep it": z3.And(
+        "it does not hold initially": z3.And(begins(now, times, logic), z3.Not(here)),
+        "a step does not preserve it": z3.And(
             here, relation(now, then, choice, times, logic), z3.Not(there)
         ),
-        "it does not keep the bound": z3.And(here, some >= bound, now.open >= some),
+        "it does not imply the bound": z3.And(here, some >= bound, now.open >= some),
     }
     for failure, query in queries.items():
         solver = z3.Solver()
@@ -383,11 +387,11 @@ def _proved(declared: Times) -> tuple[str | None, str]:
     return None, z3.get_version_string()
 
 
-def _invariant(at: Numbers, times: Times, bound: Any, logic: Any) -> Any:
-    """The invariant at the end of each tick: why an answer comes in time.
+def _invariant(at: TwinState, times: Times, bound: Any, logic: Any) -> Any:
+    """The invariant at the end of each tick: why a response comes in time.
 
     At most `lost` requests of a stop are lost in a row; the first other one is in flight for less
-    than the latency; from its arrival on, the wheels have zero. An open demand is no older than
+    than the latency; from its arrival on, the wheels have zero. An open obligation is no older than
     its request.
     """
     k, beat, both, either = times.cells, times.heartbeat, logic.both, logic.either

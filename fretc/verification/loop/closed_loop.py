@@ -1,9 +1,8 @@
 """The closed loop of monitor, interceptor and any environment, and its two claims.
 
-The search explores the texts themselves: the monitor as the safety function that requests stops,
-the monitor that fretc makes of the sentence as the observer, and the steps of the interceptor. The
-model between them is `fretc.verification.loop.model`, and its durations are whole cells, rounded
-up.
+The search explores the code itself: the monitor as the safety function that requests stops, the
+generated monitor of the sentence as the observer, and the steps of the interceptor. The model
+between them is `fretc.verification.loop.model`, and its durations are whole cells, rounded up.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from compiler.targets.interceptor_options import ASSUMED, options, ticks
 from compiler.targets.interceptor_options import assumptions_digest as hash_of_assumed
 from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, Stopped
+from fretc.verification.engines.sandbox import Limits, NoResult
 from fretc.verification.interceptor.file import otherwise
 from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.search import Case, Results, search
@@ -35,15 +34,15 @@ from fretish.bindings.declarations import (
 from fretish.clock import in_words
 from fretish.expressions import names
 
-KEPT = "monitor, interceptor and any environment together keep the requirement"
+KEPT = "monitor, interceptor and any environment together satisfy the requirement"
 RELEASED = "the stop is released once no demand begins any more"
 _FINEST = 20
-"""Cells to a tick, where the interceptor has no timer to define a cell."""
+"""Maximum number of cells in a tick if the interceptor has no timer to define a cell."""
 
 
 @dataclass(frozen=True, slots=True)
 class NamedText:
-    """A text under verification, and the name that proofs give it."""
+    """A text to verify, and its name in proofs."""
 
     name: str
     text: str
@@ -51,7 +50,7 @@ class NamedText:
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """The parts of a loop beside the requirement; None: not declared."""
+    """Parts of a loop besides the requirement; None: not declared."""
 
     monitor: NamedText
     interceptor: NamedText | None
@@ -62,17 +61,17 @@ class Setup:
 def loop_proofs(
     requirement: FormalizedRequirement, setup: Setup, limits: Limits
 ) -> tuple[Proof, ...]:
-    """The proofs of both claims: the requirement is kept, and the stop is released."""
+    """Proofs of both claims: the requirement is satisfied, and the stop is released."""
     reason = inapplicable(requirement, setup)
     problem = reason or case(requirement, setup)
-    results: Results | Stopped
+    results: Results | NoResult
     if reason is not None:
         results = Results(not_applicable(reason), not_applicable(reason))
     elif isinstance(problem, str):
-        results = Stopped(problem)
+        results = NoResult(problem)
     else:
         results = processes.confined(limits, search, problem)
-    if isinstance(results, Stopped):
+    if isinstance(results, NoResult):
         results = Results(not_checked(results.reason), not_checked(results.reason))
     premises = () if isinstance(problem, str) else tuple(assumptions(requirement, setup, problem))
     return (
@@ -100,7 +99,7 @@ def _evidence(
 
 
 def artefacts(requirement: FormalizedRequirement, setup: Setup) -> dict[str, str]:
-    """SHA-256 of each text, and of what the bindings assume."""
+    """SHA-256 of each text, and of the assumptions of the bindings."""
     texts = [setup.monitor, *([setup.interceptor] if setup.interceptor else [])]
     hashes = {text.name: sha256(text.text) for text in texts}
     digest = hash_of_assumed(requirement.declarations) if requirement.declarations else ""
@@ -115,15 +114,15 @@ def inapplicable(requirement: FormalizedRequirement, setup: Setup) -> str | None
     if setup.interception is None or setup.interceptor is None:
         return "the bindings declare no interceptor (`[interceptor]`)"
     if setup.assumed is None:
-        return "the bindings assume nothing of the loop (`[assume]`)"
+        return "the bindings state no assumptions about the loop (`[assume]`)"
     stands = setup.assumed.stands
     if stands not in {name.id for name in names(requirement.sentence.response)}:
-        return f"its response does not speak of `{stands}`, which is what the loop decides"
+        return f"its response does not mention `{stands}`, which the loop controls"
     return None
 
 
 def case(requirement: FormalizedRequirement, setup: Setup) -> Case | str:
-    """The case to search, of a requirement that a loop decides; or why it cannot be searched."""
+    """The case to search; or why it cannot be searched."""
     interception, assumed = setup.interception, setup.assumed
     assert interception is not None
     assert setup.interceptor is not None
@@ -157,7 +156,7 @@ def channel(
     cell = cell_of(tick, interception, assumed)
     if tick % cell:
         return (
-            f"a tick of the clock, {in_words(tick)}, is no whole number of periods of the "
+            f"a tick of the clock, {in_words(tick)}, is not a whole number of periods of the "
             f"interceptor's timer, {in_words(cell)}"
         )
     return Channel(
@@ -173,7 +172,7 @@ def channel(
 
 
 def cell_of(tick: int, interception: Interception, assumed: LoopAssumptions) -> int:
-    """Nanoseconds: a period of the timer; without a timer the unit that fits the durations best."""
+    """Length of a cell in nanoseconds: the timer's period, or the best unit for the durations."""
     if interception.form is InterceptorForm.TIMER:
         return interception.period
     exact = gcd(tick, assumed.latency, assumed.braking)
@@ -186,13 +185,13 @@ def cell_of(tick: int, interception: Interception, assumed: LoopAssumptions) -> 
 def assumptions(
     requirement: FormalizedRequirement, setup: Setup, problem: Case, *, any_time: bool = False
 ) -> Iterator[str]:
-    """The assumptions of the verdict in words, each with its place of declaration.
+    """Assumptions of the verdict in words, each with the table that declares it.
 
     Args:
         requirement: the requirement.
         setup: the declarations.
         problem: the case of requirement and setup.
-        any_time: the verdict holds whatever latency, losses and braking time are.
+        any_time: whether the verdict holds for all latencies, losses and braking times.
     """
     interception, assumed, channel = setup.interception, setup.assumed, problem.channel
     assert interception is not None
@@ -208,18 +207,21 @@ def assumptions(
         f"have had zero for {braking}, or earlier"
     )
     for exclusion in problem.excluded:
-        yield f"never at one tick: {exclusion_in_words(exclusion)}, for no numbers compare so"
-    yield "the wheels have at once what was published last, and keep it while nothing is published"
-    yield "at the first tick the robot stands, and nothing has been heard yet"
+        yield (
+            f"never at one tick: {exclusion_in_words(exclusion)}, because no numbers satisfy "
+            "both comparisons"
+        )
+    yield "the wheels follow a published command at once, and keep it until the next one"
+    yield "at the first tick the robot stands, and nothing has been received yet"
     yield (
-        "the node around the interceptor's step hands on every message, and publishes what it gives"
+        "the node around the interceptor's step passes on every message, and publishes the result"
     )
     if interception.form is InterceptorForm.TIMER:
         period = in_words(interception.period)
-        yield f"the interceptor's timer rings once in each {period} (`period`, [interceptor])"
+        yield f"the interceptor's timer expires once in each {period} (`period`, [interceptor])"
     yield from _rounded(interception, assumed, tick, any_time=any_time)
     if not problem.settings.stop_timeout:
-        yield "the safety function never falls silent: there is no `stop_timeout` ([interceptor])"
+        yield "the safety function never stops sending: there is no `stop_timeout` ([interceptor])"
 
 
 def _messages(assumed: LoopAssumptions, tick: int, *, any_time: bool) -> Iterator[str]:
@@ -229,11 +231,11 @@ def _messages(assumed: LoopAssumptions, tick: int, *, any_time: bool) -> Iterato
         f"{_when(assumed)}"
     )
     latency = "`latency`" if any_time else f"{in_words(assumed.latency)} (`latency`, [assume])"
-    yield f"stop messages are heard in the order of sending, each within {latency}"
+    yield f"stop messages arrive in the order of sending, each within {latency}"
     if any_time:
-        yield "never are more than `lost` stop messages lost in a row"
+        yield "at most `lost` stop messages in a row are lost"
     elif assumed.lost:
-        yield f"never are more than {assumed.lost} stop messages lost in a row (`lost`, [assume])"
+        yield f"at most {assumed.lost} stop messages in a row are lost (`lost`, [assume])"
     else:
         yield "no stop message is lost (`lost`, [assume])"
 
@@ -241,17 +243,17 @@ def _messages(assumed: LoopAssumptions, tick: int, *, any_time: bool) -> Iterato
 def _when(assumed: LoopAssumptions) -> str:
     if assumed.heartbeat:
         return (
-            f"where it changes, and again once it has been silent for "
+            f"when it changes, and again when it has been silent for "
             f"{in_words(assumed.heartbeat)}, or earlier (`requests` and `heartbeat`, [assume])"
         )
-    when = "only where it changes" if assumed.requests is Requests.EDGE else "every time"
+    when = "only when it changes" if assumed.requests is Requests.EDGE else "every time"
     return f"{when} (`requests`, [assume])"
 
 
 def _rounded(
     interception: Interception, assumed: LoopAssumptions, tick: int, *, any_time: bool
 ) -> Iterator[str]:
-    """Durations that are no whole number of cells, or of ticks: the proof rounds them up."""
+    """Durations that are not a whole number of cells or ticks, which the proof rounds up."""
     cell = cell_of(tick, interception, assumed)
     cells = "whole cells of the model"
     for name, duration, unit, grid in (

@@ -33,51 +33,50 @@ from fretc.verification.monitor.machine import Stepped
 
 
 class Node(NamedTuple):
-    """The loop at the end of a tick."""
+    """State of the loop at the end of a tick."""
 
     safety: Hashable
     observer: Hashable
     wheels: ActuationState
     losses: int
-    """Stop messages lost since the last one that was not."""
+    """Number of stop messages lost since the last one that was not."""
     requested: bool
-    """The request in the last stop message, lost or not."""
+    """Request in the last stop message, lost or not."""
     silent: int
-    """Ticks from the last stop message to the next tick, or from tick 0 where there was none; 0
-    where no heartbeat counts them."""
+    """Ticks from the last stop message, or from tick 0, to the next tick; 0 without a heartbeat."""
 
 
 class Tick(NamedTuple):
-    """The facts about a tick that the node after it does not contain."""
+    """Facts about a tick that the following node does not contain."""
 
     letter: Valuation
     triggered: bool
     owed: bool
     requested: bool
     sent: bool | None
-    """None: no message; False: it is lost."""
+    """None: no message; False: the message is lost."""
     again: bool
-    """The message repeats the last request, for the heartbeat."""
+    """Whether the message repeats the last request, for the heartbeat."""
     violated: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Environment:
-    """The propositions, and the one of them that the wheels decide."""
+    """The propositions, and the one that depends on the wheels."""
 
     atoms: tuple[str, ...]
     stands: str
     excluded: tuple[Exclusion, ...] = ()
-    """What the propositions cannot be together."""
+    """Combinations of propositions that cannot occur."""
 
     def letters(self, stands: bool) -> tuple[Valuation, ...]:
-        """Every valuation with that value of the proposition that can occur."""
+        """Every possible valuation with this value of the wheels' proposition."""
         choices = [(stands,) if name == self.stands else (False, True) for name in self.atoms]
         return only_possible(tuple(product(*choices)), self.atoms, self.excluded)
 
 
 class Loop:
-    """All parts, and the steps that they can take together."""
+    """All parts of the loop, and their common steps."""
 
     def __init__(
         self,
@@ -86,13 +85,13 @@ class Loop:
         drive: ActuationModel,
         environment: Environment,
     ) -> None:
-        """Before the first tick: the robot stands, and no message has come or is in flight.
+        """The loop before the first tick: the robot stands, and no message is in flight.
 
         Args:
-            safety: the monitor that requests stops.
-            observer: the monitor that detects violations; None: it has the text of `safety`.
-            drive: the channel, the interceptor and the wheels; other loops may share it.
-            environment: the propositions in the order of letters.
+            safety: monitor that requests stops.
+            observer: monitor that detects violations; None: it has the text of `safety`.
+            drive: channel, interceptor and wheels; other loops may share it.
+            environment: propositions in the order of valuations.
         """
         self._safety, self._observer = safety, observer
         self.drive, self.environment = drive, environment
@@ -106,25 +105,25 @@ class Loop:
     # One tick -------------------------------------------------------------------------------
 
     def steps(self, node: Node) -> Iterator[tuple[Tick, Node]]:
-        """Every tick that can follow, each with the node at its end."""
+        """Every possible next tick, each with the node at its end."""
         for tick, begun in self.begins(node):
             for after in self.ends(begun):
                 yield tick, after
 
     def begins(self, node: Node) -> Iterator[tuple[Tick, Node]]:
-        """Every tick that can follow, each with the node at the moment of its message."""
+        """Every possible next tick, each with the node at the moment of its message."""
         for stands, still in self._sampled(node.wheels.still):
             for letter in self._letters[stands]:
                 yield from self._begins(node, letter, still)
 
     def ends(self, begun: Node) -> Iterator[Node]:
-        """The nodes at the end of a tick that has begun so."""
+        """Nodes at the end of a tick with this beginning."""
         safety, observer, before, losses, requested, silent = begun
         for wheels in self.drive.passages(before):
             yield Node(safety, observer, wheels, losses, requested, silent)
 
     def _sampled(self, still: int) -> list[tuple[bool, int]]:
-        """Whether the robot stands, and the count of the wheels then."""
+        """Whether the robot stands, and the wheels' count then."""
         if still < 0:
             return [(False, still)]
         certain = (True, self.channel.stands)
@@ -144,7 +143,7 @@ class Loop:
         return self.drive.begun(wheels, still, ((tick.requested, 0),) if tick.sent else ())
 
     def word(self, before: Node, tick: Tick, after: Node) -> tuple[Event | None, ...]:
-        """The events from one end of a tick to the next; None: a cell ends."""
+        """Events between the ends of two ticks; None: a cell ends."""
         stands = self.channel.stands if tick.letter[self._place] else before.wheels.still
         begun = self._begun(before.wheels, tick, stands)
         rest: Word | None = self.drive.passages(begun)[after.wheels]
@@ -152,7 +151,7 @@ class Loop:
         while rest is not None:
             events.append(rest[0])
             rest = rest[1]
-        return tuple(events[-2::-1])  # the first one stands for nothing
+        return tuple(events[-2::-1])  # The first element is a placeholder.
 
     def _judge(self, node: Node, letter: Valuation) -> tuple[Hashable, ...]:
         key = (node.safety, node.observer, letter)
@@ -172,11 +171,11 @@ class Loop:
         return judgement
 
     def _fates(self, node: Node, same: bool) -> list[tuple[bool | None, int]]:
-        """The possible fates of the message, each with the losses in a row after it.
+        """Whether the message is sent, lost or not needed, each with the losses in a row after it.
 
         Args:
-            node: before the tick.
-            same: it would repeat the last request, so it need not be sent.
+            node: node before the tick.
+            same: whether it would repeat the last request, so that it need not be sent.
         """
         beat = self.channel.heartbeat
         quiet: list[tuple[bool | None, int]] = [(None, node.losses)]

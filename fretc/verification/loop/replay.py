@@ -1,7 +1,7 @@
-"""A run of the closed loop as a table, from a second run of the texts from their beginning.
+"""Replay of a run of the closed loop as a table, with freshly loaded code.
 
-The texts must do what the model says of the run: this replay steps monitors without saving and
-restoring their states, and the interceptor without encoded states.
+The code must behave as the model says: the replay steps monitors without saving and restoring
+states, and the interceptor without encoded states.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from monitors.kernel.verdicts import VIOLATED, Truth
 from monitors.loading import load
 
 EXTRA = ("request", "delivered", "halt", "wheels")
-"""The columns beside the propositions: the request, and its last delivery in the tick; at the end
-of the tick, whether the interceptor is halted and whether the wheels have to move."""
+"""Columns besides the propositions: the request, and its last delivery in the tick; at the end of
+the tick, whether the interceptor is halted and whether the wheels have to move."""
 
 
 class Moment(NamedTuple):
@@ -27,18 +27,18 @@ class Moment(NamedTuple):
 
     tick: Tick
     events: tuple[Event | None, ...]
-    """None: a cell ends."""
+    """Events; None: a cell ends."""
 
 
 @dataclass(frozen=True, slots=True)
-class Watched:
-    """A monitor's text and the place of the requirement in it."""
+class LoadedMonitor:
+    """Text of a monitor, and the index of the requirement in it."""
 
     text: str
     place: int
 
     def fresh(self) -> Monitor:
-        """The monitor before its first tick; no other shares it."""
+        """A new instance of the monitor before its first tick."""
         return load("monitor", self.text)
 
 
@@ -53,27 +53,27 @@ def moments(loop: Loop, start: Node, run: Sequence[tuple[Tick, Node]]) -> tuple[
 
 def replayed(
     run: Sequence[Moment],
-    safety: Watched,
-    observer: Watched,
+    safety: LoadedMonitor,
+    observer: LoadedMonitor,
     loop: Loop,
     cycle: int | None = None,
 ) -> tuple[Trace, bool]:
-    """The run as a table, and whether the observer finds a violation at its last tick.
+    """The run as a table, and whether the observer detects a violation at its last tick.
 
     Raises:
-        AssertionError: the texts do not do what the model says.
+        AssertionError: the code does not behave as the model says.
     """
-    again = _Again(safety, observer, loop)
+    again = _Replay(safety, observer, loop)
     rows = tuple(again.row(moment) for moment in run)
     names = (*loop.environment.atoms, *EXTRA)
     actions = tuple(map(_in_words, run))
     return Trace(names, rows, actions, cycle), again.violated
 
 
-class _Again:
-    """The texts, from their beginning."""
+class _Replay:
+    """Fresh instances of the code."""
 
-    def __init__(self, safety: Watched, observer: Watched, loop: Loop) -> None:
+    def __init__(self, safety: LoadedMonitor, observer: LoadedMonitor, loop: Loop) -> None:
         self._safety, self._observer = safety.fresh(), observer.fresh()
         self._places = safety.place, observer.place
         self._interceptor: InterceptorMachine = loop.interceptor
@@ -85,7 +85,7 @@ class _Again:
         self.violated = False
 
     def row(self, moment: Moment) -> tuple[Truth, ...]:
-        """Run one tick of all texts; its row of the table."""
+        """Step all code by one tick; returns the row of the table."""
         tick = moment.tick
         self._sample(tick)
         self._step(self._safety, tick)
@@ -140,7 +140,7 @@ class _Again:
 
 
 def _in_words(moment: Moment) -> str:
-    """`a stop is requested, and the message is lost; a command to move is heard`."""
+    """`a stop is requested, and the message is lost; a command to move is received`."""
     return "; ".join((*_message(moment.tick), *_deliveries(moment.events)))
 
 
@@ -156,5 +156,5 @@ def _message(tick: Tick) -> Iterator[str]:
 
 
 def _deliveries(events: Sequence[Event | None]) -> Iterator[str]:
-    """The events without rings of the timer, which are as many in each tick."""
+    """Events without expirations of the timer, whose number is the same in each tick."""
     yield from (event.value for event in events if event is not None and event is not Event.RING)

@@ -1,7 +1,7 @@
-"""Exploration of the closed loop: a shortest violation, an endless debt, a stop that stays.
+"""Exploration of the closed loop: a shortest violation, an endless one, a stop that stays.
 
 All of it is reachability in a finite graph (`fretc.verification.loop.model`); Spot searches for
-endless runs. The texts replay each run before a result contains it.
+endless runs. The code replays each run before a result contains it.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ from compiler.logic.orders import Exclusion
 from fretc.verification.interceptor.machine import InterceptorMachine, NotAnInterceptorError
 from fretc.verification.loop.actuation_model import ActuationModel, Channel
 from fretc.verification.loop.model import Environment, Loop, Node, Tick
-from fretc.verification.loop.replay import Watched, moments, replayed
+from fretc.verification.loop.replay import LoadedMonitor, moments, replayed
 from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.text_check import strange
 from monitors.interceptor import Options
 from monitors.loading import load
 
 MOST_ATOMS = 8
-"""Each proposition doubles the letters of a tick."""
+"""Maximum number of propositions, each of which doubles the valuations of a tick."""
 LONGEST = 250
-"""Ticks: Spot expands bounds, so it gets no longer one."""
+"""Maximum bound in ticks for Spot, which expands bounds."""
 
-_HALT, _TRIGGER = f.Atom("_halt_"), f.Atom("_trigger_")  # no names of FRETish
+_HALT, _TRIGGER = f.Atom("_halt_"), f.Atom("_trigger_")  # These are not names of FRETish.
 RELEASE = f.implies(
     f.eventually(f.globally(f.not_(_TRIGGER))), f.eventually(f.globally(f.not_(_HALT)))
 )
@@ -37,23 +37,23 @@ RELEASE = f.implies(
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """Everything that the search depends on: texts and numbers."""
+    """Everything on which the search depends: code and numbers."""
 
     requirement: str
     formula: f.Formula
-    """Future-time, on infinite traces."""
+    """Future-time formula on infinite traces."""
     safety: str
-    """The text of the monitor that requests stops."""
+    """Text of the monitor that requests stops."""
     observer: str
-    """The text of the monitor that detects violations."""
+    """Text of the monitor that detects violations."""
     interceptor: str
     settings: Options
     channel: Channel
     stands: str
     limit: int = 10**6
-    """The most states of the exploration."""
+    """Maximum number of states of the exploration."""
     excluded: tuple[Exclusion, ...] = ()
-    """What the propositions cannot be together."""
+    """Combinations of propositions that cannot occur."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +65,11 @@ class Results:
 
 
 class NotALoopError(Exception):
-    """The case cannot be explored; the text says why."""
+    """The case cannot be explored; the message gives the reason."""
 
 
 def search(case: Case) -> Results:
-    """Look for a violation, then for an endless one, then for a stop that stays."""
+    """Search for a violation, then for an endless one, then for a stop that stays."""
     try:
         parts = Parts.of(case)
         reached = reach(parts.loop, case.limit)
@@ -89,22 +89,23 @@ def search(case: Case) -> Results:
 
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """The texts, loaded."""
+    """The loaded code."""
 
     loop: Loop
-    safety: Watched
-    observer: Watched
+    safety: LoadedMonitor
+    observer: LoadedMonitor
 
     @classmethod
     def of(cls, case: Case, drive: ActuationModel | None = None) -> Parts:
-        """The parts of a case.
+        """The loaded parts of a case.
 
         Args:
-            case: it.
-            drive: of another case with the same interceptor, settings and channel; None: a new one.
+            case: the case.
+            drive: actuation model of another case with the same interceptor, settings and channel;
+                None: a new one.
 
         Raises:
-            NotALoopError, NotAnInterceptorError: a text is not what it should be.
+            NotALoopError, NotAnInterceptorError: a text cannot be used.
         """
         assert drive is None or drive.channel == case.channel
         same = case.safety == case.observer
@@ -113,7 +114,7 @@ class Parts:
         names = (*f.atoms(case.formula), *watching.PROPOSITIONS, *requesting.PROPOSITIONS)
         atoms = tuple(dict.fromkeys(names))
         if case.stands not in atoms:
-            raise NotALoopError(f"the monitor does not look at `{case.stands}`")
+            raise NotALoopError(f"the monitor does not read `{case.stands}`")
         if len(atoms) > MOST_ATOMS:
             raise NotALoopError(f"{len(atoms)} propositions, more than {MOST_ATOMS}")
         loop = Loop(
@@ -126,20 +127,20 @@ class Parts:
 
 
 def new_drive(case: Case) -> ActuationModel:
-    """The drive of a case.
+    """The actuation model of a case.
 
     Raises:
-        NotAnInterceptorError: the text of its interceptor is not what it should be.
+        NotAnInterceptorError: the text of its interceptor cannot be used.
     """
     machine = InterceptorMachine(case.interceptor, case.settings, case.limit)
     return ActuationModel(machine, case.channel)
 
 
 @lru_cache(maxsize=8)
-def watched(text: str, requirement: str) -> Watched:
+def watched(text: str, requirement: str) -> LoadedMonitor:
     """A monitor of the requirement; only a text in the layout of fretc is executed.
 
-    A question is asked of several channels, with the same texts.
+    The result is cached, because a requirement is examined with several channels.
     """
     reason = strange(text)
     if reason is not None:
@@ -147,27 +148,27 @@ def watched(text: str, requirement: str) -> Watched:
     monitor = load("monitor", text)
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == requirement]
     if not places:
-        raise NotALoopError("the monitor is of other requirements")
-    return Watched(text, places[0])
+        raise NotALoopError("the monitor is for other requirements")
+    return LoadedMonitor(text, places[0])
 
 
 # Finite runs ----------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
-class Reached:
-    """The result of an exploration: its size, and a shortest run to a violation, if any."""
+class Exploration:
+    """Result of an exploration: its size, and a shortest run to a violation, if any."""
 
     states: int
     steps: int
     violation: tuple[tuple[Tick, Node], ...] | None
     triggered: bool
     moved: bool
-    """Whether the robot can be sampled while it does not stand."""
+    """Whether the robot can be sampled while it moves."""
 
 
-def reach(loop: Loop, limit: int) -> Reached:
-    """Every state, breadth first, up to the first violation.
+def reach(loop: Loop, limit: int) -> Exploration:
+    """All states, breadth first, up to the first violation.
 
     Raises:
         TooManyStatesError: there are more states than the limit.
@@ -182,7 +183,7 @@ def reach(loop: Loop, limit: int) -> Reached:
             moved |= not tick.letter[place]
             if tick.violated:
                 run = (*_way(came, node), (tick, next(loop.ends(begun))))
-                return Reached(len(came), steps, run, triggered, moved)
+                return Exploration(len(came), steps, run, triggered, moved)
             if begun in visited:
                 continue
             visited.add(begun)
@@ -193,7 +194,7 @@ def reach(loop: Loop, limit: int) -> Reached:
                         raise TooManyStatesError(limit)
                     came[after] = node, tick
                     waiting.append(after)
-    return Reached(len(came), steps, None, triggered, moved)
+    return Exploration(len(came), steps, None, triggered, moved)
 
 
 def _way(came: dict[Node, tuple[Node, Tick] | None], node: Node) -> tuple[tuple[Tick, Node], ...]:
@@ -205,10 +206,10 @@ def _way(came: dict[Node, tuple[Node, Tick] | None], node: Node) -> tuple[tuple[
     return tuple(reversed(way))
 
 
-def _requirement_result(case: Case, parts: Parts, reached: Reached, runs: Runs) -> Outcome:
+def _requirement_result(case: Case, parts: Parts, reached: Exploration, runs: Runs) -> Outcome:
     if reached.violation is not None:
         trace, violated = as_table(parts, reached.violation)
-        assert violated, "the texts do not violate what the model violates"
+        assert violated, "the code does not violate what the model violates"
         ticks = len(trace.rows)
         return refuted(f"violated at tick {ticks - 1}; no shorter run shows it", trace)
     looked = f"{reached.states:,} states, {reached.steps:,} steps"
@@ -223,7 +224,7 @@ def _requirement_result(case: Case, parts: Parts, reached: Reached, runs: Runs) 
     lasso = _lasso(parts, runs, case.formula)
     if lasso is None:
         return proved(f"{looked}; Spot finds no endless run that violates it")
-    return refuted("what is owed never comes: the last ticks are repeated for ever", lasso)
+    return refuted("the demanded response never comes: the last ticks repeat for ever", lasso)
 
 
 def _release_result(parts: Parts, runs: Runs) -> Outcome:
@@ -232,13 +233,13 @@ def _release_result(parts: Parts, runs: Runs) -> Outcome:
         if not any(_HALT.name in label for label in runs.explored.kripke.labels):
             return vacuous("no stop is ever in force")
         return proved("Spot finds no endless run that violates it")
-    return refuted("the stop stays: the last ticks are repeated for ever", lasso)
+    return refuted("the stop is never released: the last ticks repeat for ever", lasso)
 
 
 def as_table(
     parts: Parts, run: tuple[tuple[Tick, Node], ...], cycle: int | None = None
 ) -> tuple[Trace, bool]:
-    """The run as a table, replayed by the texts; and whether it violates the requirement."""
+    """The run as a table, replayed by the code; and whether it violates the requirement."""
     visible = moments(parts.loop, parts.loop.initial, run)
     return replayed(visible, parts.safety, parts.observer, parts.loop, cycle)
 
@@ -255,12 +256,12 @@ class Runs:
 
     loop: Loop
     visible: frozenset[str]
-    """The atoms that distinguish states."""
+    """Atoms that distinguish states."""
     explored: Explored[Labelled]
 
     @classmethod
     def of(cls, loop: Loop, visible: frozenset[str], limit: int) -> Runs:
-        """Raises TooManyStatesError where there are more states than the limit."""
+        """The runs; raises TooManyStatesError if there are more states than the limit."""
         ends: dict[tuple[frozenset[str], Node], tuple[Labelled, ...]] = {}
 
         def successors(state: Labelled) -> Iterator[Labelled]:
@@ -302,7 +303,7 @@ def _true(loop: Loop, tick: Tick) -> frozenset[str]:
 
 
 def _labelled(loop: Loop, true: frozenset[str], begun: Node) -> Iterator[Labelled]:
-    """The states at the end of a tick that has begun so, with those atoms."""
+    """States at the end of a tick with this beginning, with these atoms."""
     halted = true | {_HALT.name}
     for after in loop.ends(begun):
         blocks = loop.interceptor.blocks_commands(after.wheels.interceptor)
@@ -310,7 +311,7 @@ def _labelled(loop: Loop, true: frozenset[str], begun: Node) -> Iterator[Labelle
 
 
 def is_safety(formula: f.Formula, positive: bool = True) -> bool:
-    """Whether its form shows that each violation has a finite prefix that shows it.
+    """Whether the syntax shows that each violation has a finite prefix that proves it.
 
     Source: Sistla, Safety, liveness and fairness in temporal logic, FAC 6 (1994), section 3.
     """

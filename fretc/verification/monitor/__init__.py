@@ -1,5 +1,5 @@
-"""Proofs that the text of a monitor in Python means what its sentence means.
+"""Proofs that the text of a monitor in Python has the meaning of its sentence.
 
-Input is the text of a monitor and its requirement. Output is a proof, or a shortest trace that it
-misjudges.
+Input is the text of a monitor and its requirement. Output is a proof, or a shortest trace with a
+wrong verdict.
 """

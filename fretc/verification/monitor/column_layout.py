@@ -11,15 +11,15 @@ _COLUMNS = frozenset(
     "previous weak_previous once historically since released since_from since_between "
     "released_between".split()
 )
-"""The functions that a column program may call."""
+"""Functions that a column program may call."""
 
 
 def check_columns(node: ast.stmt, literals: Sequence[str]) -> None:
-    """The function names columns and tells signals, and does nothing else.
+    """Check that a function defines columns and returns signals, and does nothing else.
 
     Args:
-        node: it.
-        literals: the names of its parameters.
+        node: the function.
+        literals: names of its parameters.
 
     Raises:
         UnexpectedCodeError: it does something else.

@@ -1,9 +1,9 @@
-"""The column program of a monitor's text: as terms, and beside its steps on drawn traces.
+"""The column program of a monitor: as terms, and compared with its steps on random traces.
 
-Equal terms are equal columns of any trace. A name stands for its assigned term, a parameter for its
-literal. So two programs with equal terms differ in the names of their variables only, and a proof
-about one, at all lengths of a trace, holds of the other. Drawn traces show where a program and the
-steps of its monitor differ.
+Equal terms are equal columns of any trace. A name represents its assigned term, a parameter its
+literal. So two programs with equal terms differ only in the names of their variables, and a proof
+about one, for all lengths of a trace, holds for the other. Random traces show where a program and
+the steps of its monitor differ.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from monitors.kernel.stepping import literals_of
 from monitors.kernel.verdicts import Truth
 
 DRAWN = 20
-"""Traces on which the column program is compared, where the bound is small."""
+"""Number of random traces for comparing the column program, if the bound is small."""
 _FEWEST, _TICKS = 4, 40_000
-"""At least so many traces; at most so many ticks in all, if there are more traces than that."""
+"""Minimum number of traces; maximum number of ticks in all, if there are more traces than that."""
 _FALSE = Column(0, 0)
 
 Word = tuple[tuple[Truth, ...], ...]
@@ -48,11 +48,11 @@ class Terms:
         """The terms of a requirement's signals, in their order.
 
         Args:
-            text: a monitor's, laid out as fretc writes it.
-            place: of the requirement among those of the monitor.
+            text: text of a monitor, in the layout that fretc writes.
+            place: index of the requirement in the monitor.
 
         Raises:
-            KeyError, IndexError: a signal, or the requirement, is left out.
+            KeyError, IndexError: a signal, or the requirement, is missing.
         """
         monitor = next(
             node
@@ -123,14 +123,14 @@ def agreed(
     atoms: Sequence[str],
     never: Sequence[Exclusion] = (),
 ) -> int | Disagreement:
-    """The ticks on which both programs agree; or a trace on which they do not.
+    """Number of ticks on which both programs agree; or a trace on which they do not.
 
     Args:
         requirement: the requirement.
-        monitor: it has both programs.
-        place: of the requirement among those of the monitor.
-        atoms: what the requirement depends on.
-        never: what is left out beside what can never be.
+        monitor: monitor with both programs.
+        place: index of the requirement in the monitor.
+        atoms: atoms on which the requirement depends.
+        never: additional combinations that are excluded.
     """
     bound, never = requirement.ticks or 0, (*impossible_combinations(requirement), *never)
     is_alone = len(monitor.REQUIREMENTS) == 1
@@ -144,7 +144,7 @@ def agreed(
 
 
 def _length(bound: int) -> int:
-    """Of the traces for a bound, in ticks."""
+    """Length of the traces for a bound, in ticks."""
     return 4 * bound + 50
 
 
@@ -152,15 +152,15 @@ def _length(bound: int) -> int:
 def _traces(
     monitor: Monitor, bound: int, atoms: tuple[str, ...], never: tuple[Exclusion, ...]
 ) -> tuple[tuple[Mapping[str, Column], tuple[int | None, ...]], ...]:
-    """Drawn traces, with the first tick for each requirement at which both programs differ.
+    """Random traces, with the first tick at which the programs differ, for each requirement.
 
     Requirements of one file and one bound share them.
 
     Args:
-        monitor: of one requirement or several.
-        bound: what edges depend on.
-        atoms: the propositions that are drawn; none: all of the monitor.
-        never: what they cannot be together.
+        monitor: monitor of one requirement or several.
+        bound: bound on which edges depend.
+        atoms: propositions with random values; empty: all of the monitor.
+        never: combinations that cannot occur.
     """
     choose, length = random.Random(bound), _length(bound)
     found = []
@@ -176,7 +176,7 @@ def _traces(
 def _possible(
     columns: Mapping[str, Column], excluded: Sequence[Exclusion], length: int
 ) -> dict[str, Column]:
-    """The columns with unknown values where they cannot be what they are."""
+    """The columns with unknown values in place of impossible combinations."""
     every, found = (1 << length) - 1, dict(columns)
     for exclusion in excluded:
         at = every
@@ -192,7 +192,7 @@ def _possible(
 def _first_differences(
     monitor: Monitor, columns: Mapping[str, Column], length: int
 ) -> tuple[int | None, ...]:
-    """For each requirement the first tick at which the signals of both programs differ, on a rail.
+    """For each requirement, the first tick at which the programs' signals differ, on a rail.
 
     Propositions without a column are false.
     """
@@ -221,7 +221,7 @@ def _first_differences(
 
 
 def _drawn(choose: random.Random, length: int, bound: int, unknown: float) -> Column:
-    """A column with odds of its own, or of runs about as long as the bound: edges matter."""
+    """A random column, with its own probability or with runs about as long as the bound."""
     if choose.random() < 0.5:
         odds = choose.choice((0.02, 0.2, 0.5, 0.95))
         codes = bytearray(choose.random() < odds for _ in range(length))

@@ -1,9 +1,9 @@
-"""A proof that a monitor means what its sentence means, or a shortest trace that it misjudges.
+"""Proof that a monitor has the meaning of its sentence, or a shortest counterexample.
 
 The monitor and the reference automaton of the sentence (`compiler.formalization.reference`) run in
-lock step over all letters until no new pair of states appears. Both are finite, so this is exact:
-for traces of any length and at the bound as it is. Source: Hopcroft, Karp, A linear algorithm for
-testing equivalence of finite automata, Cornell TR 71-114 (1971).
+lock step over all valuations until no new pair of states appears. Both are finite, so the result is
+exact: for traces of any length and the original bound. Source: Hopcroft, Karp, A linear algorithm
+for testing equivalence of finite automata, Cornell TR 71-114 (1971).
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ from compiler.logic.orders import Exclusion, only_possible
 from fretish import syntax as s
 
 Judgement = tuple[str, bool]
-"""A verdict (`violated`, `satisfied` or `pending`, as of infinite traces), and whether the trace
-satisfies the sentence, as FRET judges finite traces, if it ends here."""
+"""Verdict (`violated`, `satisfied` or `pending`, for infinite traces), and FRET's finite verdict if
+the trace ends here."""
 
 
 class Machine(Protocol):
     """A monitor whose state can be saved, restored and stepped."""
 
     def save(self) -> Hashable:
-        """Everything that its further steps depend on, and nothing else."""
+        """Everything on which further steps depend, and nothing else."""
 
     def load(self, state: Hashable) -> None:
-        """Go back to a state that was saved."""
+        """Restore a saved state."""
 
     def step(self, letter: Valuation) -> Judgement:
         """The judgement after one more tick."""
@@ -49,25 +49,25 @@ class Machine(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Equivalence:
-    """Both judge every tick of every trace alike, up to the first violation."""
+    """Both give the same judgement at every tick of every trace, up to the first violation."""
 
     states: int
-    """Compared pairs of a state of the automaton and one of the monitor."""
+    """Number of compared pairs of an automaton state and a monitor state."""
     steps: int
-    """Steps of the monitor that were compared."""
+    """Number of compared monitor steps."""
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A trace at whose last tick they differ."""
+    """A trace at whose last tick the judgements differ."""
 
     word: tuple[Valuation, ...]
     expected: Judgement
     actual: Judgement
     shortest: bool = True
-    """Whether no shorter trace shows the difference; False where there were too many pairs."""
+    """Whether no shorter trace shows the difference; False if there were too many pairs."""
     note: str = ""
-    """What is to be known of the numbers that make it."""
+    """Note about the numbers of the trace."""
 
 
 def compare(
@@ -78,26 +78,26 @@ def compare(
     limit: int = 10**6,
     excluded: Sequence[Exclusion] = (),
 ) -> Equivalence | Difference | str:
-    """Compare a monitor with the reference automaton of its sentence; or why they cannot be.
+    """Compare a monitor with the reference automaton of its sentence; or why that is impossible.
 
-    After a violation nothing is compared: a monitor's verdict is then final.
+    After a violation nothing is compared, because a monitor's verdict is then final.
 
     Args:
-        machine: the monitor, before its first tick; its state afterwards is arbitrary.
+        machine: the monitor before its first tick; its state afterwards is arbitrary.
         sentence: a checked sentence.
-        ticks: what its duration counts; without meaning where it has none.
-        atoms: the order of the values in a letter, by the names that formulas have for them;
-            at least every atom of the sentence.
-        limit: the most states of the automaton, and the most pairs of states.
-        excluded: what the atoms cannot be together; the verdicts are those of free atoms, but no
-            trace comes by such a valuation.
+        ticks: duration of the sentence in ticks; ignored if it has none.
+        atoms: order of the values in a valuation, by their names in formulas; at least every atom
+            of the sentence.
+        limit: maximum number of automaton states, and of pairs of states.
+        excluded: combinations of atoms that cannot occur; the verdicts are those of free atoms, but
+            no trace contains such a valuation.
 
     Raises:
         KeyError: an atom of the sentence is not among `atoms`.
     """
     predicate = temporal_predicate(sentence)
     if predicate is not None:
-        return f"`{predicate}` speaks of other ticks, and the automaton knows one"
+        return f"`{predicate}` refers to other ticks, and the automaton reads one tick at a time"
     if len(atoms) > MOST_ATOMS:
         return f"{len(atoms)} propositions, more than {MOST_ATOMS}"
     letters = letters_by_valuation(sentence, atoms)
@@ -114,16 +114,16 @@ def compare(
 
 @dataclass(frozen=True, slots=True)
 class _Reference:
-    """The automaton, read by valuations of the atoms."""
+    """The automaton over valuations of the atoms."""
 
     valuations: tuple[Valuation, ...]
-    """Those that can occur."""
+    """Possible valuations."""
     moves: tuple[tuple[int, ...], ...]
-    """For each state and each letter of the automaton: the next state."""
+    """Next state for each state and each letter of the automaton."""
     letters: tuple[int, ...]
-    """For each valuation: the letter of the automaton."""
+    """Letter of the automaton for each valuation."""
     judgements: tuple[Judgement, ...]
-    """For each state, and at the end, so with the index `BROKEN`, for a broken demand."""
+    """Judgement of each state; the last one, at index `BROKEN`, is that of a violation."""
 
     @classmethod
     def of(cls, automaton: Automaton, letters: Mapping[Valuation, Letter]) -> _Reference:
@@ -144,7 +144,7 @@ class _Reference:
 def _compared(
     machine: Machine, reference: _Reference, limit: int
 ) -> Equivalence | Difference | str:
-    """Whether they are equal, by classes of states; if not, a shortest word, by all pairs."""
+    """Whether both are equal, by classes of states; if not, a shortest word, by all pairs."""
     start = machine.save()
     result = _in_lock_step(machine, reference, Classes(), limit)
     if not isinstance(result, Difference):
@@ -155,41 +155,41 @@ def _compared(
 
 
 class Visited(Protocol):
-    """The pairs of states that need not be looked at again."""
+    """The pairs of states that need not be examined again."""
 
     def add(self, left: Hashable, right: Hashable) -> bool:
-        """Whether the pair is new; it is known from now on."""
+        """Whether the pair is new; adds it."""
 
 
 class Pairs:
-    """Every pair for itself."""
+    """Visited pairs, each by itself."""
 
     def __init__(self) -> None:
         """No pair is known."""
         self._pairs: set[tuple[Hashable, Hashable]] = set()
 
     def add(self, left: Hashable, right: Hashable) -> bool:
-        """Whether the pair is new; it is known from now on."""
+        """Whether the pair is new; adds it."""
         before = len(self._pairs)
         self._pairs.add((left, right))
         return len(self._pairs) > before
 
 
 class Classes:
-    """Sets of states that must be equal if all pairs are: a pair that follows from others is known.
+    """Sets of states that must be equal if all pairs are, so that implied pairs are not examined.
 
-    There are no more new pairs than states on both sides together, where the pairs that can be
-    reached may be as many as their product. Two states of one class give the same values on every
-    trace if each pair that made the class has no difference behind it.
+    The number of new pairs is at most the number of states of both sides, while the reachable pairs
+    may be as many as their product. Two states of one class give the same values on every trace if
+    no pair that formed the class leads to a difference.
     """
 
     def __init__(self) -> None:
-        """Each state is alone."""
+        """Each state in a class of its own."""
         self._parents: list[int] = []
         self._sides: tuple[dict[Hashable, int], dict[Hashable, int]] = ({}, {})
 
     def add(self, left: Hashable, right: Hashable) -> bool:
-        """Whether the pair is new; it is known from now on."""
+        """Whether the pair is new; adds it."""
         roots = [
             self._root(self._number(side, state))
             for side, state in zip(self._sides, (left, right), strict=True)
@@ -214,13 +214,13 @@ class Classes:
 def _in_lock_step(
     machine: Machine, reference: _Reference, visited: Visited, limit: int
 ) -> Equivalence | Difference | str:
-    """Breadth first through the pairs that are new, from the present state of the machine."""
+    """Breadth-first search through new pairs, from the present state of the machine."""
     start = (0, machine.save())
     visited.add(*start)
     pairs = [start]
     origins: list[tuple[int, Valuation] | None] = [None]
     steps = 0
-    for place, (state, saved) in enumerate(pairs):  # grows while it is read
+    for place, (state, saved) in enumerate(pairs):  # The list grows during the loop.
         row = reference.moves[state]
         for valuation, letter in zip(reference.valuations, reference.letters, strict=True):
             machine.load(saved)
@@ -242,7 +242,7 @@ def _in_lock_step(
 
 
 def _word(origins: Sequence[tuple[int, Valuation] | None], place: int) -> tuple[Valuation, ...]:
-    """The letters that led to a pair, from the first tick on."""
+    """The valuations that led to a pair, from the first tick on."""
     word: list[Valuation] = []
     origin = origins[place]
     while origin is not None:

@@ -1,7 +1,7 @@
-"""The layout of what makes truth values of variables: `VARIABLES`, `truths`, `step`, `run`.
+"""Layout of the methods that compute truth values from variables.
 
-It computes by the functions of the run time, of the variables of the tick and of what it kept of
-the one before, and does nothing else.
+The code may only call functions of the runtime part, on the variables of the tick and stored values
+of the previous tick.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from monitors.kernel.variables import Variable
 _CONSTANT = re.compile(r"-?[0-9]{1,4300}(?:\.[0-9]{1,60}|/[1-9][0-9]{0,4300})?", re.ASCII)
 _SIGNS = frozenset({"<", "<=", ">", ">=", "=", "!="})
 _COMPUTED = FUNCTIONS - {*"measurement truth_value word exact power compared is_word".split()}
-"""The functions whose arguments are numbers only."""
+"""Functions with only numbers as arguments."""
 
 
 def declared_variables(node: ast.stmt) -> Mapping[str, Variable]:
     """The variables of a monitor.
 
     Raises:
-        UnexpectedCodeError: they are not written as fretc writes them.
+        UnexpectedCodeError: they do not have the layout that fretc writes.
     """
     found: dict[str, Variable] = {}
     match node:
@@ -76,13 +76,13 @@ def check_front(
     propositions: Sequence[str],
     requirements: int,
 ) -> None:
-    """The methods make truth values of variables and step by them, and do nothing else.
+    """Check that the methods compute truth values and step by them, and do nothing else.
 
     Args:
         methods: `truths`, `step` and `run`.
         variables: `VARIABLES`.
-        propositions: the names of the truth values.
-        requirements: how many the monitor has.
+        propositions: names of the truth values.
+        requirements: number of requirements of the monitor.
 
     Raises:
         UnexpectedCodeError: they do something else.
@@ -109,7 +109,7 @@ def _tuple(names: Iterable[str]) -> str:
 
 
 def _given(variables: Mapping[str, Variable]) -> Iterator[str]:
-    """The statements that take the variables."""
+    """The statements that assign the variables."""
     for name, (parameter, kind, words, infinite) in variables.items():
         function = {NUMBER: "measurement", TRUTH: "truth_value", WORD: "word"}[kind]
         more = f", {words!r}" if kind == WORD else "".join(f", {each!r}" for each in infinite)
@@ -162,7 +162,7 @@ def _check_number(node: ast.expr, bound: frozenset[str]) -> None:
         case ast.Name(name):
             require(name in bound and name != "kept", node)
         case ast.Constant(str()):
-            pass  # a word
+            pass  # An enumeration value.
         case ast.Call(ast.Name("exact"), [ast.Constant(str(text))], []):
             require(_CONSTANT.fullmatch(text) is not None, node)
         case ast.Call(ast.Name("power"), [base, ast.Constant(int(exponent))], []):

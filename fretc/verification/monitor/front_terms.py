@@ -1,8 +1,8 @@
-"""What a monitor's text compares, as terms: equal terms are equal truth values of any variables.
+"""Comparisons of a monitor as terms: equal terms are equal truth values for any variables.
 
-A name stands for what is assigned to it, and what is kept for the next tick for what it is then. So
-two texts with equal terms differ in the names of their variables only. Where terms differ, a tick
-is looked for at which the truth values do.
+A name represents its assigned term, and a stored value the term at the previous tick. So two texts
+with equal terms differ only in the names of their variables. If terms differ, a tick is searched at
+which the truth values do.
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ Term = tuple[object, ...]
 
 @dataclass(frozen=True, slots=True)
 class Differing:
-    """Ticks at whose last one a proposition has another truth value than it should have."""
+    """Ticks at whose last one a proposition has a wrong truth value."""
 
     truths: tuple[Mapping[str, Truth], ...]
-    """The right ones, at each tick."""
+    """Right truth values, at each tick."""
     fault: str
     values: str
-    """Of the variables at the last tick."""
+    """Values of the variables at the last tick."""
 
 
 def terms(text: str) -> Mapping[str, Term]:
-    """What each proposition is, of the variables of a monitor.
+    """Proposition → its term over the variables of a monitor.
 
     Args:
-        text: a monitor's, laid out as fretc writes it.
+        text: text of a monitor, in the layout that fretc writes.
 
     Raises:
-        UnexpectedCodeError: it looks back at what it makes of it itself.
+        UnexpectedCodeError: a stored value depends on all earlier ticks.
     """
     parts = _Parts.of(text)
     return {name: parts.term(ast.Name(local)) for name, local in parts.propositions.items()}
@@ -57,7 +57,7 @@ class _Parts:
 
     propositions: Mapping[str, str]
     given: Mapping[str, Term]
-    """The variables, by their parameters."""
+    """Parameter → variable."""
     assigned: dict[str, ast.expr] = field(default_factory=dict)
     kept: Sequence[ast.expr] = ()
     waiting: list[str] = field(default_factory=list)
@@ -65,7 +65,7 @@ class _Parts:
 
     @classmethod
     def of(cls, text: str) -> _Parts:
-        """Those of a monitor."""
+        """The assignments of a monitor."""
         (monitor,) = (
             node
             for node in own(text).body
@@ -112,14 +112,14 @@ class _Parts:
                 return (function, *(self.term(arg) for arg in args))
             case ast.IfExp(_, before, ast.Subscript(_, ast.Constant(int(place)))):
                 if place >= len(self.kept):
-                    raise UnexpectedCodeError("it looks back at what it does not keep")
+                    raise UnexpectedCodeError("it reads an earlier value that it does not store")
                 return ("earlier", self.term(before), self.term(self.kept[place]))
             case _:
                 raise AssertionError(f"not laid out as fretc writes it: {ast.unparse(node)}")
 
     def _assigned(self, name: str) -> Term:
         if name in self.waiting:
-            raise UnexpectedCodeError("what it keeps depends on what it kept of all ticks before")
+            raise UnexpectedCodeError("a stored value depends on all earlier ticks")
         if name not in self.known:
             self.waiting.append(name)
             self.known[name] = self.term(self.assigned[name])
@@ -130,19 +130,19 @@ class _Parts:
 # Where they differ ----------------------------------------------------------------------------
 
 _LENGTHS = (1,) * 400 + (3,) * 400
-"""Of the traces that are looked at."""
+"""Lengths of the examined traces."""
 
 
 def differing(
     monitor: Monitor, reference: Monitor, texts: Sequence[str], propositions: Sequence[str]
 ) -> Differing | None:
-    """A trace that shows it, if one is found.
+    """A trace with different truth values, if one is found.
 
     Args:
-        monitor: loaded from a text that is laid out as fretc writes it.
-        reference: one of the same variables.
-        texts: those of both, for their constants.
-        propositions: those to compare.
+        monitor: monitor loaded from a checked text.
+        reference: monitor of the same variables.
+        texts: both texts, for their constants.
+        propositions: propositions to compare.
     """
     left, right = _truths_of(monitor), _truths_of(reference)
     inputs: Mapping[str, Variable] = reference.VARIABLES  # type: ignore[attr-defined]
@@ -159,7 +159,7 @@ def differing(
             try:
                 actual = left(row)
             except Exception as error:
-                return Differing(tuple(truths), f"it stops: {type(error).__name__}", _given(row))
+                return Differing(tuple(truths), f"it raises {type(error).__name__}", _given(row))
             for name in propositions:
                 if actual[name] is not expected[name]:
                     right_one = _in_words(expected[name])
@@ -181,7 +181,7 @@ def _truths_of(monitor: Any) -> Any:
 
 
 def _numbers(texts: Sequence[str]) -> Iterator[float | None]:
-    """Numbers around all constants, and those that are computed with in another way."""
+    """Numbers around all constants, and numbers with other rounding."""
     yield from (None, nan, inf, -inf, 0.0, 1.0, -1.0, 0.5, 3.0, 2**53 + 1)
     for text in texts:
         for node in ast.walk(own(text)):

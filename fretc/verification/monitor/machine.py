@@ -1,6 +1,6 @@
 """A monitor's text as a machine whose state can be saved, restored and stepped.
 
-That is sound only where a step depends on nothing but cells and propositions:
+That is sound only if a step depends only on cells and propositions:
 `fretc.verification.monitor.text_check` checks that on the text before anything of it is executed.
 """
 
@@ -15,34 +15,34 @@ from monitors.kernel import Monitor
 
 
 class Cells:
-    """All cells of a rail: a step reads nothing else of its past."""
+    """All cells of a rail: a step reads no other stored value."""
 
     def __init__(self, rail: Any, among: Collection[str] | None = None) -> None:
-        """Of a rail that is laid out as fretc writes it.
+        """The cells of a rail.
 
         Args:
-            rail: it.
-            among: the cells that count, where the others are of no influence.
+            rail: rail in the layout that fretc writes.
+            among: the relevant cells; the others have no influence.
         """
         self._rail = rail
         cells = [name for name in rail.CELLS if among is None or name in among]
-        # The text has a class of its own for windows.
+        # The text has its own class for windows.
         self._windows = [n for n in cells if hasattr(getattr(rail, n), "restore")]
         self._plain = [name for name in cells if name not in self._windows]
 
     @property
     def windows(self) -> tuple[str, ...]:
-        """The names of those that are windows, in the order of the text."""
+        """Names of the windows, in the order of the text."""
         return tuple(self._windows)
 
     def save(self) -> Hashable:
-        """Their values."""
+        """Values of the cells."""
         rail = self._rail
         cells = tuple([getattr(rail, name) for name in self._plain])
         return cells, tuple([getattr(rail, name).state() for name in self._windows])
 
     def load(self, state: Any) -> None:
-        """Go back to values that were saved."""
+        """Restore saved values."""
         rail, (cells, windows) = self._rail, state
         for name, value in zip(self._plain, cells, strict=True):
             setattr(rail, name, value)
@@ -51,7 +51,7 @@ class Cells:
 
 
 class Stepped:
-    """A monitor whose propositions are all known."""
+    """A monitor with known propositions."""
 
     def __init__(
         self,
@@ -60,13 +60,13 @@ class Stepped:
         atoms: Sequence[str],
         cells: Collection[str] | None = None,
     ) -> None:
-        """Before its first tick.
+        """The monitor before its first tick.
 
         Args:
-            monitor: laid out as fretc writes it; it is reset.
-            place: of the requirement among those of the monitor.
-            atoms: the order of the values in a letter; at least the monitor's propositions.
-            cells: those that the requirement depends on; None: all.
+            monitor: monitor in the layout that fretc writes; it is reset.
+            place: index of the requirement in the monitor.
+            atoms: order of the values in a valuation; at least the monitor's propositions.
+            cells: cells on which the requirement depends; None: all.
         """
         monitor.reset()
         rail: Any = monitor.must
@@ -81,13 +81,13 @@ class Stepped:
         return self._cells.save()
 
     def load(self, state: Any) -> None:
-        """Go back to a state; nothing was violated there."""
+        """Restore a state without violation."""
         self._cells.load(state)
         for name in self._fates:
             setattr(self._rail, name, -1)
 
     def step(self, letter: Valuation) -> Judgement:
-        """The verdict of the text's own step, and FRET's finite verdict."""
+        """Verdict of the text's own step, and FRET's finite verdict."""
         verdicts = self._step(letter)
         rail = self._rail
         signals, marks = rail.signals()[self._place], rail.marks()[self._place]
@@ -95,15 +95,15 @@ class Stepped:
         return str(verdict), marks.broken < 0 and not signals.fails
 
     def demands(self) -> tuple[bool, bool]:
-        """Whether a demand began at the last tick, and whether one is open after it."""
+        """Whether an obligation began at the last tick, and whether one is open after it."""
         signals = self._rail.signals()[self._place]
         return bool(signals.trigger), bool(signals.owed)
 
 
 def _stepping(monitor: Any, atoms: Sequence[str]) -> Callable[[Valuation], Any]:
-    """A step of the monitor by the truth of its propositions, by its own `step` if that takes it.
+    """A step of the monitor by truth values, through its own `step` if that takes them.
 
-    A monitor that is stepped by variables makes truth values of them, and advances by these.
+    A monitor of variables computes truth values from them, and advances by these.
     """
     parameters = [(p, atoms.index(name)) for name, p in monitor.PROPOSITIONS.items()]
     if not isinstance(getattr(monitor, "VARIABLES", None), Mapping):

@@ -1,9 +1,9 @@
-"""Whether two monitors have the same signals on every trace, with unknown values too.
+"""Whether two monitors have the same signals on every trace, also with unknown values.
 
-A monitor is two runs of one code, its rails: an unknown counts as false on the one and as true on
-the other. Each rail of the one monitor goes in lock step with that of the other over all letters,
-unknown values among them, until no new pair of states appears. At each step all signals are
-compared, and all marks.
+A monitor consists of two runs of the same code, its rails: an unknown counts as false on one and as
+true on the other. Each rail of one monitor runs in lock step with that of the other over all
+valuations, including unknown values, until no new pair of states appears. At each step all signals
+and all marks are compared.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth
 
 MOST_PROPOSITIONS = 7
-"""Each has three values: 2 187 steps for each pair of states, on either rail."""
+"""Maximum number of propositions; each has three values: 2 187 steps for each pair of states."""
 
 Letter = tuple[Truth, ...]
 """The values of the propositions at one tick, in a given order; None: unknown."""
@@ -32,7 +32,7 @@ class Equivalent:
     """The monitors agree on every trace."""
 
     states: int
-    """Compared pairs of states of both rails."""
+    """Number of compared pairs of states of both rails."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class Distinguished:
 
     word: tuple[Letter, ...]
     signal: str
-    """Which signal, or which mark."""
+    """Name of the differing signal or mark."""
 
 
 def compared(
@@ -58,13 +58,13 @@ def compared(
     """Compare a requirement of one monitor with the only one of the other.
 
     Args:
-        machine: laid out as fretc writes it.
-        place: of the requirement among those of the machine.
-        reference: a monitor of one requirement.
-        atoms: the order of the values in a letter; the other propositions of the machine are false,
+        machine: monitor in the layout that fretc writes.
+        place: index of the requirement in the machine.
+        reference: monitor of one requirement.
+        atoms: order of the values in a valuation; the other propositions of the machine are false,
             and the requirement must not depend on them.
-        limit: the most pairs of states; with more the result is None.
-        excluded: what the atoms cannot be together.
+        limit: maximum number of pairs of states; with more the result is None.
+        excluded: combinations of atoms that cannot occur.
     """
     every = tuple(product((False, True, None), repeat=len(atoms)))
     letters = only_possible(every, atoms, excluded)
@@ -80,12 +80,12 @@ def compared(
 
 
 _STARTS = ({"broken": -1, "doomed": -1, "last": -1, "open": -1}, {"last": 1, "open": 2})
-"""What marks may be before a step: none, and of ticks before it."""
+"""Values of marks before a step: none, and earlier ticks."""
 _TICK = 5
 
 
 class _Rail:
-    """A rail that can be put into any state, at one tick for all."""
+    """A rail that can be put into any state, always at the same tick."""
 
     def __init__(self, monitor: Monitor, place: int, doubt: bool, atoms: Sequence[str]) -> None:
         self._rail: Any = monitor.RAIL(doubt=doubt)
@@ -102,7 +102,7 @@ class _Rail:
         return self._cells.save()
 
     def step(self, state: Hashable, letter: Letter) -> tuple[object, ...]:
-        """The signals after one tick, and the marks from each of `_STARTS`."""
+        """Signals after one tick, and the marks from each of `_STARTS`."""
         row = tuple([False if i is None else letter[i] for i in self._order])
         marks: list[object] = []
         for start in _STARTS:
@@ -123,13 +123,13 @@ _NAMES = (*SIGNALS, *(f"mark `{mark}`" for _ in _STARTS for mark in MARKS))
 
 
 class Stepping(Protocol):
-    """What can be put into any state that it had, and stepped from there."""
+    """A machine that can be put into any earlier state, and stepped from there."""
 
     def save(self) -> Hashable:
-        """Everything that its further steps depend on, and nothing else."""
+        """Everything on which further steps depend, and nothing else."""
 
     def step(self, state: Any, letter: Any) -> tuple[object, ...]:
-        """What it tells one tick after a state."""
+        """The values after a tick from the state."""
 
 
 def in_lock_step(
@@ -141,15 +141,15 @@ def in_lock_step(
 ) -> Equivalent | Distinguished | None:
     """Whether both give the same values on every trace, from the present states; if not, where.
 
-    By classes of states that must be equal if all pairs are (`equivalence.Classes`); a shortest
-    trace, where they differ, by all pairs.
+    By classes of states that must be equal if all pairs are (`equivalence.Classes`); in case of a
+    difference, by all pairs for a shortest trace.
 
     Args:
-        left: the one.
-        right: the other.
-        letters: all that may come at a tick.
-        limit: the most pairs; with more the result is None.
-        names: of the values that a step gives.
+        left: first machine.
+        right: second machine.
+        letters: all valuations of a tick.
+        limit: maximum number of pairs; with more the result is None.
+        names: names of the values of a step.
     """
     start = left.save(), right.save()
     result = _from(start, left, right, letters, limit, names, Classes())
@@ -168,11 +168,11 @@ def _from(
     names: Sequence[str],
     visited: Visited,
 ) -> Equivalent | Distinguished | None:
-    """Breadth first through the pairs that are new, from the first one."""
+    """Breadth-first search through new pairs, from the first one."""
     pairs = [start]
     origins: list[tuple[int, Any] | None] = [None]
     visited.add(*start)
-    for place, (first, second) in enumerate(pairs):  # grows while it is read
+    for place, (first, second) in enumerate(pairs):  # The list grows during the loop.
         for letter in letters:
             actual, expected = left.step(first, letter), right.step(second, letter)
             if actual != expected:
@@ -188,7 +188,7 @@ def _from(
 
 
 def _word(origins: Sequence[tuple[int, Letter] | None], place: int) -> Iterator[Letter]:
-    """The letters that led to a pair, from the first tick on."""
+    """The valuations that led to a pair, from the first tick on."""
     word: list[Letter] = []
     origin = origins[place]
     while origin is not None:

@@ -1,7 +1,7 @@
-"""What the signals of one requirement depend on, in the text of a monitor of several.
+"""Slice of one requirement in a monitor of several: what its signals depend on.
 
-The text is read without regard to the order of its statements: a name depends on all that any
-statement gives it, and on the tests around that. So what is not found is of no influence.
+The order of statements is ignored: a name depends on everything that any statement assigns to it,
+and on the enclosing conditions. So code outside the slice has no influence.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.text_check import own
 
 _Given = Mapping[str, frozenset[str]]
-"""Each name with those that it is made of."""
+"""Name → names on which it depends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,12 +30,12 @@ class Slice:
 
 
 @dataclass(frozen=True, slots=True)
-class Alone:
+class SlicedMonitor:
     """A monitor of several requirements, stepped by the propositions of one."""
 
     machine: Stepped
     others: int
-    """Propositions at the end of a letter that the requirement does not depend on."""
+    """Propositions at the end of a valuation on which the requirement does not depend."""
 
     def save(self) -> Hashable:
         """The cells of the machine."""
@@ -46,17 +46,17 @@ class Alone:
         self.machine.load(state)
 
     def step(self, letter: Valuation) -> Judgement:
-        """With any values of the others: false."""
+        """Step with all other propositions false."""
         return self.machine.step((*letter, *(False,) * self.others))
 
 
 def slice_of(text: str, prefix: str, propositions: Mapping[str, str]) -> Slice:
-    """The part that the signals and the marks of a requirement depend on.
+    """The part on which the signals and the marks of a requirement depend.
 
     Args:
-        text: a monitor's, laid out as fretc writes it.
-        prefix: of the names of the requirement's signals and marks.
-        propositions: each with its parameter.
+        text: text of a monitor, in the layout that fretc writes.
+        prefix: prefix of the names of the requirement's signals and marks.
+        propositions: proposition → parameter.
     """
     given = _sources(text)
     reached = _closure(given, (f"{prefix}_{name}" for name in (*MARKS, "signals")))
@@ -95,7 +95,7 @@ def _closure(given: _Given, names: Iterable[str]) -> frozenset[str]:
 def _given(
     statements: Iterable[ast.stmt], tests: frozenset[str]
 ) -> Iterator[tuple[str, frozenset[str]]]:
-    """Each name that a statement changes, with all names that it changes by."""
+    """Each changed name, with all names on which the change depends."""
     for statement in statements:
         match statement:
             case ast.Assign(targets, value):

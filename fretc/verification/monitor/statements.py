@@ -1,4 +1,4 @@
-"""Statements of a text, compared with those that fretc writes."""
+"""Comparison of statements with those that fretc writes."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from functools import cache
 
 
 class UnexpectedCodeError(Exception):
-    """The text is not as the generator writes it."""
+    """The text does not have the layout that the generator writes."""
 
 
 def require(right: bool, node: ast.AST) -> None:
-    """Raises UnexpectedCodeError, with the line of the node, where something is not right."""
+    """Raise UnexpectedCodeError, with the line of the node, unless the condition holds."""
     if not right:
         line = (ast.unparse(node).splitlines() or ["nothing"])[0]
         raise UnexpectedCodeError(f"it is not laid out as fretc writes it: `{line}`")
@@ -25,18 +25,18 @@ def normal(text: str) -> str:
 
 
 def is_one_of(node: ast.AST, *texts: str) -> bool:
-    """The node is one of these statements or expressions."""
+    """Require that the node is one of these statements or expressions."""
     own = ast.unparse(node)
     return any(own == normal(text) for text in texts)
 
 
 def reads(statements: Sequence[ast.stmt], text: str) -> bool:
-    """The statements are those of the text."""
+    """Require that the statements are those of the text."""
     return "\n".join(map(ast.unparse, statements)) == normal(text)
 
 
 def is_same(text: str, other: str) -> bool:
-    """Both texts are one program: they differ in comments and white space at most."""
+    """Whether both texts are one program except for comments and white space."""
     try:
         return text == other or ast.dump(ast.parse(text)) == ast.dump(ast.parse(other))
     except (SyntaxError, ValueError, RecursionError):

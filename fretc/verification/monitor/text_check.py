@@ -1,10 +1,10 @@
-"""Whether a text is laid out as generated monitors are, so that nothing in it is hidden.
+"""Check that a text has the layout of generated monitors, so that nothing in it is hidden.
 
-A proof stops a monitor, puts it back and steps it: that is sound only where a step depends on its
-cells and propositions and on nothing else. So every statement of the text must be one that the
-generator writes. The names of cells, constants and the logic of a tick may be any; of marks and
-signals, which only remember and tell, the form is fixed, and parameters and literals have the names
-that the generator gives to their propositions.
+A proof stops a monitor, restores it and steps it: that is sound only if a step depends only on its
+cells and propositions. So every statement must be one that the generator writes. Names of cells,
+constants and the logic of a tick are free; marks and signals, which only store and report, have a
+fixed form, and parameters and literals have the names that the generator derives from their
+propositions.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ from monitors.kernel.variables import Variable
 from monitors.source_text import Runtime, kernel, kernel_of_variables
 
 _OF_RAILS = frozenset({"CELLS", "advance", "signals", "marks"})
-"""The other names of a rail."""
+"""Other attributes of a rail."""
 
 
 def strange(text: str) -> str | None:
-    """Why the text may do more than it seems to; None: it does not."""
+    """Why the layout is not that of a generated monitor; None: it is."""
     if not is_utf8(text):
         return "it declares another encoding than UTF-8, so Python would read another text"
     runtime = _runtime(text)
@@ -51,19 +51,19 @@ def strange(text: str) -> str | None:
     try:
         is_alone = head.endswith("\n") and own.startswith("\n")
         if not found or not is_alone or not reads(ast.parse(head).body, runtime.imports):
-            return "the run time in it is not the one of this version of fretc"
+            return "its runtime part is not the one of this version of fretc"
         _check_module(_parsed(own), by_variables=runtime is kernel_of_variables())
     except SyntaxError as error:
-        return f"it is no Python: {error}"
+        return f"it is not valid Python: {error}"
     except UnexpectedCodeError as error:
         return str(error)
     return None
 
 
 def own(text: str) -> ast.Module:
-    """The part of a monitor's text below the run time; `strange` has checked its layout.
+    """The part of a monitor's text below the runtime; `strange` has checked its layout.
 
-    Nobody changes it: all that look at one text share its tree.
+    The tree is cached and must not be changed.
     """
     return _parsed(text.partition(_runtime(text).text)[2])
 
@@ -74,7 +74,7 @@ def _parsed(own: str) -> ast.Module:
 
 
 def _runtime(text: str) -> Runtime:
-    """That of a monitor that is stepped by variables, where it is in the text; else the other."""
+    """The runtime of a monitor of variables, if it is in the text; else the other one."""
     longer = kernel_of_variables()
     return longer if longer.text in text else kernel()
 
@@ -109,7 +109,7 @@ def _check_module(module: ast.Module, *, by_variables: bool) -> None:
 
 
 def _check_annotations(module: ast.Module, title: str) -> None:
-    """Python evaluates annotations when it executes the text: only harmless ones are allowed."""
+    """Check annotations, which Python evaluates when it executes the text."""
     allowed = {*_ANNOTATIONS, f"{title}Rail"}
     for node in ast.walk(module):
         match node:
@@ -143,7 +143,7 @@ def _is_plain(node: ast.ClassDef) -> bool:
 
 
 def _rail(node: ast.ClassDef) -> tuple[Rail, ast.stmt]:
-    """The names of a rail, after a check of all of it but `advance`."""
+    """Names of the rail; checks everything except `advance`."""
     body = below_docstring(node)
     require(len(body) == 6, node)
     slots, cells, initial, advance, signals, marks = body
@@ -166,7 +166,7 @@ def _rail(node: ast.ClassDef) -> tuple[Rail, ast.stmt]:
 
 
 def _prefixes(signals: ast.stmt, marks: ast.stmt) -> tuple[str, ...]:
-    """The prefixes of the requirements, from the signals of a rail."""
+    """Prefixes of the requirements, from the signals of a rail."""
     prefixes = tuple(
         node.attr.removesuffix("_signals")
         for node in ast.walk(signals)
@@ -210,7 +210,7 @@ def _check_initial(node: ast.stmt, rail: Rail) -> None:
 def _is_initial(node: ast.expr) -> bool:
     match node:
         case ast.Call(ast.Name("Window"), [ast.Constant(int(lo)), ast.Constant(int(hi))], []):
-            return 0 <= lo <= hi  # else its state is less than what it goes by
+            return 0 <= lo <= hi  # Otherwise the saved state would be incomplete.
         case ast.UnaryOp(ast.USub(), ast.Constant(value)) | ast.Constant(value):
             return isinstance(value, int)
         case _:
@@ -220,9 +220,9 @@ def _is_initial(node: ast.expr) -> bool:
 def _monitor(
     node: ast.ClassDef, rail: str, names: Rail, *, by_variables: bool
 ) -> tuple[Mapping[str, str], ast.stmt, ast.stmt]:
-    """The propositions of a monitor with their parameters, its `step` and its `verdicts`.
+    """Propositions of a monitor with their parameters, its `step` and its `verdicts`.
 
-    All of it is checked but `verdicts` and, where it is not stepped by variables, `step`.
+    Checks everything except `verdicts` and, if it is not stepped by variables, `step`.
     """
     body = below_docstring(node)
     variables = [body.pop(3), body.pop(7)] if by_variables and len(body) == 13 else []
@@ -273,7 +273,7 @@ def _check_requirements(node: ast.stmt, prefixes: Sequence[str]) -> None:
 def _inputs(
     node: ast.stmt, prefixes: Sequence[str], variables: Mapping[str, Variable]
 ) -> Mapping[str, str]:
-    """The parameter of each proposition: the one that the generator derives from its name."""
+    """Parameter of each proposition, as the generator derives it from the name."""
     match node:
         case ast.AnnAssign(ast.Name("PROPOSITIONS"), _, ast.Dict(keys, values)):
             names = names_in(ast.Tuple([key for key in keys if key is not None]))
@@ -289,7 +289,7 @@ def _inputs(
 
 
 def _literals(node: ast.stmt, inputs: Mapping[str, str]) -> tuple[str, ...]:
-    """The names of literals: a proposition's parameter, or that of its negation."""
+    """Names of literals: a proposition's parameter, or that of its negation."""
     match node:
         case ast.Assign([ast.Name("LITERALS")], ast.Tuple(entries)):
             names: list[str] = []
@@ -306,7 +306,7 @@ def _literals(node: ast.stmt, inputs: Mapping[str, str]) -> tuple[str, ...]:
 
 
 def _check_step(node: ast.stmt, inputs: Sequence[str], prefixes: Sequence[str], tick: Tick) -> None:
-    """Check that a step takes the row; where the tick is in it, that it is that of the rail."""
+    """Check the signature of `step`; if the tick is inlined, check that it equals `advance`."""
     parameters = "self, *, " + ", ".join(f"{name}: Truth" for name in inputs)
     row = f"({', '.join(inputs)}{',' * (len(inputs) == 1)})"
     if len(inputs) > MOST_PARAMETERS:
@@ -324,7 +324,7 @@ def _check_step(node: ast.stmt, inputs: Sequence[str], prefixes: Sequence[str], 
 
 
 def _verdict(prefix: str, tick: Tick) -> str:
-    """The end of a step that has the tick in it."""
+    """The end of a step with an inlined tick."""
     text = f"if {_violated('rail', prefix, tick)}:\n    return VIOLATED\n"
     if prefix in tick.settled:
         text += f"if rail.{prefix}_signals[{_SETTLED}]:\n    return SATISFIED\n"

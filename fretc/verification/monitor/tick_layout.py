@@ -1,7 +1,7 @@
 """A tick of a generated monitor: its rail's `advance`, statement by statement.
 
-The logic of a tick may be any over names that have a value at this tick; how it reads
-propositions, what it carries from tick to tick and what its marks note have a fixed form.
+The logic of a tick is free over names that have a value at this tick; reading propositions, storing
+values for the next tick and setting marks have a fixed form.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from fretc.verification.monitor.statements import (
 FIXED = frozenset(
     "self rail rows known doubt tick boolean VIOLATED SATISFIED PENDING".split(),
 )
-"""What a tick calls its own, and what it calls."""
+"""Names that a tick uses itself, and names that it calls."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rail:
-    """The names of a rail."""
+    """Names of a rail."""
 
     cells: tuple[str, ...]
     windows: frozenset[str]
@@ -37,34 +37,34 @@ class Rail:
 
     @property
     def marks(self) -> tuple[str, ...]:
-        """The names of all marks."""
+        """Names of all marks."""
         return tuple(f"{prefix}_{mark}" for prefix in self.prefixes for mark in MARKS)
 
     @property
     def signals(self) -> tuple[str, ...]:
-        """The names of all signals."""
+        """Names of all signals."""
         return tuple(f"{prefix}_signals" for prefix in self.prefixes)
 
 
 @dataclass(frozen=True, slots=True)
 class Tick:
-    """What a rail does at one row."""
+    """Behaviour of a rail at one row."""
 
     inlined: str
-    """The same as statements of a step: all is known, and `rail` is the only one."""
+    """The same as statements of a step with known values, with `rail` as the only rail."""
     doomed: frozenset[str]
-    """The prefixes of requirements that can be doomed."""
+    """Prefixes of requirements whose violation can be inevitable."""
     settled: frozenset[str]
-    """The prefixes of requirements that can be settled."""
+    """Prefixes of requirements that can be satisfied for ever."""
 
 
 def check_advance(node: ast.stmt, rail: Rail, inputs: Mapping[str, str]) -> Tick:
-    """The function does at each row what it shows, and nothing else.
+    """Check that the function does the visible work at each row, and nothing else.
 
     Args:
-        node: it.
-        rail: whose it is.
-        inputs: the propositions in the order of a row, each with its parameter.
+        node: the function.
+        rail: its rail.
+        inputs: propositions in the order of a row, each with its parameter.
 
     Raises:
         UnexpectedCodeError: it does something else.
@@ -91,7 +91,7 @@ def check_advance(node: ast.stmt, rail: Rail, inputs: Mapping[str, str]) -> Tick
 
 
 def _is_odd(name: str) -> str:
-    """The test of whether a value is neither true nor false."""
+    """Test of whether a value is neither true nor false."""
     return f"{name} is not True and {name} is not False"
 
 
@@ -100,12 +100,12 @@ def _stored(carried: Iterable[str]) -> Iterator[str]:
 
 
 def inlined(body: Sequence[ast.stmt]) -> str:
-    """The statements of a step that do what `advance` does at one row where all is known.
+    """Statements of a step that equal `advance` at one row with known values.
 
-    Marks stay on the rail: few ticks change one.
+    Marks stay on the rail, because few ticks change one.
 
     Args:
-        body: of `advance`, in the layout that `check_advance` demands.
+        body: body of `advance`, in the layout that `check_advance` requires.
     """
     place = next(i for i, part in enumerate(body) if isinstance(part, ast.For))
     loop = body[place]
@@ -117,12 +117,12 @@ def inlined(body: Sequence[ast.stmt]) -> str:
     statements += [each for each in loop.body[1:] if not _is_of_odd_values(each)]
     statements += [each for each in body[place + 2 : -1] if ast.unparse(each) not in others]
     on_rail = _OnRail(marks)
-    lines = (ast.unparse(on_rail.visit(copy.deepcopy(each))) for each in statements)
+    lines = (ast.unparse(on_rail.visit(copy.deepcopy(statement))) for statement in statements)
     return "\n".join(["rail.tick = tick = rail.tick + 1", *lines])
 
 
 def _is_of_odd_values(statement: ast.stmt) -> bool:
-    """It does something only where a value is neither true nor false."""
+    """Whether it only has an effect if a value is neither true nor false."""
     match statement:
         case ast.If(ast.BoolOp(ast.And(), [ast.Compare(ast.Name(name)), _]) as test):
             return ast.unparse(test) == _is_odd(name)
@@ -131,7 +131,7 @@ def _is_of_odd_values(statement: ast.stmt) -> bool:
 
 
 class _OnRail(ast.NodeTransformer):
-    """Puts `rail.` before names."""
+    """Transformer that puts `rail.` before names."""
 
     def __init__(self, names: Collection[str]) -> None:
         self._names = names
@@ -144,7 +144,7 @@ class _OnRail(ast.NodeTransformer):
 
 
 def _carried(statements: Sequence[ast.stmt], rail: Rail) -> Iterator[str]:
-    """The names that are read from the rail before the first row."""
+    """Names that are read from the rail before the first row."""
     fixed = [ast.unparse(statement) for statement in statements]
     require(fixed[:3] == ["known = True", "doubt = self.doubt", "tick = self.tick"], statements[0])
     allowed = (*rail.cells, *rail.marks)
@@ -158,7 +158,7 @@ def _carried(statements: Sequence[ast.stmt], rail: Rail) -> Iterator[str]:
 def _check_end(
     statements: Sequence[ast.stmt], rail: Rail, carried: Sequence[str], bound: frozenset[str]
 ) -> Mapping[str, Mapping[str, str]]:
-    """Check the end of `advance`: it stores cells, marks and signals; gives the texts of these."""
+    """Check the end of `advance`, which stores cells, marks and signals; returns these texts."""
     pending = {*_stored(carried)}
     if len(statements) < 2:
         raise UnexpectedCodeError("it is not laid out as fretc writes it: `advance` does not end")
@@ -171,7 +171,7 @@ def _check_end(
         text = ast.unparse(statement)
         if text in pending:
             pending.remove(text)
-        elif text in opened:  # of the last tick, and not yet put back
+        elif text in opened:  # Value of the last tick, not yet stored.
             require(f"self.{opened[text]}_open = {opened[text]}_open" in pending, statement)
         else:
             prefix, values = _signals(statement, rail)
@@ -186,7 +186,7 @@ def _check_end(
 
 
 def _signals(statement: ast.stmt, rail: Rail) -> tuple[str, Mapping[str, ast.expr]]:
-    """The prefix of a requirement, and its signals at the last tick."""
+    """Prefix of a requirement, and its signals at the last tick."""
     match statement:
         case ast.Assign([ast.Attribute(ast.Name("self"), name)], ast.Tuple(values)):
             require(name in rail.signals and len(values) == len(SIGNALS), statement)
@@ -196,13 +196,13 @@ def _signals(statement: ast.stmt, rail: Rail) -> tuple[str, Mapping[str, ast.exp
 
 @dataclass(frozen=True, slots=True)
 class _Tick:
-    """The statements that are executed for each row."""
+    """Statements that are executed for each row."""
 
     rail: Rail
     carried: frozenset[str]
 
     def check(self, statements: Sequence[ast.stmt], inputs: Mapping[str, str]) -> frozenset[str]:
-        """The names that have a value after them."""
+        """Check the statements; returns the names that have a value after them."""
         bound = {*self.rail.cells}
         rest = [*statements]
         for proposition, name in inputs.items():
@@ -226,7 +226,7 @@ if {_is_odd(name)}:
         return self._after(rest, frozenset(bound))
 
     def _after(self, statements: Iterable[ast.stmt], bound: frozenset[str]) -> frozenset[str]:
-        """Those of `bound`, and what the statements give a value on every way through them."""
+        """Bound names, with those that the statements assign on every path."""
         for statement in statements:
             if self._remembers(statement, bound):
                 continue
@@ -256,7 +256,7 @@ if {_is_odd(name)}:
         _check_value(value, bound - self.rail.windows, self.rail.windows)
 
     def _remembers(self, statement: ast.stmt, bound: frozenset[str]) -> bool:
-        """It notes the tick of an event in a mark, and does nothing else."""
+        """Check that it only stores the tick of an event in a mark."""
         stored = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name)}
         for mark in self.carried.intersection(self.rail.marks, stored):
             noted, kind = f"{mark} = tick", mark.rpartition("_")[2]
@@ -285,11 +285,11 @@ if {_is_odd(name)}:
 
 
 _OPERATORS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq)
-"""Those that cannot tell True from 1: for a proof they are one state."""
+"""Operators that do not distinguish True from 1, because a proof takes these as one state."""
 
 
 def _check_value(node: ast.expr, bound: frozenset[str], windows: frozenset[str]) -> None:
-    """It depends on nothing but names that have a value at this tick."""
+    """Check that it depends only on names that have a value at this tick."""
 
     def check(*parts: ast.expr) -> None:
         for part in parts:

@@ -1,15 +1,14 @@
-"""Prove that the text of a generated monitor means what its sentence means.
+"""Prove that the text of a generated monitor has the meaning of its sentence.
 
-The text is executed, stepped over every letter and compared with the counter automaton of the
-sentence (`fretc.verification.monitor.equivalence`). Its steps must depend on nothing but its cells,
+The text is executed, stepped over every valuation and compared with the counter automaton of the
+sentence (`fretc.verification.monitor.equivalence`). Its steps must depend only on its cells,
 propositions and constants: `fretc.verification.monitor.text_check` checks that on its tree first,
-so a step that looks at the number of the tick cannot hide. The automaton knows verdicts of known
-values only. The other signals of a monitor (triggers, answers, open demands, marks; all of them
-with unknown values too) are compared with the text that fretc writes for the sentence, state by
-state (`fretc.verification.monitor.rails`), and its column program with the one in that text, term
-by term (`fretc.verification.monitor.columns`); the text that fretc writes needs neither. The
-column program is also compared with the steps on random traces, some with unknown values: that
-shows where they differ.
+so a step cannot depend on the number of the tick. The automaton defines verdicts for known values
+only. The other signals of a monitor (triggers, responses, open obligations, marks; all of them also
+with unknown values) are compared with the generated monitor, state by state
+(`fretc.verification.monitor.rails`), and its column program with the generated one, term by term
+(`fretc.verification.monitor.columns`); the generated text itself needs neither. The column program
+is also compared with the steps on random traces, some with unknown values.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ from fretc.verification.monitor.equivalence import (
     compare,
 )
 from fretc.verification.monitor.machine import Stepped
-from fretc.verification.monitor.slices import Alone, slice_of
+from fretc.verification.monitor.slices import SlicedMonitor, slice_of
 from fretc.verification.monitor.statements import UnexpectedCodeError
 from fretc.verification.monitor.text_check import own, strange
 from monitors.kernel import Monitor
@@ -48,7 +47,7 @@ MOST_STATES = 10**6
 
 
 class NotAMonitorError(Exception):
-    """The text cannot be executed as a generated monitor; the message says why."""
+    """The text cannot be executed as a generated monitor; the message gives the reason."""
 
 
 def verified(
@@ -60,13 +59,13 @@ def verified(
     """Compare the text of a monitor with its requirement.
 
     Args:
-        requirement: one that the target accepts, on its own clock.
-        text: that of its monitor, maybe with monitors of other requirements.
-        limit: the most states of the exploration.
+        requirement: a requirement that the target accepts, on its own clock.
+        text: text of its monitor, perhaps with monitors of other requirements.
+        limit: maximum number of states of the exploration.
         others: further requirements that the text may implement.
 
     Raises:
-        NotAMonitorError: the text is no generated monitor.
+        NotAMonitorError: the text is not a generated monitor.
     """
     return verified_beside(requirement, text, written(text, (requirement, *others)), limit)
 
@@ -74,16 +73,16 @@ def verified(
 def verified_beside(
     requirement: FormalizedRequirement, text: str, whole: str | None, limit: int = MOST_STATES
 ) -> Outcome:
-    """As `verified`.
+    """Same as `verified`, for several requirements of one text.
 
     Args:
-        requirement: one that the target accepts, on its own clock.
-        text: that of its monitor, maybe with monitors of other requirements.
-        whole: what fretc writes for all of them, from `written`: once for each text.
-        limit: the most states of the exploration.
+        requirement: a requirement that the target accepts, on its own clock.
+        text: text of its monitor, perhaps with monitors of other requirements.
+        whole: the generated text for all of them, from `written`, computed once for each text.
+        limit: maximum number of states of the exploration.
 
     Raises:
-        NotAMonitorError: the text is no generated monitor.
+        NotAMonitorError: the text is not a generated monitor.
     """
     monitor = _opened(text)
     if isinstance(monitor, str):
@@ -92,10 +91,10 @@ def verified_beside(
 
 
 def written(text: str, requirements: Sequence[FormalizedRequirement]) -> str | None:
-    """What fretc writes for the requirements of a text; None where not all of them are known.
+    """The generated text for the requirements of a text; None if not all of them are known.
 
     Raises:
-        NotAMonitorError: the text is no generated monitor.
+        NotAMonitorError: the text is not a generated monitor.
     """
     monitor = _opened(text)
     by_id = {requirement.id: requirement for requirement in requirements}
@@ -106,13 +105,13 @@ def written(text: str, requirements: Sequence[FormalizedRequirement]) -> str | N
 
 @lru_cache(maxsize=1)
 def _opened(text: str) -> Monitor | str:
-    """The monitor; or why it is not executed. A file of many requirements is opened once.
+    """The monitor; or why it is not executed. The result is cached for files of many requirements.
 
     Raises:
-        NotAMonitorError: the text is no generated monitor.
+        NotAMonitorError: the text is not a generated monitor.
     """
     _demand_monitor(text)
-    reason = strange(text)  # nothing else is executed
+    reason = strange(text)  # No other statement is executed.
     if reason is not None:
         return reason
     try:
@@ -127,11 +126,11 @@ def _compared(
     """The outcome for a text that is safe to execute."""
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == requirement.id]
     if not places:
-        return not_checked("the monitor is of other requirements")
+        return not_checked("the monitor is for other requirements")
     place = places[0]
     atoms = tuple(dict.fromkeys((*atoms_of(requirement.sentence), *monitor.PROPOSITIONS)))
     needed, cells = _needed(requirement, text, monitor, atoms)
-    machine = Alone(Stepped(monitor, place, atoms, cells), len(atoms) - len(needed))
+    machine = SlicedMonitor(Stepped(monitor, place, atoms, cells), len(atoms) - len(needed))
     result = lock_step(requirement, machine, needed, limit)
     if isinstance(result, str):
         return not_checked(result)
@@ -141,7 +140,9 @@ def _compared(
     if text != generated:
         (expected,) = load("generated", generated).REQUIREMENTS
         if tuple(monitor.REQUIREMENTS[place]) != tuple(expected):
-            return not_checked("it decides the same, but states another sentence or deadline")
+            return not_checked(
+                "its verdicts are the same, but it states another sentence or deadline"
+            )
         fault = _front_compared(requirement, (generated, whole), text, monitor, atoms)
         if fault is not None:
             return fault
@@ -165,7 +166,7 @@ def _compared(
 def _needed(
     requirement: FormalizedRequirement, text: str, monitor: Monitor, atoms: tuple[str, ...]
 ) -> tuple[tuple[str, ...], frozenset[str] | None]:
-    """The atoms and the cells that a requirement depends on; all, where it may depend on more."""
+    """Atoms and cells on which a requirement depends; all, if that is not known."""
     own = atoms_of(requirement.sentence)
     prefix = prefixes_of(each.id for each in monitor.REQUIREMENTS)[requirement.id]
     part = slice_of(text, prefix, monitor.PROPOSITIONS)
@@ -177,8 +178,9 @@ def lock_step(
 ) -> Equivalence | Difference | str:
     """The comparison with the automaton of the sentence, over all valuations of the atoms.
 
-    Where they differ, over those that can occur: a trace that no numbers make shows nothing. One
-    that floats may make and real numbers do not is shown where there is no other, with a note.
+    In case of a difference, over possible valuations only, because an impossible trace shows
+    nothing. A trace that is possible for floats but not for real numbers is shown with a note if
+    there is no other.
     """
     sentence, ticks = requirement.sentence, requirement.ticks or 0
     start = machine.save()
@@ -198,27 +200,28 @@ def lock_step(
 
 
 def _proved(same: Equivalence, ticks: int, states: int = 0) -> Outcome:
-    """The monitor means what the sentence means.
+    """The outcome for a monitor that has the meaning of the sentence.
 
     Args:
-        same: the comparison with the automaton.
-        ticks: of drawn traces on which the column program agrees with the steps.
-        states: in which the text was compared with the one that fretc writes; 0: it is that one.
+        same: comparison with the automaton.
+        ticks: ticks of random traces on which the column program agrees with the steps.
+        states: states of the comparison with the generated text; 0: it is that text.
     """
     further = ""
     if states:
         further = (
-            "; triggers, answers, open demands and unknown values as in the text that fretc writes "
+            "; triggers, responses, open obligations and unknown values as in the generated "
+            "monitor "
             f"({states} states)"
         )
     return proved(
-        f"the same at every tick of every trace ({same.states} states, {same.steps} steps); "
-        f"columns agree on {ticks} drawn ticks{further}"
+        f"the same at every tick of every trace ({same.states} states, {same.steps} steps); its "
+        f"column program agrees on {ticks} random ticks{further}"
     )
 
 
 def judged_wrongly(difference: Difference, atoms: tuple[str, ...]) -> Outcome:
-    """The steps of the monitor judge a trace wrongly."""
+    """The outcome for a monitor with a wrong verdict on a trace."""
     count = len(difference.word)
     length = f"{count} tick{'' if count == 1 else 's'}"
     kind = "the shortest trace" if difference.shortest else "a trace"
@@ -230,7 +233,7 @@ def judged_wrongly(difference: Difference, atoms: tuple[str, ...]) -> Outcome:
 
 
 def noted(note: str) -> str:
-    """What is added to what is shown, where there is something to say."""
+    """The note as a suffix of a message, or nothing."""
     return f"; {note}" if note else ""
 
 
@@ -245,26 +248,26 @@ def _disagreement(
     fault: str,
     values: str = "",
 ) -> Outcome:
-    """The signals of the monitor are wrong at the last tick of a trace.
+    """The outcome for a monitor with wrong signals at the last tick of a trace.
 
     Args:
         atoms: the propositions.
         word: their values at each tick.
-        fault: what is wrong.
-        values: of the variables at the last tick, where they matter.
+        fault: description of the fault.
+        values: values of the variables at the last tick, if they matter.
     """
     last = f"; at its last tick {values}" if values else ""
     return refuted(f"{fault} on a trace{last}", _whole(atoms, word))
 
 
 def _whole(atoms: Sequence[str], word: Word) -> Trace:
-    """The trace with the propositions of other requirements, which are false in it."""
+    """The trace with the propositions of other requirements, which are false."""
     return Trace(tuple(atoms), tuple((*row, *(False,) * (len(atoms) - len(row))) for row in word))
 
 
 @lru_cache(maxsize=1)
 def _is_like(whole: str, text: str) -> bool:
-    """Whether both are one text, but for comments."""
+    """Whether both texts are equal except for comments."""
     return ast.dump(own(whole)) == ast.dump(own(text))
 
 
@@ -275,10 +278,10 @@ def _front_compared(
     monitor: Monitor,
     atoms: Sequence[str],
 ) -> Outcome | None:
-    """Why what it compares is not what the sentence does; None: it is.
+    """Why its comparisons are not those of the sentence; None: they are.
 
-    Another requirement in the file may read as a truth value what this one takes for a number:
-    then what fretc writes for all of them counts.
+    Another requirement in the file may use as a truth value what this one uses as a number; then
+    the generated text for all of them is the reference.
     """
     generated, whole = texts
     fault = _differing(requirement, text, generated, monitor, atoms)
@@ -294,7 +297,7 @@ def _differing(
     monitor: Monitor,
     atoms: Sequence[str],
 ) -> Outcome | None:
-    """Why the variables of a text, or what it compares, are not those of the other."""
+    """Why the variables or comparisons of a text differ from the other's."""
     try:
         actual, expected = front_terms.terms(text), front_terms.terms(written)
     except UnexpectedCodeError as error:
@@ -310,7 +313,7 @@ def _differing(
             word = tuple(tuple(row.get(name) for name in atoms) for row in found.truths)
             return _disagreement(atoms, word, found.fault, found.values)
     wrong = next(name for name in names if actual.get(name) != expected[name])
-    return not_checked(f"`{wrong}` is not computed of variables as fretc computes it")
+    return not_checked(f"`{wrong}` is not computed from the variables as in generated code")
 
 
 def _kinds(variables: Mapping[str, Variable]) -> Mapping[str, object]:
@@ -326,22 +329,23 @@ def _compared_with_generated(
     atoms: tuple[Sequence[str], int],
     limit: int,
 ) -> int | Outcome:
-    """In how many states it agrees with the text that fretc writes for the requirement.
+    """Number of states in which it agrees with the generated text of the requirement.
 
     Args:
-        requirement: it.
-        generated: that text.
-        text: the monitor's.
-        monitor: loaded from it.
-        place: of the requirement among those of the monitor.
-        atoms: all propositions, and how many of them the requirement depends on: the first ones.
-        limit: the most states.
+        requirement: the requirement.
+        generated: generated text.
+        text: text of the monitor.
+        monitor: monitor loaded from the text.
+        place: index of the requirement in the monitor.
+        atoms: all propositions, and how many of them, counted from the first, the requirement
+            depends on.
+        limit: maximum number of states.
     """
     names, count = atoms
     if count > rails.MOST_PROPOSITIONS:
         most = rails.MOST_PROPOSITIONS
         return not_checked(
-            f"it is not the text that fretc writes, and {count} propositions, more than "
+            f"it is not the generated monitor, and {count} propositions, more than "
             f"{most}, are too many to compare both with unknown values"
         )
     reference = load("generated", generated)
@@ -359,25 +363,25 @@ def _compared_with_generated(
         case None:
             return not_checked(f"with unknown values there are more than {limit} states")
         case rails.Distinguished(word, signal):
-            fault = f"the text that fretc writes tells another {signal}{noted(note)}"
+            fault = f"the generated monitor has another {signal}{noted(note)}"
             return _disagreement(names, word, fault)
         case rails.Equivalent(states):
             terms = Terms()
             if terms.of(text, place) == terms.of(generated, 0):
                 return states
             return not_checked(
-                "its column program is not the one that fretc writes: it agrees with the steps on "
-                "drawn traces, and nothing is known of others"
+                "its column program is not the generated one: it agrees with the steps on random "
+                "traces, and is not proved for others"
             )
 
 
 def _demand_monitor(text: str) -> None:
-    """Demand that it is Python and names a monitor."""
+    """Raise NotAMonitorError unless it is Python and defines a monitor."""
     runtime = kernel().text
-    try:  # the run time is Python, and long: lines keep their numbers without it
+    try:  # The runtime part is long; it is cut off with line numbers kept.
         tree = ast.parse(text.replace(runtime, "\n" * runtime.count("\n"), 1))
     except (SyntaxError, ValueError, RecursionError) as error:
-        raise NotAMonitorError(f"it is no Python: {error}") from None
+        raise NotAMonitorError(f"it is not valid Python: {error}") from None
     targets = (node.target for node in tree.body if isinstance(node, ast.AnnAssign))
     if not any(isinstance(target, ast.Name) and target.id == "MONITOR" for target in targets):
-        raise NotAMonitorError("it names no `MONITOR`")
+        raise NotAMonitorError("it defines no `MONITOR`")

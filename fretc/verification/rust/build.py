@@ -1,7 +1,7 @@
 """A monitor in Rust as a shared library, with the layout of its state.
 
-The text is a crate of its own, with `forbid(unsafe_code)` as it stands; a module at its end tells
-where cells are. A second crate gives it functions that C can call. What would panic aborts.
+The text is a crate of its own, with its `forbid(unsafe_code)`; a module at its end exports the
+offsets of cells. A second crate exports functions for C. Panics abort the process.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ FLAGS = tuple(
     " -C strip=symbols".split()
 )
 BASE = "fretc_monitor"
-"""What the names of the functions begin with."""
+"""Prefix of the function names."""
 _CRATE = "fretc_text"
 
 
 def compiler() -> str | None:
-    """The path of rustc, if it is installed."""
+    """Path of rustc, or None."""
     return shutil.which("rustc")
 
 
@@ -32,14 +32,14 @@ def built(
     """The library of a monitor.
 
     Args:
-        program: rustc.
-        text: of `lib.rs`.
-        cells: the fields of a rail.
-        inputs: those of the inputs.
-        outcomes: those of the outcomes.
+        program: path of rustc.
+        text: text of `lib.rs`.
+        cells: fields of a rail.
+        inputs: fields of the inputs.
+        outcomes: fields of the outcomes.
 
     Raises:
-        ToolError: the compiler does not take the text, or cannot be run.
+        ToolError: the compiler rejects the text, or cannot be run.
     """
     texts = {
         "text.rs": f"{text}\n{_layout(cells)}",
@@ -54,7 +54,7 @@ def built(
 
 
 def _layout(cells: Sequence[str]) -> str:
-    """Rust that tells where the cells of a rail are: only the crate knows its private fields."""
+    """Rust module that exports the offsets of a rail's private fields."""
     places = "".join(
         f"        core::mem::offset_of!(Rail, {cell}), size(|rail| &rail.{cell}),\n"
         for cell in cells
@@ -75,7 +75,7 @@ pub mod fretc_layout {{
 
 
 def _library(cells: int, inputs: Sequence[str], outcomes: Sequence[str]) -> str:
-    """Rust that C can call: inputs are a byte each, and outcomes as in C."""
+    """Rust crate with a C interface: inputs are a byte each, and outcomes as in C."""
     given = ", ".join(f"{name}: TRUTHS[*values.add({i}) as usize]" for i, name in enumerate(inputs))
     told = "".join(f"    told.add({i}).write(of(found.{n}));\n" for i, n in enumerate(outcomes))
     _, *truths = Reading._fields

@@ -12,35 +12,35 @@ from compiler.targets.target import Options
 from fretc.verification.compiled.library import saved
 from fretc.verification.compiled.plan import BuiltLibrary, ParsedSource, SourceText, implemented
 from fretc.verification.rust.build import BASE, built, compiler
-from fretc.verification.rust.form import LEXIS, formed
+from fretc.verification.rust.layout import LEXIS, check_layout
 
 _OUTCOMES = re.compile(r"^[ \t]+/// (.*)\n[ \t]+pub (\w+): Outcome,$", re.MULTILINE)
-"""The fields of that struct, and the ids above them."""
+"""Fields of the struct of outcomes, and the ids in the comments above them."""
 
 tool = compiler
 
 
 def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) -> ParsedSource:
-    """The text in the form that fretc writes.
+    """The parsed layout of the text.
 
     Raises:
-        UnexpectedLayoutError: it has another form.
+        UnexpectedLayoutError: the layout differs from that of fretc.
     """
     own_rules = implemented([id for id, _ in _OUTCOMES.findall(given.text)], requirements)
     files = TARGET.emit(own_rules, Options(one_file=True))
     own = next(file.text for file in files if file.path.name == "lib.rs")
     cells, inputs = _fields(own, "struct Rail"), _fields(own, "pub struct Inputs")
     outcomes = tuple(name for _, name in _OUTCOMES.findall(own))
-    form = formed(given.text, own, cells, inputs, outcomes)
+    form = check_layout(given.text, own, cells, inputs, outcomes)
     is_original = LEXIS.tokens(given.text) == LEXIS.tokens(own)
     return ParsedSource(own_rules, outcomes, form, cells, inputs, is_original)
 
 
 def prepared(program: str, given: SourceText, checked: ParsedSource, folder: Path) -> BuiltLibrary:
-    """The library; nothing of it has run.
+    """The built library; nothing of it has run.
 
     Raises:
-        ToolError: the compiler does not take the text.
+        ToolError: the compiler rejects the text.
     """
     binary = built(program, given.text, checked.cells, checked.inputs, checked.outcomes)
     library, digest = saved(binary, folder, BASE, checked.cells)

@@ -492,7 +492,7 @@ def test_files_that_are_there_are_not_overwritten(fretc: Fretc) -> None:
         2,
         "",
         "F905 `requirements/bindings.toml` already exists\n"
-        "help: name another folder with `-o`, or write over it with `--force`\n",
+        "help: name another folder with `-o`, or overwrite it with `--force`\n",
     )
     assert written() == {"bindings.toml": "mine"}
 

@@ -239,7 +239,7 @@ def test_what_looks_back_is_understood() -> None:
     (conflict,) = found.conflicts
     assert conflict.requirements == ("R1", "R2")
     assert len(conflict.play) == 2
-    assert "before the first tick nothing was true" in found.terms[-1]
+    assert "before the first tick every proposition is false" in found.terms[-1]
 
 
 def test_what_looks_ahead_is_not_checked_and_hides_no_conflict() -> None:
@@ -281,7 +281,7 @@ def test_numbers_that_are_not_linear_give_no_wrong_verdict() -> None:
     assert found.verdict is NOT_CHECKED
     assert found.why == (
         "`((t * t) > 625)` is not linear: `((t * t) > 625)` and `(t = 0)` read the same numbers, "
-        "and are taken as independent"
+        "and are treated as independent"
     )
 
 
@@ -299,7 +299,7 @@ def test_an_assumption_takes_a_conflict_away() -> None:
 def test_assumptions_that_nothing_keeps_prove_nothing() -> None:
     found = analyzed("the sw shall never satisfy x", assumed=["the op shall always satisfy x & !x"])
     assert found.verdict is NOT_CHECKED
-    assert found.why == "no run keeps the assumptions A1"
+    assert found.why == "no run satisfies the assumptions A1"
 
 
 def test_an_assumption_may_be_about_time() -> None:
@@ -355,6 +355,6 @@ def test_what_takes_too_long_comes_with_a_clue(monkeypatch: pytest.MonkeyPatch) 
     (found,) = verdicts.conflicts(setting, Budget(0.3))
     assert isinstance(found, OpenQuestion)
     assert found.why == (
-        "not answered within 0.3 s of a processor; "
-        "with all durations divided by 5001, R1 and R2 fight"
+        "not answered within 0.3 CPU seconds; "
+        "with all durations divided by 5001, R1 and R2 conflict"
     )

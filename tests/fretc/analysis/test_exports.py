@@ -165,4 +165,4 @@ def test_an_assignment_that_is_not_read_is_told(fretc: Fretc) -> None:
     )
     run = fretc("analyze", "s")
     assert run.status == 2
-    assert "F354 `kias_before` stands for `pre kias`, which is not read, and has no role" in run.err
+    assert "F354 `kias_before` has no role, and its assignment `pre kias` is not read" in run.err

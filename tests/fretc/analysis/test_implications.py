@@ -95,15 +95,15 @@ def clash(parts: Sequence[str]) -> int | None:
         return None
     if not possible(parts):
         return 0
-    together = going_on(" & ".join(parts))
+    together = safe_transitions(" & ".join(parts))
     product = spot.complete(together)
     sink = product.num_states() - 1 if product.num_states() > together.num_states() else None
     if sink is None:
         return None
-    return _depth([going_on(part) for part in parts], product, sink)
+    return _depth([safe_transitions(part) for part in parts], product, sink)
 
 
-def going_on(formula: str) -> Any:
+def safe_transitions(formula: str) -> Any:
     """A deterministic automaton that takes the words that some endless one begins with.
 
     Not Spot's own monitors: of `(y -> F !x) & G(x -> X x)` one takes `x & y`.

@@ -31,7 +31,8 @@ from tests.requirement_sets import analyzed, terse
                 "the sw shall before preBool(false, b) satisfy x",
                 "the sw shall immediately satisfy !x",
             ),
-            "at tick 1 R1 can be kept by no output (before `preBool(false, b)`); R2 forbids `x` at "
+            "at tick 1 R1 cannot be satisfied by any output (before `preBool(false, b)`); R2 "
+            "forbids `x` at "
             "tick 0",
         ),
         (

@@ -11,7 +11,7 @@ import pytest
 from fretc.analysis.analysis import Finding, Job
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import OpenQuestion
-from fretc.analysis.worker import Stopped, findings
+from fretc.analysis.worker import Interrupted, findings
 from tests.effort import FULL
 
 
@@ -54,7 +54,7 @@ def test_a_question_that_hangs_is_ended(monkeypatch: pytest.MonkeyPatch) -> None
         monkeypatch.setattr(signal, "setitimer", lambda which, after: timer(which, after / 5))
     jobs = [job("a", hang), job("b")]
     assert told(jobs) == [
-        ("a", "0 before"), ("a", "lost: it took longer than it may"),
+        ("a", "0 before"), ("a", "lost: it exceeded its time limit"),
         ("b", "2 before"), ("b", "end"),
     ]  # fmt: skip
 
@@ -84,7 +84,7 @@ def test_ctrl_c_keeps_what_is_known() -> None:
             if finding.why == "2 before":
                 received.set()
 
-    with pytest.raises(Stopped):
+    with pytest.raises(Interrupted):
         ask()
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     stopped = "lost: stopped by Ctrl-C"

@@ -21,7 +21,7 @@ from compiler.project.project import Project
 from fretc.audit.bases import bases
 from fretc.audit.bindings.draft import missing_propositions
 from fretc.audit.plan import Plan, planned
-from fretc.terminal.output import BAD, SHOWN, VIOLATION
+from fretc.terminal.output import EXIT_OK, EXIT_USAGE, EXIT_VIOLATION
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from tests.command import Fretc, made_once, write
@@ -231,11 +231,11 @@ def test_an_audit_judges_the_others_as_before(fretc: Fretc, place: int) -> None:
     project()
     log()
     status, before, codes = audit(fretc)
-    assert (status, codes) == (VIOLATION, [])
+    assert (status, codes) == (EXIT_VIOLATION, [])
     assert {result["verdict"] for result in before.values()} == {"satisfied", "violated"}
     project(broken([case]))
     status, now, codes = audit(fretc)
-    assert (status, codes) == (BAD, [case[2].split()[0]]), "the mistake, once"
+    assert (status, codes) == (EXIT_USAGE, [case[2].split()[0]]), "the mistake, once"
     refused_ids = refused([case])
     for id, result in now.items():
         assert result == before[id] if id not in refused_ids else result["verdict"] == "no data"
@@ -248,7 +248,7 @@ def audited(fretc: Fretc) -> None:
     def make() -> None:
         project()
         log()
-        assert fretc("audit", "l.mcap").status == VIOLATION
+        assert fretc("audit", "l.mcap").status == EXIT_VIOLATION
 
     made_once("an audit of sound tables", make)
 
@@ -278,7 +278,7 @@ def test_every_command_names_all_mistakes_and_makes_nothing_of_what_reads_them(
     project(broken([("signal", "bx", "F306"), ("proposition", "idle", "F302")]))
     before = {path for path in Path().rglob("*") if path.is_file()}
     run = fretc(*command)
-    assert run.status == BAD
+    assert run.status == EXIT_USAGE
     assert re.findall(r"^F30\d", run.err, re.MULTILINE) == ["F306", "F302"]
     assert "is not declared" not in run.err
     new = {path for path in Path().rglob("*") if path.is_file()} - before
@@ -291,9 +291,9 @@ def test_a_report_takes_no_earlier_verdict_on_what_reads_a_broken_table(
     fretc: Fretc, case: Case
 ) -> None:
     audited(fretc)
-    assert suspect(fretc) == (SHOWN, set())
+    assert suspect(fretc) == (EXIT_OK, set())
     project(broken([case]))
-    assert suspect(fretc) == (BAD, refused([case]))
+    assert suspect(fretc) == (EXIT_USAGE, refused([case]))
 
 
 def suspect(fretc: Fretc) -> tuple[int, set[str]]:
@@ -312,7 +312,7 @@ def test_a_number_in_params_is_not_missed_in_a_broken_table(fretc: Fretc) -> Non
         write(f"requirements/{id.lower()}.fret", header + SENTENCES[id])
     log()
     status, verdicts, codes = audit(fretc)
-    assert (status, codes) == (BAD, ["F302"])
+    assert (status, codes) == (EXIT_USAGE, ["F302"])
     assert {id for id, result in verdicts.items() if result["verdict"] == "no data"} == refused(
         [case]
     )
@@ -353,7 +353,7 @@ def test_any_other_mistake_refuses_everything(
     assert text.count(old) == 1
     assert project(text.replace(old, new)).declarations is None
     log()
-    assert fretc("audit", "l.mcap").status == BAD
+    assert fretc("audit", "l.mcap").status == EXIT_USAGE
     assert not Path("build").exists()
 
 

@@ -182,11 +182,9 @@ def test_the_command_says_what_is_known_and_shows_all(fretc: Fretc) -> None:
     whole = fretc("audit", *LOGS)
     again = fretc("audit", *LOGS)
     assert (again.status, untimed(again.out)) == (whole.status, untimed(whole.out))
-    assert (
-        again.err == f"3 of 3 logs are unchanged: their earlier results are used again\n{whole.err}"
-    )
+    assert again.err == f"3 of 3 logs are unchanged: their earlier results are reused\n{whole.err}"
     fewer = fretc("audit", *LOGS[:2])
-    assert "\n1 log of the store is not named this time: its results leave it\n" in fewer.err
+    assert "\n1 log of the store is not among the inputs: its results are removed\n" in fewer.err
 
 
 # What is known -----------------------------------------------------------------------------------
@@ -347,12 +345,12 @@ def test_a_command_is_stopped_and_goes_on(fretc: Fretc, stop: signal.Signals) ->
     count = len(known(logs))
     assert count <= 3, "it was stopped before the last three"
     if stop is not signal.SIGKILL:
-        words = f"stopped: {count} of 6 logs are kept, the same command goes on from there\n"
+        words = f"stopped: {count} of 6 logs are saved; run the same command again to continue\n"
         assert (run.returncode, errors) == (130, words)
     resumed = fretc("audit", *logs)
     assert resumed.status == 0
     if count:  # what a killed one has written counts only where it came to say so
-        told = f"{count} of 6 logs are unchanged: their earlier results are used again\n"
+        told = f"{count} of 6 logs are unchanged: their earlier results are reused\n"
         assert resumed.err.startswith(told)
     store = opened(str(STORE))
     assert isinstance(store, Store)
@@ -372,7 +370,7 @@ def test_two_audits_do_not_share_a_store(fretc: Fretc) -> None:
 
 
 FOREIGN = (
-    f"`{STORE}` was written by another user or in another folder: its results are not used again\n"
+    f"`{STORE}` was written by another user or in another folder: its results are not reused\n"
 )
 
 

@@ -305,16 +305,16 @@ def test_a_table_goes_to_a_file_of_its_own(fretc: Fretc, path: str) -> None:
 
 
 def test_evidence_that_cannot_be_written_is_told_before_the_audit(fretc: Fretc) -> None:
-    run = fretc("audit", "run.mcap", "no.mcap", "--evidence", "requirements")
+    run = fretc("audit", "run.mcap", "no.mcap", "-o", "requirements")
     assert run == Run(
         2,
         "",
-        "F905 `requirements` cannot be written: it is a folder with something else in it\n"
+        "F905 `requirements` cannot be written: the folder contains other files\n"
         "help: name a new folder, an empty one, or a store that `fretc audit` has written\n",
     )
     Path("x.json").mkdir()
-    run = fretc("audit", "run.mcap", "no.mcap", "--evidence", "x.json")
-    assert run.err.startswith("F905 `x.json` cannot be written: it is not a regular file\n")
+    run = fretc("audit", "run.mcap", "no.mcap", "-o", "x.json")
+    assert run.err.startswith("F905 `x.json` cannot be written: it is no regular file\n")
 
 
 @pytest.mark.slow

@@ -48,7 +48,7 @@ def project(fretc: Fretc) -> None:
 
 def audited(fretc: Fretc, words: list[str]) -> EvidenceFile:
     write(Path("log.mcap"), sent(words))
-    fretc("audit", "log.mcap", "--evidence", "e.json")
+    fretc("audit", "log.mcap", "-o", "e.json")
     found = read("e.json")
     assert isinstance(found, EvidenceFile), found
     return found
@@ -67,7 +67,7 @@ def test_a_violation_shows_the_words_that_caused_it(fretc: Fretc) -> None:
     assert "<code>mode</code> was &#34;drive&#34;, <code>docking</code> is required" in page
     assert "mode is &#34;drive&#34;." in page
     assert "<title>drive</title>" in page
-    junit = fretc("audit", "log.mcap", "--evidence", "f.json", "--format", "junit").out
+    junit = fretc("audit", "log.mcap", "-o", "f.json", "--format", "junit").out
     assert 'mode = "drive"' in junit.replace("&quot;", '"')
     assert fretc("verify-evidence", "e.json").status == 0
 

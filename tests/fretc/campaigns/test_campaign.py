@@ -59,7 +59,9 @@ def test_a_verdict_that_is_not_the_stated_one_is_told(tmp_path: Path) -> None:
     run = simulated(scenario, 1, tmp_path / "a.mcap")
     assert run.wrong == dict.fromkeys(("R6", "R9", "R10", "R11", "R12"), "satisfied")
     assert run.verdicts["R12"] == "inconclusive"
-    assert "not as stated: nominal, seed 1: R6 is vacuous, not satisfied, R9 is inc" in table([run])
+    assert "not as expected: nominal, seed 1: R6 is vacuous, not satisfied, R9 is inc" in table(
+        [run]
+    )
 
 
 @pytest.mark.slow
@@ -133,7 +135,7 @@ def test_the_table_has_a_line_for_each_scenario_and_the_violations() -> None:
         "\n"
         "violated in, with 95 % intervals (Clopper-Pearson):\n"
         "  walker: R2 1/2 (1-99 %)\n"
-        "not as stated: walker, seed 2: R2 is satisfied, not violated\n"
+        "not as expected: walker, seed 2: R2 is satisfied, not violated\n"
     )
 
 

@@ -137,7 +137,7 @@ def test_an_accepted_warning_is_counted_and_an_idle_acceptance_told(
     assert (run.status, codes(run, "warning:")) == (0, [])
     assert sorted(codes(run, "accepted:")) == sorted(warnings)
     assert run.err.count(f"reason: reason of {code}\n") == warnings.count(code)
-    assert run.err.endswith(f"0 mistakes, 0 warnings, {len(warnings)} accepted\n")
+    assert run.err.endswith(f"0 errors, 0 warnings, {len(warnings)} accepted\n")
     project({}, accepted)
     run = fretc("check")
     assert run.status == 3
@@ -413,11 +413,11 @@ def test_the_evidence_of_a_log_is_the_same_whatever_is_accepted_of_it(fretc: Fre
     write("requirements/fretc.toml", "")
     log = Path("run.mcap")
     recorded(log, [number(i / 10, 1000 * S + i * 300 * MS) for i in range(12)])
-    run = fretc("audit", str(log), "--evidence", "open.json")
+    run = fretc("audit", str(log), "-o", "open.json")
     assert codes(run, "warning:") == ["F315"]
     status = run.status
     write("requirements/fretc.toml", '[accept]\nF315 = { "/x" = "slow by design" }\n')
-    run = fretc("audit", str(log), "--evidence", "accepted.json")
+    run = fretc("audit", str(log), "-o", "accepted.json")
     assert (run.status, codes(run, "warning:")) == (status, [])
     assert "1 warning is accepted: `fretc check` lists the reasons" in run.err
     assert Path("accepted.json").read_bytes() == Path("open.json").read_bytes()

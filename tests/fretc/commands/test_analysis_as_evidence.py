@@ -110,15 +110,18 @@ def test_an_analysis_of_other_requirements_differs(analyzed: Fretc) -> None:
     status, found = together(analyzed)
     assert status == 1
     assert "differs: r2 has changed since\n" in found
-    assert "? r4  not checked: it was no part of the set\n" in found
+    assert "? r4  not checked: it was not part of the set\n" in found
 
 
 @pytest.mark.slow
 def test_what_is_not_asked_again_is_not_checked(analyzed: Fretc) -> None:
     run = analyzed("verify-evidence", "--no-analysis")
-    assert (run.status, "?     not checked: nothing was analyzed again" in run.out) == (3, True)
+    assert (run.status, "?     not checked: the analysis was not repeated" in run.out) == (3, True)
     run = analyzed("verify-evidence", "--only", "r1")
-    assert (run.status, "not checked: nothing was analyzed again: `--only`" in run.out) == (3, True)
+    assert (run.status, "not checked: the analysis was not repeated: `--only`" in run.out) == (
+        3,
+        True,
+    )
     analyzed("analyze", "requirements", "--as-fret")
     run = analyzed("verify-evidence")
     assert (run.status, "not checked: it answers FRET's question" in run.out) == (3, True)

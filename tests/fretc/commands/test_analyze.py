@@ -40,10 +40,10 @@ def test_a_conflict_is_shown_tick_by_tick(fretc: Fretc, folder: Path) -> None:
     run = fretc("analyze", str(folder))
     assert run.status == 1
     assert run.out.startswith(
-        "✘ unrealizable: no system can keep all requirements\n"
+        "✘ unrealizable: no system can satisfy all requirements\n"
         "  ✘ R1, R2 (about run): the environment wins\n"
         "\n"
-        "✘ conflict 1: R1 and R2 cannot be kept together\n"
+        "✘ conflict 1: R1 and R2 cannot be satisfied together\n"
         "  at tick 2 R1 demands `run` (since tick 0, by tick 2), and R2 forbids it "
         "(since tick 0, up to tick 3)\n"
     )
@@ -106,7 +106,9 @@ def test_an_assumption_makes_it_realizable(fretc: Fretc, tmp_path: Path) -> None
     )
     run = fretc("analyze", str(written(tmp_path, FIGHT, more=assumed)))
     assert run.status == 0, run.out
-    assert run.out.startswith("✔ realizable: a system can keep all requirements, while the assump")
+    assert run.out.startswith(
+        "✔ realizable: a system can satisfy all requirements, while the assump"
+    )
     assert " satisfy !start (one button)\nassumed A2: whenever start the man shall" in run.out
 
 
@@ -136,9 +138,12 @@ def test_a_variable_without_a_role_is_an_error_with_lines_to_paste(
     folder = written(tmp_path, FIGHT, {"start": "input", "stop": "mode"})
     run = fretc("analyze", str(folder))
     assert run.status == 2
-    assert "F354 nothing says who chooses `run`: the environment or the system" in run.err
+    assert "F354 `run` has no role: it may be chosen by the environment or by the system" in run.err
     assert '[variable.run]\nrole = "output"' in run.err
-    assert "F354 `stop` is a mode, and nothing says whether the system chooses it" in run.err
+    assert (
+        "F354 `stop` is a mode without a role: it may be chosen by the system or by the environment"
+        in run.err
+    )
     assert '[variable.stop]\nrole = "input"' in run.err
 
 
@@ -158,7 +163,7 @@ def test_what_is_not_checked_exits_with_3(fretc: Fretc, tmp_path: Path) -> None:
     ahead = "whenever start the line shall immediately satisfy persists(2, run)"
     run = fretc("analyze", str(written(tmp_path, [ahead], {"start": "input", "run": "output"})))
     assert run.status == 3
-    assert run.out.startswith("? not checked: R1: `persists(2,run)` is more than a value")
+    assert run.out.startswith("? not checked: R1: `persists(2,run)` is not a value at a single")
 
 
 def test_a_retired_requirement_is_no_part_of_the_set(fretc: Fretc, folder: Path) -> None:
@@ -221,7 +226,7 @@ def test_a_strategy_is_an_automaton_for_each_component(
 def test_no_strategy_is_written_where_there_is_none(fretc: Fretc, folder: Path) -> None:
     run = fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(folder / "out"))
     assert run.status == 1
-    assert "no strategy is written: cannot be kept together: R1, R2" in run.err
+    assert "no controller is written: cannot be satisfied together: R1, R2" in run.err
     assert not (folder / "out").exists()
 
 
@@ -230,7 +235,7 @@ def test_a_strategy_that_is_too_large_is_refused(fretc: Fretc, tmp_path: Path) -
     folder = written(tmp_path, ["upon start the line shall for 5000 ticks satisfy run"])
     run = fretc("analyze", str(folder), "--emit", "hoa", "--emit-to", str(tmp_path / "out"))
     assert run.status == 2
-    assert "F670 no strategy can be written: its automaton has more than 1000 states" in run.err
+    assert "F670 no controller can be written: its automaton has more than 1000 states" in run.err
     assert not (tmp_path / "out").exists()
     assert fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(tmp_path)).status == 0
 
@@ -288,9 +293,10 @@ def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) ->
     both = fretc("analyze", folder)
     assert both.status == 2
     assert both.err.startswith(
-        "F907 `link` is an output of `sender`, and an input of `receiver`: these are two systems\n"
+        "F907 `link` is an output of `sender`, and an input of `receiver`: these are two "
+        "different systems\n"
     )
-    assert both.err.endswith("help: ask about one of them: `--component receiver`\n")
+    assert both.err.endswith("help: analyze one of them: `--component receiver`\n")
 
 
 # `fretc check --analyze` -----------------------------------------------------------------------
@@ -298,9 +304,12 @@ def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) ->
 
 @pytest.mark.slow
 def test_check_names_each_conflict(fretc: Fretc, folder: Path) -> None:
-    run = fretc("check", str(folder), "--analyze")
-    assert "F561 warning: R1 and R2 cannot be kept together: at tick 2 R1 demands `run`" in run.err
-    assert "F561" not in fretc("check", str(folder)).err
+    run = fretc("check", "--requirements", str(folder), "--analyze")
+    assert (
+        "F561 warning: R1 and R2 cannot be satisfied together: at tick 2 R1 demands `run`"
+        in run.err
+    )
+    assert "F561" not in fretc("check", "--requirements", str(folder)).err
 
 
 @pytest.mark.slow
@@ -309,17 +318,17 @@ def test_check_takes_an_answer_only_while_it_is_about_these(fretc: Fretc, tmp_pa
     good = (FIGHT[0], "upon stop the line shall within 3 ticks satisfy !run")
     written(tmp_path, good)
     assert fretc("analyze", str(tmp_path)).status == 0
-    assert "F56" not in fretc("check", str(tmp_path), "--analyze").err
+    assert "F56" not in fretc("check", "--requirements", str(tmp_path), "--analyze").err
     text = Path("build/analysis.json").read_text().replace('"realizable"', '"not checked"')
     Path("build/analysis.json").write_text(text)
-    assert "F562 warning" in fretc("check", str(tmp_path), "--analyze").err
+    assert "F562 warning" in fretc("check", "--requirements", str(tmp_path), "--analyze").err
     written(tmp_path, FIGHT)
-    assert "F561 warning" in fretc("check", str(tmp_path), "--analyze").err
+    assert "F561 warning" in fretc("check", "--requirements", str(tmp_path), "--analyze").err
 
 
 def test_check_says_what_has_no_role(fretc: Fretc, folder: Path) -> None:
     written(folder, FIGHT, {"start": "input", "run": "output"})
-    assert "F354" in fretc("check", str(folder), "--analyze").err
+    assert "F354" in fretc("check", "--requirements", str(folder), "--analyze").err
 
 
 @pytest.mark.slow
@@ -353,10 +362,8 @@ def test_an_answer_says_without_which_requirements_it_is(fretc: Fretc) -> None:
     for words in (("analyze",), ("analyze", "--component", "alpha")):
         run = fretc(*words)
         assert run.status == 2
-        assert run.out.startswith("✔ realizable: a system can keep all other requirements, ")
-        assert run.out.splitlines()[1] == "? without b: see the mistakes"
+        assert run.out.startswith("✔ realizable: a system can satisfy all other requirements, ")
+        assert run.out.splitlines()[1] == "? without b: see the errors"
         assert run.err.startswith("F107 ")
-        assert (
-            "left out because of mistakes: 1 of 2 requirements\n  F107 requirements/b." in run.err
-        )
+        assert "left out because of errors: 1 of 2 requirements\n  F107 requirements/b." in run.err
         assert json.loads(Path("build/analysis.json").read_text())["requirements"].keys() == {"a"}

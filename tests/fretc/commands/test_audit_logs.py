@@ -150,10 +150,10 @@ def test_limits_that_are_not_reached_change_nothing(robot: Fretc) -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--time", "soon"], "`--time soon` is no time"),
-        (["--log-time", "5"], "`--log-time 5` is no time"),
-        (["--since", "soon"], "`--since soon` is neither a date nor a length of time"),
-        (["--time", "1h", "--engine", "dask"], "`--engine dask` has no limits of time"),
+        (["--time", "soon"], "`--time soon` is not a duration"),
+        (["--log-time", "5"], "`--log-time 5` is not a duration"),
+        (["--since", "soon"], "`--since soon` is neither a date nor a time ago"),
+        (["--time", "1h", "--engine", "dask"], "`--engine dask` does not support time limits"),
         (["--notify", ""], "`--notify` names no command: it is empty"),
         (["--notify", "a 'b"], "`--notify` names no command: no closing quotation"),
     ],
@@ -206,7 +206,7 @@ def test_the_store_is_free_when_the_command_reads_it(robot: Fretc) -> None:
         "folder = os.open('build/evidence', os.O_RDONLY)\n"
         "fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)",
     )
-    assert "notified by" in robot("audit", "runs", "--notify", lock).err
+    assert "sent the summary to" in robot("audit", "runs", "--notify", lock).err
 
 
 @pytest.mark.slow
@@ -227,5 +227,5 @@ def test_a_command_that_fails_is_told_and_changes_nothing(
     shutil.rmtree("build")
     run = robot("audit", "runs", "--format", "json", "--notify", command)
     assert (run.status, run.out) == (plain.status, plain.out)
-    assert f"F922 warning: `{command}` {how}: the summary did not arrive" in run.err
+    assert f"F922 warning: `{command}` {how}: the summary was not delivered" in run.err
     assert os.path.exists("build/evidence/manifest.json")

@@ -50,7 +50,7 @@ def test_a_draft_goes_to_a_file_and_never_over_one(fretc: Fretc) -> None:
         2,
         "",
         "F905 `new/bindings.toml` already exists\n"
-        "help: name another file with `-o`, or write over it with `--force`\n",
+        "help: name another file with `-o`, or overwrite it with `--force`\n",
     )
     assert Path("new/bindings.toml").read_text("utf-8") == "mine"
     assert fretc("bind", "--from", "run.mcap", "-o", "new/bindings.toml", "--force").status == 0

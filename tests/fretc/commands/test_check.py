@@ -33,7 +33,7 @@ def edited(name: str, old: str, new: str) -> None:
 
 def test_a_sound_project_is_said_to_be_sound(good: Fretc) -> None:
     run = good("check")
-    assert (run.status, run.out, run.err) == (0, "", "1 requirement: 0 mistakes, 0 warnings\n")
+    assert (run.status, run.out, run.err) == (0, "", "1 requirement: 0 errors, 0 warnings\n")
 
 
 SHIPPED = sorted(
@@ -47,9 +47,9 @@ def test_every_shipped_project_is_free_of_findings(
     folder: str, fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(ROOT)
-    run = fretc("check", folder)
+    run = fretc("check", "--requirements", folder)
     assert run.status == 0, run.err
-    assert "0 mistakes, 0 warnings" in run.err
+    assert "0 errors, 0 warnings" in run.err
 
 
 def test_the_same_is_said_as_json(good: Fretc) -> None:
@@ -58,7 +58,7 @@ def test_the_same_is_said_as_json(good: Fretc) -> None:
     text, record = good("check"), json.loads(good("check", "--format", "json").out)
     assert record["mistakes"] == 1
     assert text.err.endswith(
-        f"{record['requirements']} requirement: {record['mistakes']} mistake, "
+        f"{record['requirements']} requirement: {record['mistakes']} error, "
         f"{record['warnings']} warnings\n"
     )
     for diagnostic in record["diagnostics"]:
@@ -80,7 +80,7 @@ def test_a_trigger_that_the_component_itself_commands_is_told(good: Fretc) -> No
         "help: use a trigger that depends on sensor values, or declare `role` and `kind` of the "
         "proposition\n"
         "\n"
-        "1 requirement: 0 mistakes, 1 warning\n"
+        "1 requirement: 0 errors, 1 warning\n"
     )
 
 
@@ -260,7 +260,7 @@ def test_fix_writes_what_is_sure_says_so_and_checks_again(good: Fretc) -> None:
         "fixed requirements/r1.fret:10:25: replaced `should` by `shall`\n"
         "fixed requirements/r1.fret:10:39: replaced `0.3 seconds` by `300 milliseconds`\n"
         "\n"
-        "1 requirement: 0 mistakes, 0 warnings\n",
+        "1 requirement: 0 errors, 0 warnings\n",
     )
 
 

@@ -91,7 +91,7 @@ def test_tests_say_how_a_run_comes_by_what_was_not_seen(robot: Fretc) -> None:
     write("requirements/r1.fret", f'+++\nid = "R1"\n+++\n{SENTENCE.replace("2", "3")}\n')
     run = robot("coverage", "idle.mcap")
     assert "record:" not in run.out
-    assert "the tests are of other sentences of R1: `fretc test` makes them" in run.err
+    assert "the tests were generated for earlier sentences of R1: run `fretc test` again" in run.err
 
 
 @pytest.mark.slow

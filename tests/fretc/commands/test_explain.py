@@ -186,10 +186,11 @@ def test_a_picture_is_of_one_requirement_and_of_no_code(fretc: Fretc) -> None:
     run = fretc("explain", "two.fret", "--bindings", "requirements/bindings.toml", "--svg", "x.svg")
     assert (run.status, run.out) == (2, "")
     assert run.err == (
-        "F907 `two.fret` holds several requirements\nhelp: name one of them: `fretc explain R1`\n"
+        "F907 `two.fret` contains several requirements\nhelp: name one of them: `fretc explain "
+        "R1`\n"
     )
     assert fretc("explain", "F203", "--svg", "x.svg").err == (
-        "F907 a code has no picture\nhelp: leave `--svg` out\n"
+        "F907 `--svg` draws a requirement, not a diagnostic code\nhelp: remove `--svg`\n"
     )
     assert not Path("x.svg").exists()
 
@@ -234,7 +235,8 @@ def test_a_name_that_is_none_gets_a_suggestion(fretc: Fretc) -> None:
     run = fretc("explain", "F699")
     assert (run.status, run.out) == (2, "")
     assert run.err.startswith(
-        "F515 no diagnostic has the code `F699`, and no requirement that id\nhelp: there are F601, "
+        "F515 `F699` is neither a diagnostic code nor the id of a requirement\nhelp: there are "
+        "F601, "
     )
 
 
@@ -247,7 +249,7 @@ def test_a_folder_that_is_not_there(fretc: Fretc) -> None:
 def test_a_code_that_is_none_needs_no_project(fretc: Fretc) -> None:
     run = fretc("explain", "F699")
     assert run.status == 2
-    assert run.err.startswith("F515 no diagnostic has the code `F699`, ")
+    assert run.err.startswith("F515 `F699` is neither a diagnostic code nor ")
 
 
 def test_a_code_is_explained(fretc: Fretc) -> None:

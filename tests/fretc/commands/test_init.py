@@ -60,11 +60,11 @@ def test_a_project_without_a_log_has_no_mistake(fretc: Fretc) -> None:
         "wrote requirements/r1.fret\nwrote requirements/bindings.toml\n"
         "wrote requirements/hazards.toml\n"
         "wrote requirements/fretc.toml\n"
-        "next: `fretc check` says what is wrong or missing\n"
-        "next: `fretc audit LOG` judges a log\n"
+        "next: `fretc check` reports what is wrong or missing\n"
+        "next: `fretc audit LOG` checks a log against the requirements\n"
     )
     run = fretc("check")
-    assert (run.status, run.err) == (0, "1 requirement: 0 mistakes, 0 warnings\n")
+    assert (run.status, run.err) == (0, "1 requirement: 0 errors, 0 warnings\n")
 
 
 @pytest.mark.slow
@@ -80,10 +80,11 @@ def test_a_project_from_a_log_has_no_mistake_and_judges_that_log(fretc: Fretc, k
     run = fretc("init", "new project", "--from", "a run.mcap")
     assert run.status == 0
     assert run.err.endswith(
-        "next: `fretc audit 'a run.mcap' --requirements 'new project/requirements'` judges a log\n"
+        "next: `fretc audit 'a run.mcap' --requirements 'new project/requirements'` checks a log "
+        "against the requirements\n"
     )
     check = fretc("check", "--requirements", "new project/requirements")
-    assert (check.status, check.err) == (0, "1 requirement: 0 mistakes, 0 warnings\n")
+    assert (check.status, check.err) == (0, "1 requirement: 0 errors, 0 warnings\n")
     audit = fretc("audit", "a run.mcap", "--requirements", "new project/requirements")
     assert audit.status == 0
     (result,) = json.loads(Path("build/evidence.json").read_text())["results"]

@@ -147,7 +147,7 @@ def test_requirements_with_mistakes_are_not_accepted(fretc: Fretc, folder: Path)
     run = fretc("lock", *BY, *ON)
     assert run.status == 2
     assert "accepted 1 requirement: " in run.err
-    assert "left out because of mistakes: 1 of 2 requirements\n  F107 " in run.err
+    assert "left out because of errors: 1 of 2 requirements\n  F107 " in run.err
     lock = tomllib.loads((folder / "fretc.lock").read_text())
     assert [*lock["review"]] == ["R1"]
 

@@ -28,7 +28,7 @@ def project(assumed: str = ASSUMED, **sentences: str) -> None:
 
 @pytest.fixture
 def locked(fretc: Fretc) -> Fretc:
-    """R1 and R2 fight, R3 is apart, and all of that was accepted."""
+    """R1 and R2 conflict, R3 is apart, and all of that was accepted."""
 
     def make() -> None:
         project()

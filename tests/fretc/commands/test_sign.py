@@ -237,7 +237,7 @@ def test_signatures_of_others_stay_and_ones_own_is_replaced(project: Fretc) -> N
     assert project("audit", "logs/good.mcap").status == 0
     assert project("verify-evidence", "--signed-by", "ada.pub").status == 1
     run = project("sign", EVIDENCE, "--key", "bob")
-    assert "2 earlier signatures are left out" in run.err
+    assert "2 earlier signatures are removed" in run.err
     assert len(envelopes(EVIDENCE)) == 1
 
 
@@ -355,7 +355,7 @@ def test_whoever_signs_signs_only_what_is_theirs(project: Fretc) -> None:
     path = "requirements/waivers.toml"
     unknown = project("sign", path, "--key", "ada")
     assert unknown.status == 2
-    assert "does not say what is yours: it is by `Ada`, `Bob`" in unknown.err
+    assert "names several people, and it is not clear who signs: `Ada`, `Bob`" in unknown.err
     assert project("sign", path, "--key", "ada", "--reviewer", "Eve").status == 2
     assert project("sign", path, "--key", "ada", "--reviewer", "Bob").status == 0
     assert [one["name"] for one in payload(envelopes(path)[0])["subject"]] == ["waiver:r2"]
@@ -430,7 +430,7 @@ def test_a_passphrase_comes_from_the_environment(
     keys.written("eve", passphrase="open sesame")
     monkeypatch.setattr(sys, "stdin", io.StringIO("open sesame\n"))
     run = project("sign", EVIDENCE, "--key", "eve")
-    assert (run.status, "nobody can be asked for it here" in run.err) == (2, True)
+    assert (run.status, "there is no terminal to ask for it" in run.err) == (2, True)
     monkeypatch.setenv("FRETC_PASSPHRASE", "wrong")
     run = project("sign", EVIDENCE, "--key", "eve")
     assert (run.status, Path(f"{EVIDENCE}.intoto.jsonl").exists()) == (2, False)

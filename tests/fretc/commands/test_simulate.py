@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[3]
 
 @pytest.mark.slow
 def test_a_mission_is_recorded_and_drawn(fretc: Fretc) -> None:
-    words = "walker --seed 3 --duration 2 --out a.mcap --png a.png --gif a.gif"
+    words = "walker --seed 3 --duration 2 -o a.mcap --png a.png --gif a.gif"
     ran = fretc("simulate", *words.split())
     assert (ran.status, ran.err) == (0, "wrote a.mcap\nwrote a.png\nwrote a.gif\n")
     assert ran.out.startswith("walker, seed 3: 2.0 s, 0 of 4 goals, 0 stops, 0 contacts, least ")
@@ -32,7 +32,7 @@ def test_a_mission_is_recorded_and_drawn(fretc: Fretc) -> None:
 
 @pytest.mark.slow
 def test_folders_are_made_and_a_mission_can_be_a_log_of_ros_1(fretc: Fretc) -> None:
-    words = "--duration 1 --encoding ros1 --out a/b/c.mcap --png d/e.png"
+    words = "--duration 1 --encoding ros1 -o a/b/c.mcap --png d/e.png"
     ran = fretc("simulate", *words.split())
     assert ran.status == 0, ran.err
     assert Path("d/e.png").is_file()
@@ -67,21 +67,21 @@ def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(fretc: Fretc
     [
         ((), "F907 missing option '--output'"),
         (("nominal",), "F907 missing option '--output'"),
-        (("nominul", "--out", "a.mcap"), "F914 the scenario `nominul` cannot be run: there is no"),
-        (("no.toml", "--out", "a.mcap"), "F914 the scenario `no.toml` cannot be run: No such file"),
-        (("bad.toml", "--out", "a.mcap"), "F914 the scenario `bad.toml` cannot be run: `title` is"),
-        (("ghost.toml", "--out", "a.mcap"), "cannot be run: the store has no obstacle `ghost`"),
-        (("walker", "nominal", "--out", "a.mcap"), "F907 several scenarios need --campaign"),
-        (("--out", "bad.toml/a.mcap"), "F905 `bad.toml/a.mcap` cannot be written: File exists"),
-        (("--out", "-"), "F905 `-` cannot be written"),
-        (("--out", "."), "F905 `.` cannot be written: it is not a regular file"),
-        (("--out", "a.x", "--png", "a.x"), "F905 `a.x` cannot be written: two outputs"),
-        (("--out", "a.mcap", "--png", "bad.toml/a.png"), "F905 `bad.toml/a.png` cannot be written"),
-        (("--out", "a.mcap", "--duration", "inf"), "F905 `a.mcap` cannot be written: a mission"),
-        (("--campaign", "1", "--png", "a.png"), "F907 a campaign takes no --png"),
-        (("walker", "walker", "--campaign", "1"), "F907 two of the scenarios have the same name"),
+        (("nominul", "-o", "a.mcap"), "F914 the scenario `nominul` cannot be run: there is no"),
+        (("no.toml", "-o", "a.mcap"), "F914 the scenario `no.toml` cannot be run: No such file"),
+        (("bad.toml", "-o", "a.mcap"), "F914 the scenario `bad.toml` cannot be run: `title` is"),
+        (("ghost.toml", "-o", "a.mcap"), "cannot be run: the store has no obstacle `ghost`"),
+        (("walker", "nominal", "-o", "a.mcap"), "F907 several scenarios need --campaign"),
+        (("-o", "bad.toml/a.mcap"), "F905 `bad.toml/a.mcap` cannot be written: File exists"),
+        (("-o", "-"), "F905 `-` cannot be written"),
+        (("-o", "."), "F905 `.` cannot be written: it is no regular file"),
+        (("-o", "a.x", "--png", "a.x"), "F905 `a.x` cannot be written: two outputs"),
+        (("-o", "a.mcap", "--png", "bad.toml/a.png"), "F905 `bad.toml/a.png` cannot be written"),
+        (("-o", "a.mcap", "--duration", "inf"), "F905 `a.mcap` cannot be written: the duration"),
+        (("--campaign", "1", "--png", "a.png"), "F907 --campaign cannot be combined with --png"),
+        (("walker", "walker", "--campaign", "1"), "F907 two scenarios have the same name"),
         (
-            ("--campaign", "1", "--out", "bad.toml"),
+            ("--campaign", "1", "-o", "bad.toml"),
             "F905 `bad.toml` cannot be written: File exists",
         ),
     ],
@@ -118,7 +118,7 @@ def test_what_is_wrong_in_a_scenario_is_shown(
     tmp_path: Path, fretc: Fretc, text: str, why: str, shown: str
 ) -> None:
     (tmp_path / "bad.toml").write_text(f'title = "a"\n{text}', encoding="utf-8")
-    ran = fretc("simulate", "bad.toml", "--out", "a.mcap")
+    ran = fretc("simulate", "bad.toml", "-o", "a.mcap")
     assert (ran.status, ran.out) == (2, "")
     assert ran.err.startswith(f"F914 the scenario `bad.toml` cannot be run: {why}")
     assert shown in ran.err
@@ -128,7 +128,7 @@ def test_what_is_wrong_in_a_scenario_is_shown(
 def test_a_campaign_that_is_stopped_leaves_nothing_half_written(tmp_path: Path) -> None:
     (tmp_path / "logs").mkdir()
     (tmp_path / "temporary").mkdir()
-    for where in some((["--out", "logs"], []), 2):
+    for where in some((["-o", "logs"], []), 2):
         words = ["simulate", "nominal", "walker", "--campaign", "4", "--jobs", "2", *where]
         process = subprocess.Popen(
             [*PROCESS, *words],
@@ -157,7 +157,7 @@ def test_without_the_extra_the_scenarios_are_named_and_a_mission_tells_what_to_i
         "import sys; sys.modules['mujoco'] = sys.modules['rosbags'] = None; "
         "from fretc.cli import main; main()"
     )
-    for words, status in ((("--list",), 0), (("--out", "a.mcap"), 2), (("--campaign", "1"), 2)):
+    for words, status in ((("--list",), 0), (("-o", "a.mcap"), 2), (("--campaign", "1"), 2)):
         ran = subprocess.run(
             [sys.executable, "-c", program, "simulate", *words],
             cwd=tmp_path,

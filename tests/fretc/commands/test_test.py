@@ -38,7 +38,7 @@ def test_a_row_tells_of_each_requirement(fretc: Fretc, folder: Path) -> None:
     assert run.status == 0
     head, gap, titles, first, *_ = run.out.splitlines()
     assert head.startswith("✔ 2 requirements: ")
-    assert head.endswith("; each situation is met or cannot be, no mutant survives")
+    assert head.endswith("; each situation is covered or impossible, and no mutant survives")
     assert gap == ""
     assert titles.split() == ["tests", "ticks", "situations", "mutants"]
     assert first.split()[0] == "R1"
@@ -60,7 +60,8 @@ def test_tests_of_one_requirement_are_drawn(fretc: Fretc, folder: Path) -> None:
     run = fretc("test", str(folder), "--show", "R1")
     assert run.status == 0
     assert run.out.startswith(
-        "R1  whenever start the line shall within 2 ticks satisfy run\n  its tests keep R2, too\n"
+        "R1  whenever start the line shall within 2 ticks satisfy run\n  its tests also satisfy "
+        "R2\n"
     )
     assert (
         "✔ r1-answered-at-last-tick-kept: satisfied\n"
@@ -83,8 +84,10 @@ def test_a_requirement_that_there_is_not_is_a_mistake(fretc: Fretc, folder: Path
 def test_what_was_not_searched_is_told(fretc: Fretc, folder: Path) -> None:
     run = fretc("test", str(folder), "--time", "0.000001")
     assert run.status == 3
-    assert run.out.startswith("? 2 requirements: 0 tests of 0 ticks together; not all was searched")
-    assert "nothing was searched: not answered within 1e-06 s of a processor" in run.out
+    assert run.out.startswith(
+        "? 2 requirements: 0 tests of 0 ticks together; the search is not complete"
+    )
+    assert "not searched: not answered within 1e-06 CPU seconds" in run.out
 
 
 @pytest.mark.slow
@@ -120,10 +123,10 @@ def test_nothing_is_said_line_by_line_where_nothing_was_searched(
     sentences = ["upon persists(2, a) the sw shall immediately satisfy b", SENTENCES[0] + " & a"]
     run = fretc("test", str(written(tmp_path, sentences)), "-o", str(tmp_path / "suite.json"))
     assert run.status == 3
-    why = "`persists(2,a)` is more than a value at one tick"
+    why = "`persists(2,a)` is not a value at a single tick"
     assert run.out.split("\n\n")[2].splitlines()[:2] == [
-        f"? R1: nothing was searched: {why}",
-        f"? R2: nothing was searched: its tests have to keep R1, and there {why}",
+        f"? R1: not searched: {why}",
+        f"? R2: not searched: its tests must satisfy R1, but {why}",
     ]
 
 
@@ -149,7 +152,7 @@ def test_a_language_without_tests_for_pytest_is_a_mistake(
 ) -> None:
     run = fretc("test", str(folder), *emitted, "--language", "c")
     assert run.status == 2
-    assert "F907 `--language` is about the tests of `--emit pytest`" in run.err
+    assert "F907 `--language` needs `--emit pytest`" in run.err
     assert not (folder / "build").exists()
 
 
@@ -172,13 +175,13 @@ def test_tests_of_a_file_are_written_again_as_they_are(fretc: Fretc, folder: Pat
     )
     assert (again.status, Path("build/tests/suite.json").exists()) == (0, False)
     assert {path.name: path.read_text() for path in Path("again/csv").iterdir()} == made
-    assert again.out.splitlines()[0].endswith(" together; the monitors say what they expect")
+    assert again.out.splitlines()[0].endswith(" together; the monitors give the expected results")
     assert again.out.splitlines()[2].split() == ["tests", "ticks"]  # the rest nobody has checked
     text = Path("kept.json").read_text()
     Path("kept.json").write_text(text.replace('"verdict": "violated"', '"verdict": "satisfied"', 1))
     wrong = fretc("test", str(folder), "--suite", "kept.json", "--emit", "csv", "--emit-to", "new")
     assert (wrong.status, Path("new").exists()) == (2, False)
-    assert "expects what the monitor does not say: violated" in wrong.err
+    assert "expects another result than the monitor gives: violated" in wrong.err
 
 
 @pytest.mark.slow

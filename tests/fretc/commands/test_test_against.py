@@ -44,7 +44,7 @@ def test_a_program_that_ends_does_not_conform(fretc: Fretc, folder: Path) -> Non
     assert run.status == 2
     assert "F943 " in run.err
     assert "✔" not in run.out
-    assert "not all was tested" in run.out
+    assert "the test is not complete" in run.out
 
 
 def test_what_cannot_be_started_is_said(fretc: Fretc, folder: Path) -> None:

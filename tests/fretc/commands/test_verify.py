@@ -29,8 +29,8 @@ R1 = "whenever p the sw shall within 2 ticks satisfy q"
 LOOKS_BACK = "whenever occurred(2, p) the sw shall always satisfy q"
 CLAIM = "the monitor means what the sentence says"
 PROVED = (
-    f"proved: {CLAIM}; the same at every tick of every trace (4 states, 16 steps); "
-    "columns agree on 1160 drawn ticks\n"
+    f"proved: {CLAIM}; the same at every tick of every trace (4 states, 16 steps); its "
+    "column program agrees on 1160 random ticks\n"
 )
 WROTE = "wrote build/verification.json\n"
 
@@ -145,8 +145,8 @@ def test_what_cannot_be_checked_is_told(fretc: Fretc) -> None:
     run = fretc("verify", "--monitor", write("r1.fret", LOOKS_BACK))
     assert (run.status, run.out) == (
         3,
-        f"? r1  monitor  not checked: {CLAIM}; `occurred` speaks of other ticks, and the automaton "
-        "knows one\n",
+        f"? r1  monitor  not checked: {CLAIM}; `occurred` refers to other ticks, and the "
+        "automaton reads one tick at a time\n",
     )
 
 
@@ -160,7 +160,7 @@ def test_a_step_that_looks_at_the_tick_is_not_checked(fretc: Fretc, r1: str, mad
 def test_a_monitor_of_another_requirement_is_not_checked(fretc: Fretc, r1: str, made: str) -> None:
     write("r2.fret", R1)
     run = fretc("verify", "--file", made, r1, "r2.fret")
-    reason = "the monitor is of other requirements"
+    reason = "the monitor is for other requirements"
     told = (
         "    monitor\nr1  ✔\nr2  ?\n✔ 1 claim is proved: `--all` lists them\n"
         f"? r2  monitor  not checked: {CLAIM}; {reason}\n"
@@ -252,7 +252,7 @@ def test_what_is_not_checked_as_json(fretc: Fretc, r1: str, made: str) -> None:
     assert (run.status, record["result"], record["detail"]) == (
         3,
         "not checked",
-        "the run time in it is not the one of this version of fretc",
+        "its runtime part is not the one of this version of fretc",
     )
 
 
@@ -295,14 +295,14 @@ ASSUMPTIONS = """\
 assumptions
    1  the safety function steps at every tick of 100 ms and sends its request every time \
 (`requests`, [assume])
-   2  stop messages are heard in the order of sending, each within 100 ms (`latency`, [assume])
-   3  never are more than 1 stop messages lost in a row (`lost`, [assume])
+   2  stop messages arrive in the order of sending, each within 100 ms (`latency`, [assume])
+   3  at most 1 stop messages in a row are lost (`lost`, [assume])
    4  `stopped` is false while the wheels are commanded to move, and true once they \
 have had zero for 170 ms (`braking`, [assume]), or earlier
-   5  the wheels have at once what was published last, and keep it while nothing is published
-   6  at the first tick the robot stands, and nothing has been heard yet
-   7  the node around the interceptor's step hands on every message, and publishes what it gives
-   8  the interceptor's timer rings once in each 50 ms (`period`, [interceptor])
+   5  the wheels follow a published command at once, and keep it until the next one
+   6  at the first tick the robot stands, and nothing has been received yet
+   7  the node around the interceptor's step passes on every message, and publishes the result
+   8  the interceptor's timer expires once in each 50 ms (`period`, [interceptor])
    9  `braking` of 170 ms counts as 200 ms, whole cells of the model
 """
 
@@ -328,8 +328,8 @@ def test_a_loop_that_keeps_its_requirement(fretc: Fretc, loop: Callable[..., str
     run = fretc("verify", "--layer", "loop", loop(400))
     kept, released, rest = run.out.split("\n", 2)
     assert kept.startswith(
-        "✔ r1  loop  proved under (1-9): monitor, interceptor and any environment together keep "
-        "the requirement; "
+        "✔ r1  loop  proved under (1-9): monitor, interceptor and any environment together "
+        "satisfy the requirement; "
     )
     assert released == (
         "✔ r1  loop  proved under (1-9): the stop is released once no demand begins any more; "
@@ -363,8 +363,9 @@ def test_a_heartbeat_is_an_assumption(fretc: Fretc, loop: Callable[..., str]) ->
     assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (0, ["✔", "✔"])
     lines = [line[4:].strip() for line in run.out.splitlines()[3:]]
     assert lines[0] == (
-        "the safety function steps at every tick of 100 ms and sends its request where it changes, "
-        "and again once it has been silent for 250 ms, or earlier (`requests` and `heartbeat`, "
+        "the safety function steps at every tick of 100 ms and sends its request when it "
+        "changes, and again when it has been silent for 250 ms, or earlier (`requests` and "
+        "`heartbeat`, "
         "[assume])"
     )
     assert lines[-1] == "`heartbeat` of 250 ms counts as 300 ms, whole ticks of the clock"
@@ -377,16 +378,16 @@ def test_a_loop_that_does_not_shows_a_run(fretc: Fretc, loop: Callable[..., str]
     assert run.status == 1
     assert first == (
         "✘ r1  loop  counterexample under (1-9): not true that monitor, interceptor and any "
-        "environment together keep the requirement; violated at tick 3; no shorter run shows it"
+        "environment together satisfy the requirement; violated at tick 3; no shorter run shows it"
     )
     assert table == [
         "    tick  near  stopped  request  delivered  halt  wheels",
         "       0     0        1        0          0     0       1  no stop is requested, and the "
-        "message is sent; a command to move is heard; `false` is heard",
+        "message is sent; a command to move is received; `false` is received",
         "       1     1        0        1          1     1       0  a stop is requested, and the "
-        "message is sent; `true` is heard",
+        "message is sent; `true` is received",
         "    2..3     0        0        1          1     1       0  a stop is requested, and the "
-        "message is sent; `true` is heard",
+        "message is sent; `true` is received",
     ]
 
 
@@ -409,12 +410,12 @@ def test_the_least_bound_is_told(fretc: Fretc, loop: Callable[..., str]) -> None
     run = fretc("verify", "--layer", "bounds", loop(400))
     answered, enough = run.out.splitlines()[:2]
     assert answered.startswith(
-        "✔ r1  bounds  proved under (1-8): every demand is answered within `lost` ticks and as "
-        "many more, at least one, as `latency` and `braking` fill together; by an inductive "
+        "✔ r1  bounds  proved under (1-8): every demand is answered within `lost` ticks and the "
+        "ticks of `latency` and `braking` together, at least one; by an inductive "
     )
     assert enough == (
-        "✔ r1  bounds  proved under (1, 5-12): the bound of 4 ticks is enough; the least that is "
-        "kept is 4 ticks (400 ms); with one tick less a run of 5 ticks violates it"
+        "✔ r1  bounds  proved under (1, 5-12): the bound of 4 ticks is enough; the smallest "
+        "satisfied bound is 4 ticks (400 ms); with one tick less a run of 5 ticks violates it"
     )
     assert run.status == 0
 
@@ -429,7 +430,7 @@ def test_bounds_are_of_the_monitor_that_fretc_writes(
     edited("r1_monitor.py", "oldest_1 >= 4\n", "oldest_1 >= 5\n")
     run = fretc("verify", "--layer", "bounds", path, "--file", "r1_monitor.py")
     assert run.status == 3
-    assert run.out.count("the monitor is not the one that fretc writes for it") == 2
+    assert run.out.count("the monitor is not the one that fretc generates for it") == 2
 
 
 @pytest.mark.slow
@@ -448,17 +449,17 @@ def test_a_stop_that_stays_is_no_violation(fretc: Fretc, loop: Callable[..., str
         (
             "whenever stopped the sw shall within 200 milliseconds satisfy near",
             [],
-            "its response does not speak of `stopped`, which is what the loop decides",
+            "its response does not mention `stopped`, which the loop controls",
         ),
         (
             NEAR.format(200),
             [(BINDINGS[BINDINGS.index("[assume]") :], "")],
-            "the bindings assume nothing of the loop (`[assume]`)",
+            "the bindings state no assumptions about the loop (`[assume]`)",
         ),
         (
             NEAR.format(200),
             [('period = "50 ms"', 'period = "70 ms"')],
-            "a tick of the clock, 100 ms, is no whole number of periods of the interceptor's "
+            "a tick of the clock, 100 ms, is not a whole number of periods of the interceptor's "
             "timer, 70 ms",
         ),
     ],
@@ -494,25 +495,29 @@ def test_an_interceptor_of_other_bindings_is_not_checked(
     edited("interceptor.py", "hold=4,", "hold=3,")
     run = fretc("verify", "--layer", "loop", path, "--interceptor", "interceptor.py")
     assert run.status == 3
-    assert "its options are not those that the bindings declare" in run.out
+    assert "its options differ from those that the bindings declare" in run.out
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "reason"),
     [
-        ("PERIOD = ", "PERIOD = 10 * ", "its node is not one that fretc writes for these bindings"),
+        (
+            "PERIOD = ",
+            "PERIOD = 10 * ",
+            "its node is not the one that fretc generates for these bindings",
+        ),
         (
             "velocity[:3]",
             "velocity[:2]",
-            "its node is not one that fretc writes for these bindings",
+            "its node is not the one that fretc generates for these bindings",
         ),
-        ("hold=4,", "hold=3,", "its options are not those that the bindings declare"),
-        ("    wz: float = 0.0\n", "", "its core is not as fretc can read it: `class Velocity"),
+        ("hold=4,", "hold=3,", "its options differ from those that the bindings declare"),
+        ("    wz: float = 0.0\n", "", "fretc cannot read its core: `class Velocity"),
         (
             "def halted(",
             "def isfinite(age: int) -> bool:\n    return age > 0\n\n\ndef halted(",
-            "its core is not as fretc can read it: `def isfinite(age: int) -> bool:`",
+            "fretc cannot read its core: `def isfinite(age: int) -> bool:`",
         ),
     ],
 )
@@ -634,10 +639,14 @@ def test_crosshair_is_given_the_core_and_the_limit(
 @pytest.mark.parametrize(
     ("old", "new", "reason"),
     [
-        ("ZERO = Velocity()", "ZERO = print()", "its core is not as fretc can read it: "),
+        ("ZERO = Velocity()", "ZERO = print()", "fretc cannot read its core: "),
         ("\n\nclass Gate:", "\n\nstep = print\n\nclass Gate:", "the node below it"),
-        ("post: __return__ or state.held", "post: print() or state.held", "are not those of fretc"),
-        ("    post: __return__ or not state.stop\n", "", "are not those of fretc"),
+        (
+            "post: __return__ or state.held",
+            "post: print() or state.held",
+            "differ from those of fretc",
+        ),
+        ("    post: __return__ or not state.stop\n", "", "differ from those of fretc"),
     ],
 )
 def test_crosshair_does_not_execute_what_may_not_be_pure(
@@ -689,7 +698,7 @@ def test_an_agent_needs_its_properties(fretc: Fretc, r1: str) -> None:
     assert fretc("verify", r1, "--agent", "SIF.gwen") == Run(
         2,
         "",
-        "F907 `--agent` is of no use without `--properties`\n"
+        "F907 `--agent` needs `--properties`\n"
         "help: name both: `--agent FILE.gwen --properties FILE.psl`\n",
     )
 
@@ -732,15 +741,15 @@ def test_files_must_be_there(fretc: Fretc, r1: str) -> None:
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("x = 1\n", "it names no `MONITOR`"),
-        ("x = (\n", "it is no Python"),
-        ("raise SystemExit(0)\n", "it names no `MONITOR`"),
+        ("x = 1\n", "it defines no `MONITOR`"),
+        ("x = (\n", "it is not valid Python"),
+        ("raise SystemExit(0)\n", "it defines no `MONITOR`"),
     ],
 )
 def test_a_file_that_is_no_monitor_is_told(fretc: Fretc, r1: str, text: str, why: str) -> None:
     run = fretc("verify", "--file", write("x.py", text), r1)
     assert (run.status, run.out) == (2, "")
-    assert run.err.startswith(f"F602 `x.py` is no generated monitor: {why}")
+    assert run.err.startswith(f"F602 `x.py` is not a generated monitor: {why}")
     assert run.err.endswith("help: name a file that `--emit monitor` wrote\n")
 
 

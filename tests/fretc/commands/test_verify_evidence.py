@@ -51,7 +51,7 @@ def test_evidence_that_nobody_touched_stands(audited: Fretc) -> None:
     assert run.out == (
         "logs/bad.mcap\n  ✔ r1  stands\nlogs/good.mcap\n  ✔ r1  stands\n"
         "stands 2, differs 0, not checked 0 (1 requirement of `requirements`; "
-        "no lock and no manifest says which runs there are)\n"
+        "neither a lock nor a manifest lists the runs)\n"
     )
 
 
@@ -88,7 +88,7 @@ def test_a_verdict_that_was_changed_by_hand_is_found(audited: Fretc) -> None:
         "logs/good.mcap\n"
         "  ✔ r1  stands\n"
         "stands 1, differs 1, not checked 0 (1 requirement of `requirements`; "
-        "no lock and no manifest says which runs there are)\n"
+        "neither a lock nor a manifest lists the runs)\n"
     )
 
 
@@ -128,7 +128,7 @@ def test_a_hash_that_was_put_in_by_hand_does_not_help(audited: Fretc) -> None:
     known = json.loads(Path("build/evidence.json").read_text())
     log("logs/bad.mcap", 0, 1.5, 3, 0, 0, 0)
     shutil.copytree("logs", "others")
-    assert audited("audit", "others", "--evidence", "other.json").status == 0
+    assert audited("audit", "others", "-o", "other.json").status == 0
     other = json.loads(Path("other.json").read_text())
     known["results"][0]["hashes"]["log"] = other["results"][0]["hashes"]["log"]
     write("build/evidence.json", json.dumps(known))
@@ -466,7 +466,7 @@ def test_proofs_are_made_again(audited: Fretc) -> None:
     assert "it is proved now, and was counterexample\n" in run.out
     run = audited("verify-evidence", "--no-proofs")
     assert run.status == 3
-    assert "not checked: no proof was made again: `--no-proofs`\n" in run.out
+    assert "not checked: the proofs were not repeated: `--no-proofs`\n" in run.out
 
 
 @pytest.mark.slow

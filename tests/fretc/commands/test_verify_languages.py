@@ -44,19 +44,20 @@ MADE = {
             "C", "c", "r1_monitor.c", ("r1_monitor.c", "r1_monitor.h", "r1_monitor.so"), C_FLAGS,
             ("rail->oldest_1 >= 2", "rail->oldest_1 >= 1"),
             ("    fretc_reading *reading;", "abort();"),
-            "a monitor in C is compiled for its proof, and there is none of `gcc`, `clang`, `cc`",
+            "a monitor in C is compiled for its proof, but none of `gcc`, `clang`, `cc` is "
+            "installed",
         ),
         Made(
             "Rust", "rust", "r1_monitor/src/lib.rs", ("lib.rs", "lib.so"), RUST_FLAGS,
             ("self.oldest_1 >= 2", "self.oldest_1 >= 1"),
             ("        // r1: what is remembered", "\nabort();"),
-            "a monitor in Rust is compiled for its proof, and there is no `rustc`",
+            "a monitor in Rust is compiled for its proof, but `rustc` is not installed",
         ),
         Made(
             "JavaScript", "js", "r1_monitor.mjs", ("r1_monitor.mjs",), NODE_FLAGS,
             ("rail.oldest_1 >= 2", "rail.oldest_1 >= 1"),
             ("  rail.signals = [", "\nabort();"),
-            "a monitor in JavaScript is run for its proof, and there is no `node`",
+            "a monitor in JavaScript is run for its proof, but `node` is not installed",
         ),
     )
 }  # fmt: skip
@@ -117,7 +118,7 @@ def test_without_its_tool_it_says_what_to_install(
 def test_a_loop_takes_it_not(fretc: Fretc, made: Made) -> None:
     run = fretc("verify", "--layer", "loop", "--file", made.file, "r1.fret")
     assert (run.status, run.out) == (2, "")
-    assert run.err.startswith("F907 `--layer loop` takes a monitor in Python")
+    assert run.err.startswith("F907 `--layer loop` needs a monitor in Python")
 
 
 def test_a_text_of_another_kind_is_not_run(fretc: Fretc, made: Made) -> None:
@@ -126,7 +127,9 @@ def test_a_text_of_another_kind_is_not_run(fretc: Fretc, made: Made) -> None:
     write("other.h", "")
     run = fretc("verify", "--file", name, "r1.fret")
     assert (run.status, run.out) == (2, "")
-    assert run.err.startswith(f"F602 `{name}` is no generated monitor: it names no requirement")
+    assert run.err.startswith(
+        f"F602 `{name}` is not a generated monitor: it contains no requirement"
+    )
     assert run.err.endswith(f"help: name a file that `--emit {made.emit}` wrote\n")
 
 
@@ -138,13 +141,17 @@ def test_a_monitor_in_c_needs_its_header(fretc: Fretc) -> None:
     header = Path("r1_monitor.h").read_bytes()
     run = fretc("verify", "--file", "r1_monitor.c", "r1.fret", "-o", "r1_monitor.h")
     assert (run.status, Path("r1_monitor.h").read_bytes()) == (2, header)
-    assert "F905 `r1_monitor.h` cannot be written: it is `r1_monitor.h`, which is read" in run.err
+    assert (
+        "F905 `r1_monitor.h` cannot be written: it is `r1_monitor.h`, which is an input" in run.err
+    )
     Path("r1_monitor.h").unlink()
     assert fretc("verify", "--file", "r1_monitor.c", "r1.fret").err.startswith("F901")
     write("other.c", "int x;\n")
     run = fretc("verify", "--file", "other.c", "r1.fret")
     assert run.status == 2
-    assert run.err.startswith("F602 `other.c` is no generated monitor: it includes no header")
+    assert run.err.startswith(
+        "F602 `other.c` is not a generated monitor: it does not include its header"
+    )
 
 
 @pytest.mark.slow

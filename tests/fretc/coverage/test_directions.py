@@ -7,7 +7,7 @@ from typing import Any
 from fretc.coverage.coverage import coverage
 from fretc.coverage.directions import Way, directions, is_complete, steps, unseen
 from fretc.testing import suite as made  # whose names pytest would take for its own
-from fretc.testing.suite import Met, Obligation, Polarity, Repeat, Suite
+from fretc.testing.suite import GoalResult, GoalStatus, Polarity, Repeat, Suite
 from monitors.kernel.verdicts import Verdict
 from tests.fretc.audit.results import SHA
 from tests.fretc.coverage.evidence import KEYS, evidence, of_run
@@ -25,35 +25,35 @@ KEPT = run("kept", (3, {"p": False, "pp": True}), (1, {"p": True, "pp": False}))
 BROKEN = run("broken", (2, {"p": True, "pp": True}))
 
 
-def obligation(key: str, polarity: Polarity, outcome: Met) -> Obligation:
+def obligation(key: str, polarity: Polarity, outcome: GoalStatus) -> GoalResult:
     tests = {Polarity.KEPT: ("kept",), Polarity.BROKEN: ("broken",)}[polarity]
-    return Obligation("R1", key, "", polarity, outcome, tests if outcome is Met.MET else ())
+    return GoalResult("R1", key, "", polarity, outcome, tests if outcome is GoalStatus.MET else ())
 
 
-def suite(kept: Met, broken: Met, key: str = "late") -> Suite:
+def suite(kept: GoalStatus, broken: GoalStatus, key: str = "late") -> Suite:
     both = (obligation(key, Polarity.KEPT, kept), obligation(key, Polarity.BROKEN, broken))
     tested = made.Tested("R1", SENTENCE, SHA, ())
     return Suite("fretc-tests-1", "1", "100 ms", (tested,), {}, (KEPT, BROKEN), both, ())
 
 
-def way(kept: Met, broken: Met) -> Way | None:
+def way(kept: GoalStatus, broken: GoalStatus) -> Way | None:
     found = directions(suite(kept, broken), {"R1": SHA})
     return found["R1", "late"].way if found else None
 
 
 def test_a_run_that_keeps_the_requirement_is_the_first_choice() -> None:
-    assert way(Met.MET, Met.MET) is Way.KEPT
-    assert way(Met.MET, Met.NOT_SEARCHED) is Way.KEPT
-    assert way(Met.IMPOSSIBLE, Met.MET) is Way.BROKEN
-    assert way(Met.EXCLUDED, Met.MET) is Way.BROKEN
-    assert way(Met.IMPOSSIBLE, Met.IMPOSSIBLE) is Way.NONE
-    assert way(Met.IMPOSSIBLE, Met.EXCLUDED) is Way.EXCLUDED
+    assert way(GoalStatus.MET, GoalStatus.MET) is Way.KEPT
+    assert way(GoalStatus.MET, GoalStatus.NOT_SEARCHED) is Way.KEPT
+    assert way(GoalStatus.IMPOSSIBLE, GoalStatus.MET) is Way.BROKEN
+    assert way(GoalStatus.EXCLUDED, GoalStatus.MET) is Way.BROKEN
+    assert way(GoalStatus.IMPOSSIBLE, GoalStatus.IMPOSSIBLE) is Way.NONE
+    assert way(GoalStatus.IMPOSSIBLE, GoalStatus.EXCLUDED) is Way.EXCLUDED
 
 
 def test_what_was_not_searched_is_not_known() -> None:
-    assert way(Met.NOT_SEARCHED, Met.MET) is None
-    assert way(Met.IMPOSSIBLE, Met.NOT_SEARCHED) is None
-    assert directions(suite(Met.MET, Met.MET), {"R1": "1" * 64}) == {}
+    assert way(GoalStatus.NOT_SEARCHED, GoalStatus.MET) is None
+    assert way(GoalStatus.IMPOSSIBLE, GoalStatus.NOT_SEARCHED) is None
+    assert directions(suite(GoalStatus.MET, GoalStatus.MET), {"R1": "1" * 64}) == {}
 
 
 def test_steps_tell_what_changes_of_the_names_in_the_sentence() -> None:
@@ -74,8 +74,12 @@ def test_steps_tell_what_changes_of_the_names_in_the_sentence() -> None:
 def test_complete_is_what_no_run_could_make_more_complete() -> None:
     covered = coverage(evidence(of_run("a", {key: 1 for key in KEYS if key != "late"})))
     assert not is_complete(covered, {})
-    for kept, complete in ((Met.MET, False), (Met.NOT_SEARCHED, False), (Met.IMPOSSIBLE, True)):
-        known = directions(suite(kept, Met.IMPOSSIBLE), {"R1": SHA})
+    for kept, complete in (
+        (GoalStatus.MET, False),
+        (GoalStatus.NOT_SEARCHED, False),
+        (GoalStatus.IMPOSSIBLE, True),
+    ):
+        known = directions(suite(kept, GoalStatus.IMPOSSIBLE), {"R1": SHA})
         assert is_complete(covered, known) is complete
         assert [*unseen(covered, known)] == ([] if complete else [("R1", "late")])
     nothing = coverage(evidence(of_run("a", None)))

@@ -24,7 +24,7 @@ from compiler.formalization.reference import (
 )
 from compiler.targets.python.monitor import text as monitor_text
 from fretc.play.starts import Start, Ticks, of_suite
-from fretc.testing.exports.files import Form, files
+from fretc.testing.exports.files import SuiteFormat, files
 from fretc.testing.reader import read
 from fretc.testing.suite import Suite
 from monitors.kernel.tables import placed_rows
@@ -254,7 +254,7 @@ def test_saved_tests_pass_with_the_monitor_and_give_the_trace_again(
     suite = read(str(path))
     assert isinstance(suite, Suite)
     assert [test.requirement for test in suite.tests] == ["R1", "R2"]
-    made, left = files(suite, requirements, Form.PYTEST)
+    made, left = files(suite, requirements, SuiteFormat.PYTEST)
     assert not left
     folder = tmp_path / "tests"
     folder.mkdir()

@@ -31,8 +31,8 @@ diagnostics = st.lists(
 def test_errors_are_never_shortened_and_each_warning_counts(given_: list[Diagnostic]) -> None:
     printed: list[str] = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(output, "say_line", printed.append)
-        output.say_briefly(given_, "requirements")
+        patch.setattr(output, "print_status", printed.append)
+        output.print_project_diagnostics(given_, "requirements")
     text = "\n".join(printed)
     counted = 0
     for each in given_:

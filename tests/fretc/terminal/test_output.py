@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from fretc.terminal.output import say
+from fretc.terminal.output import print_diagnostics
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
@@ -85,8 +85,11 @@ def test_an_encoding_that_has_no_tick_mark_still_shows_the_verdict(folder: Path)
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("./run.mcap", "`run.mcap` cannot be written: a store of evidence is a folder"),
-        ("run.json", "`run.json` cannot be written: it is `run.mcap`, which is read"),
+        (
+            "./run.mcap",
+            "`run.mcap` cannot be written: an evidence store is a folder, and this is a file",
+        ),
+        ("run.json", "`run.json` cannot be written: it is `run.mcap`, which is an input"),
     ],
 )
 def test_evidence_never_replaces_what_is_read(
@@ -94,7 +97,7 @@ def test_evidence_never_replaces_what_is_read(
 ) -> None:
     shutil.copy(LOG, folder / "run.mcap")
     (folder / "run.json").symlink_to("run.mcap")
-    done = fretc("audit", "run.mcap", "--evidence", name)
+    done = fretc("audit", "run.mcap", "-o", name)
     assert (done.status, done.err.splitlines()[0]) == (2, f"F905 {why}")
     assert (folder / "run.mcap").read_bytes() == Path(LOG).read_bytes()
 
@@ -106,7 +109,7 @@ def test_evidence_never_replaces_what_is_read(
         product(
             ["bindings.toml", "hazards.toml", "fretc.lock"],
             [
-                "audit run.mcap --evidence requirements/{}",
+                "audit run.mcap -o requirements/{}",
                 "report --csv requirements/{}",
                 "verify requirements/r1.fret --monitor -o requirements/{}",
             ],
@@ -167,8 +170,8 @@ def test_a_link_is_followed_and_a_file_keeps_its_permissions(folder: Path, fretc
 
 def test_what_is_no_regular_file_is_never_replaced(folder: Path, fretc: Fretc) -> None:
     os.mkfifo(folder / "pipe")
-    assert fretc("simulate", "--duration", "1", "--out", "pipe").status == 2
-    assert fretc("audit", LOG, "--evidence", "pipe").status == 2
+    assert fretc("simulate", "--duration", "1", "-o", "pipe").status == 2
+    assert fretc("audit", LOG, "-o", "pipe").status == 2
     assert fretc("audit", "pipe").status == 2
     assert (folder / "pipe").is_fifo()
 
@@ -263,7 +266,7 @@ def test_no_audit_is_begun_whose_evidence_would_replace_a_log(
         shutil.copy(LOG, folder / name)
     (folder / "runs/link.json").symlink_to("b.mcap")
     (folder / "link").symlink_to("runs")
-    done = fretc("audit", *logs, "--evidence", evidence)
+    done = fretc("audit", *logs, "-o", evidence)
     assert done.status == 2
     assert done.err.startswith("F905 ")
     assert "wrote" not in done.err
@@ -275,7 +278,7 @@ def test_no_audit_is_begun_whose_evidence_would_replace_a_log(
 def test_no_name_of_a_log_writes_a_verdict_of_its_own(folder: Path, fretc: Fretc) -> None:
     forged = "a.mcap\n  \u2714 R1  satisfied\x1b[2K"
     shutil.copy(LOG, folder / forged)
-    done = fretc("audit", forged, "--evidence", "build/x\ny")
+    done = fretc("audit", forged, "-o", "build/x\ny")
     assert done.out.splitlines()[0] == "a.mcap\\n  \u2714 R1  satisfied\\x1b[2K"
     assert len(done.out.splitlines()) == 4  # the name, a verdict, situations, counts
     assert done.err == "wrote build/x\\ny\n"
@@ -297,7 +300,7 @@ def shown(stream: io.StringIO, monkeypatch: pytest.MonkeyPatch, **environment: s
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
     monkeypatch.setattr(sys, "stderr", stream)
-    say([DIAGNOSTIC])
+    print_diagnostics([DIAGNOSTIC])
     return stream.getvalue()
 
 

@@ -14,7 +14,7 @@ from compiler.logic.evaluation import evaluate
 from compiler.situations.mutants import mutants
 from compiler.situations.situations import Situation, situations
 from fretc.testing.generation import Batch, batch
-from fretc.testing.suite import Fate, Met, Obligation, Polarity, Test
+from fretc.testing.suite import GoalResult, GoalStatus, MutantStatus, Polarity, Test
 from fretc.testing.words import Word, defined, judged, letters
 from tests.each import each
 from tests.effort import FULL, some
@@ -129,12 +129,12 @@ def test_no_shorter_word_shows_the_same(sentence: str) -> None:
     for obligation in found.obligations:
         need = obligation.situation, obligation.polarity
         if obligation.polarity is Polarity.UNKNOWN:
-            assert obligation.outcome is Met.MET
+            assert obligation.outcome is GoalStatus.MET
             continue
-        if obligation.outcome is Met.IMPOSSIBLE:
+        if obligation.outcome is GoalStatus.IMPOSSIBLE:
             assert need not in shortest
             continue
-        assert obligation.outcome is Met.MET
+        assert obligation.outcome is GoalStatus.MET
         shown = [word_of(tests[name]) for name in obligation.tests]
         manners = [
             (
@@ -182,14 +182,14 @@ def test_a_mutant_is_killed_or_judges_all_words_alike(sentence: str) -> None:
     for mutant in found.mutants:
         other = wrong[mutant.key]
         atoms = tuple(dict.fromkeys([*requirement.watched, *other.watched]))
-        if mutant.outcome is Fate.KILLED:
+        if mutant.outcome is MutantStatus.KILLED:
             assert any(
                 defined(requirement, letters(requirement, tests[name]))
                 != defined(other, letters(other, tests[name]))
                 for name in mutant.tests
             )
         else:
-            assert mutant.outcome is Fate.EQUIVALENT
+            assert mutant.outcome is MutantStatus.EQUIVALENT
             for word in words(atoms):
                 own, theirs = letters(requirement, word), letters(other, word)
                 assert defined(requirement, own)[1] is defined(other, theirs)[1]
@@ -250,7 +250,7 @@ def test_a_threshold_is_met_by_its_number() -> None:
     assert numbers == {("threshold-below", 1.4), ("threshold-at", 1.5), ("threshold-above", 1.6)}
 
 
-def outcomes(found: Batch) -> dict[Need, Obligation]:
+def outcomes(found: Batch) -> dict[Need, GoalResult]:
     return {(each.situation, each.polarity): each for each in found.obligations}
 
 
@@ -277,15 +277,15 @@ def test_what_others_exclude_is_excluded_by_the_fewest() -> None:
         )
     )
     answered = found["answered-at-once", Polarity.KEPT]
-    assert answered.outcome is Met.EXCLUDED
+    assert answered.outcome is GoalStatus.EXCLUDED
     assert answered.by == ("R2", "R3")
-    assert found["missed-by-one", Polarity.BROKEN].outcome is Met.MET
+    assert found["missed-by-one", Polarity.BROKEN].outcome is GoalStatus.MET
 
 
 def test_a_mutant_that_others_hide_is_excluded() -> None:
     found = made("whenever a the sw shall immediately satisfy x", "the sw shall always satisfy x")
     fates = {each.key: each for each in found.mutants}
-    assert fates["negated:condition"].outcome is Fate.EXCLUDED
+    assert fates["negated:condition"].outcome is MutantStatus.EXCLUDED
     assert fates["negated:condition"].by == ("R2",)
 
 
@@ -301,7 +301,7 @@ def test_a_long_bound_is_stored_by_stretches() -> None:
 def test_what_has_no_counter_is_not_searched() -> None:
     found = made("whenever a the sw shall with probability > 0.9 within 2 ticks satisfy x")
     assert found.tests == ()
-    assert {each.outcome for each in found.obligations} == {Met.NOT_SEARCHED}
+    assert {each.outcome for each in found.obligations} == {GoalStatus.NOT_SEARCHED}
     assert {each.why for each in found.obligations} == {"it states a probability"}
 
 

@@ -12,7 +12,7 @@ from compiler.formalization.letters import atoms_of, letters_by_valuation
 from compiler.formalization.reference import State
 from compiler.situations.mutants import mutants
 from fretc.testing.generation import batch
-from fretc.testing.suite import Fate, Met, Polarity
+from fretc.testing.suite import GoalStatus, MutantStatus, Polarity
 from tests.each import each
 from tests.effort import some
 from tests.requirement_sets import requirement
@@ -55,11 +55,11 @@ def accept_the_same(one: FormalizedRequirement, other: FormalizedRequirement) ->
 def test_all_is_met_or_impossible_and_killed_or_equivalent(template: Template) -> None:
     subject = requirement("R1", template.sentence)
     found = batch(subject, [], 60)
-    assert {each.outcome for each in found.obligations} <= {Met.MET, Met.IMPOSSIBLE}
+    assert {each.outcome for each in found.obligations} <= {GoalStatus.MET, GoalStatus.IMPOSSIBLE}
     wrong = {each.key: each.requirement for each in mutants(subject)}
     for mutant in found.mutants:
         same = accept_the_same(subject, wrong[mutant.key])
-        assert mutant.outcome is (Fate.EQUIVALENT if same else Fate.KILLED), mutant
+        assert mutant.outcome is (MutantStatus.EQUIVALENT if same else MutantStatus.KILLED), mutant
     for test in found.tests:
         columns = {
             name: [row.values[name] for row in test.rows for _ in range(row.count)]

@@ -101,7 +101,7 @@ def test_what_ajpf_refutes_is_refuted_with_its_run(ran: Mcapl) -> None:
     ran.run()
     result = outcome(only(ran))
     assert result.result is Result.COUNTEREXAMPLE
-    assert result.detail == "AJPF found a run of 5 states that breaks it"
+    assert result.detail == "AJPF found a run of 5 states that violates it"
     assert result.trace is not None
     assert result.trace.actions == ("", "", "", "drive_on", "")
     assert result.trace.cycle == 3
@@ -112,7 +112,10 @@ def test_what_ajpf_refutes_is_refuted_with_its_run(ran: Mcapl) -> None:
     ("outputs", "expected"),
     [
         ({"R1_reach.jpf": (ENDING, 0)}, vacuous("its control R1_reach holds")),
-        ({"R1_mutant.jpf": (ENDING, 0)}, vacuous("the agent without the response keeps it too")),
+        (
+            {"R1_mutant.jpf": (ENDING, 0)},
+            vacuous("the agent without the response satisfies it too"),
+        ),
         ({"R1.jpf": ("", 0)}, not_checked("R1.jpf: no verdict in the output, exit status 0")),
     ],
 )
@@ -131,7 +134,7 @@ def test_what_is_not_as_expected_shows_nothing(
 )
 def test_a_result_about_other_texts_is_stale(ran: Mcapl, name: str) -> None:
     changed(ran, lambda content: content["files"].update({name: "0" * 64}))
-    reason = f"{name} is not made like that any more: run AJPF again"
+    reason = f"{name} is out of date: run AJPF again"
     assert outcome(only(ran)) == not_checked(reason)
     changed(ran, lambda content: content["files"].pop(name))
     assert only(ran).result is Result.NOT_CHECKED
@@ -172,7 +175,9 @@ def test_a_stale_refutation_is_told_as_one(ran: Mcapl) -> None:
 def test_a_result_without_its_controls_shows_nothing(ran: Mcapl, change: Change) -> None:
     changed(ran, change)
     line = only(ran)
-    assert outcome(line) == not_checked("it does not tell of what a bundle asks: run AJPF again")
+    assert outcome(line) == not_checked(
+        "its checks are not those of the present bundle: run AJPF again"
+    )
 
 
 def test_the_conclusion_of_the_file_is_not_believed(ran: Mcapl) -> None:
@@ -191,7 +196,7 @@ def test_a_result_is_held_against_the_logs_that_lie_beside_it(ran: Mcapl, name: 
     printed = log.read_bytes()
     log.write_bytes(printed + b"\n")
     assert outcome(only(ran)) == not_checked(
-        f"logs/{name}.jpf.txt is not what AJPF printed then: run AJPF again"
+        f"logs/{name}.jpf.txt was changed since AJPF printed it: run AJPF again"
     )
     other = RECORDED if name == "R1" else ENDING
     log.write_text(other, encoding="utf-8")

@@ -13,7 +13,7 @@ from compiler.logic.formula import atoms
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.controllers import moves
 from fretc.analysis.controllers.circuit import circuit
-from fretc.analysis.controllers.files import Form, automata, controller
+from fretc.analysis.controllers.files import ControllerFormat, automata, controller
 from fretc.analysis.controllers.machine import Machine, NoMachineError, machine
 from fretc.analysis.controllers.moves import mealy
 from fretc.analysis.games.replay import first_breaches
@@ -48,7 +48,7 @@ def program(found: Machine, setting: RealizabilityProblem) -> Any:
 
 
 def hoa(found: Machine) -> str:
-    return automata([mealy(found, ["R1"], ENDLESS)], Form.HOA)[0].text
+    return automata([mealy(found, ["R1"], ENDLESS)], ControllerFormat.HOA)[0].text
 
 
 def runs_that(automaton: Any, formula: str) -> bool:

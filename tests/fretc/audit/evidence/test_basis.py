@@ -766,7 +766,7 @@ def test_nobody_reviews_on_a_day_to_come(reviewed: Fretc) -> None:
     run = reviewed("lock", *BY[:-1], "3000-01-01")
     assert (run.status, run.err.splitlines()[0]) == (
         2,
-        "F907 `3000-01-01` is still to come, and nobody can have reviewed then",
+        "F907 `3000-01-01` is in the future: a review cannot have happened yet",
     )
 
 

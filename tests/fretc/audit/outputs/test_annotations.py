@@ -240,7 +240,7 @@ def test_nothing_is_written_where_something_cannot_be(fretc: Fretc) -> None:
 
 
 def test_evidence_is_not_lost_to_an_annotation(fretc: Fretc) -> None:
-    run = fretc("audit", "run.mcap", "--annotations", "x", "--evidence", "x/run.fretc.mcap")
+    run = fretc("audit", "run.mcap", "--annotations", "x", "-o", "x/run.fretc.mcap")
     assert run.status == 2
     assert run.err.startswith("F905 `x/run.fretc.mcap` cannot be written: ")
     assert Path("x/run.fretc.mcap/manifest.json").exists()

@@ -274,7 +274,7 @@ def test_a_summary_has_two_forms(fretc: Fretc, results: list[dict[str, Any]]) ->
     run = fretc("audit", "--summary", "runs.parquet", "--format", "junit")
     assert (run.status, run.err.splitlines()[0]) == (
         2,
-        "F907 a summary cannot be printed as `junit`",
+        "F907 a summary has no output format `junit`",
     )
 
 

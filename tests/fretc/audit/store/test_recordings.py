@@ -262,11 +262,11 @@ def test_samples_are_kept_beside_evidence_of_this_machine(
         (["-o", "-"], "evidence is printed\nhelp: name a file with `-o`"),
         (
             ["--engine", "dask"],
-            "`--engine dask` reads the logs elsewhere\nhelp: leave out one of the two",
+            "`--engine dask` reads the logs elsewhere\nhelp: remove one of the two options",
         ),
     ):
         run = fretc("audit", log, "--keep-columns", *options)
         assert run.status == 2
         assert run.err.endswith(
-            f"F907 `--keep-columns` keeps samples beside the evidence of this machine, and {why}\n"
+            f"F907 `--keep-columns` stores samples beside the evidence on this machine, but {why}\n"
         )

@@ -450,5 +450,5 @@ def test_no_form_goes_where_a_log_is(reported: Fretc) -> None:
     write("logs/a.mcap", "a log")
     run = reported("report", "--html", "logs/a.mcap")
     assert run.status == 2
-    assert "F905 `logs/a.mcap` cannot be written: it is `logs/a.mcap`, which is read" in run.err
+    assert "F905 `logs/a.mcap` cannot be written: it is `logs/a.mcap`, which is an input" in run.err
     assert Path("logs/a.mcap").read_text() == "a log"

@@ -27,7 +27,7 @@ WRONG = {
     "F941 longer": f'say("x" * {2 * LONGEST_LINE}); time.sleep(60)',
     "F942 within": "time.sleep(60)",
     "F942 no line": 'say("x,speed"); time.sleep(60)',
-    "F943 status 3; its last words: boom": 'print("boom", file=sys.stderr); sys.exit(3)',
+    "F943 status 3; its last output: boom": 'print("boom", file=sys.stderr); sys.exit(3)',
     "F943 status 0": 'read(); say("x,speed"); read()',
     "F943 signal 9": 'say("x,speed"); read(); read(); os.kill(os.getpid(), 9)',
     "F943 closed": "os.close(1); time.sleep(60)",

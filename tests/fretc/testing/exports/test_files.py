@@ -19,7 +19,7 @@ from compiler.files.records import replace
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.testing.assembly import suite
 from fretc.testing.exports import simulator
-from fretc.testing.exports.files import INDEX, Form, files
+from fretc.testing.exports.files import INDEX, SuiteFormat, files
 from fretc.testing.exports.pytest_file import Language
 from fretc.testing.generation import Batch, batch
 from fretc.testing.suite import Polarity, Suite
@@ -60,7 +60,10 @@ def made(*sentences: str) -> tuple[Suite, tuple[FormalizedRequirement, ...]]:
 
 
 def written(
-    folder: Path, form: Form, *sentences: str, languages: Sequence[Language] = (Language.PYTHON,)
+    folder: Path,
+    form: SuiteFormat,
+    *sentences: str,
+    languages: Sequence[Language] = (Language.PYTHON,),
 ) -> tuple[Suite, tuple[FormalizedRequirement, ...]]:
     found, every = made(*sentences)
     artifacts, _ = files(found, every, form, languages)
@@ -97,7 +100,7 @@ def by_pytest(folder: Path) -> subprocess.CompletedProcess[str]:
 @pytest.mark.slow
 @each("sentence", SENTENCES)
 def test_emitted_tests_pass(sentence: str, tmp_path: Path) -> None:
-    found, _ = written(tmp_path, Form.PYTEST, sentence)
+    found, _ = written(tmp_path, SuiteFormat.PYTEST, sentence)
     text = (tmp_path / "test_r1.py").read_text()
     assert len(re.findall(r"^def test_", text, re.MULTILINE)) == len(found.tests)
     assert failures(tmp_path / "test_r1.py") == []
@@ -105,7 +108,7 @@ def test_emitted_tests_pass(sentence: str, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_long_bounds_stay_short(tmp_path: Path) -> None:
-    found, _ = written(tmp_path, Form.PYTEST, SENTENCES[3])
+    found, _ = written(tmp_path, SuiteFormat.PYTEST, SENTENCES[3])
     assert max(test.ticks for test in found.tests) > LONG
     assert len((tmp_path / "test_r1.py").read_text()) < 40000
 
@@ -117,7 +120,7 @@ def test_no_file_of_a_test_is_that_of_a_monitor_and_pytest_runs_them_from_anywhe
     """The tests of `x_monitor` are in `test_x_monitor.py`, and so is the monitor of `test_x`."""
     every = formalized(SENTENCES[0], "x_monitor"), formalized(SENTENCES[2], "test_x")
     found = suite(every, (), [batch(each, (), 60) for each in every])
-    artifacts, _ = files(found, every, Form.PYTEST)
+    artifacts, _ = files(found, every, SuiteFormat.PYTEST)
     assert len({each.path for each in artifacts}) == len(artifacts) == 4
     for artifact in artifacts:
         (tmp_path / artifact.path).write_text(artifact.text)
@@ -132,7 +135,7 @@ def test_no_file_of_a_test_is_that_of_a_monitor_and_pytest_runs_them_from_anywhe
 def test_no_table_of_a_test_is_the_index() -> None:
     found, every = made(SENTENCES[0])
     named = replace(found, tests=(replace(found.tests[0], name="tests"), *found.tests[1:]))
-    artifacts, left = files(named, every, Form.CSV)
+    artifacts, left = files(named, every, SuiteFormat.CSV)
     assert len({each.path for each in artifacts}) == len(artifacts)
     assert left == {"tests": "`tests.csv` is the table of all tests"}
 
@@ -178,7 +181,7 @@ def judgements(text: str) -> list[object]:
 
 @pytest.mark.slow
 def test_a_wrong_monitor_fails(tmp_path: Path) -> None:
-    written(tmp_path, Form.PYTEST, SENTENCES[0])
+    written(tmp_path, SuiteFormat.PYTEST, SENTENCES[0])
     path = tmp_path / "r1_monitor.py"
     right = path.read_text()
     expected = judgements(right)
@@ -198,7 +201,7 @@ needs_both = needs("cc", "node")
 def test_one_file_steps_monitors_in_three_languages(tmp_path: Path) -> None:
     """Two of them in one process, each with a library of its own."""
     sentences = SENTENCES[:3] if FULL else SENTENCES[1:2]
-    found, _ = written(tmp_path, Form.PYTEST, *sentences, *SHORT, languages=ALL)
+    found, _ = written(tmp_path, SuiteFormat.PYTEST, *sentences, *SHORT, languages=ALL)
     ran = by_pytest(tmp_path)
     assert ran.returncode == 0, ran.stdout
     assert f"{len(found.tests)} passed" in ran.stdout
@@ -224,7 +227,7 @@ def test_a_wrong_monitor_fails_in_its_language(
 ) -> None:
     """Anyone who of the three it is, and where it cannot be run."""
     name, old, new, reason = wrong
-    written(tmp_path, Form.PYTEST, SENTENCES[0], languages=ALL)
+    written(tmp_path, SuiteFormat.PYTEST, SENTENCES[0], languages=ALL)
     path = tmp_path / name
     right = path.read_text()
     assert re.search(old, right), old
@@ -242,7 +245,7 @@ def test_a_wrong_monitor_fails_in_its_language(
 @each("sentence", SENTENCES[:3])
 def test_tables_are_read_by_the_monitor(sentence: str, tmp_path: Path) -> None:
     """Each ends with the verdict that the index states."""
-    written(tmp_path, Form.CSV, sentence)
+    written(tmp_path, SuiteFormat.CSV, sentence)
     with (tmp_path / INDEX).open(newline="") as lines:
         rows = [*csv.DictReader(lines)]
     assert rows
@@ -262,7 +265,7 @@ def test_a_number_that_is_known_at_some_ticks_alone_is_no_column_of_the_simulato
     tmp_path: Path,
 ) -> None:
     """A proposition of the bindings has numbers only where some make it so."""
-    found, (rule,) = written(tmp_path, Form.FRET, SENTENCES[0])
+    found, (rule,) = written(tmp_path, SuiteFormat.FRET, SENTENCES[0])
     test = next(each for each in found.tests if len(each.rows) > 1)
     for place in range(len(test.rows)):
         rows = [replace(row, values={**row.values, "number": 1.0}) for row in test.rows]
@@ -274,7 +277,7 @@ def test_a_number_that_is_known_at_some_ticks_alone_is_no_column_of_the_simulato
 
 @pytest.mark.slow
 def test_traces_of_the_simulator_have_its_form(tmp_path: Path) -> None:
-    found, _ = written(tmp_path, Form.FRET, *SENTENCES[:3])
+    found, _ = written(tmp_path, SuiteFormat.FRET, *SENTENCES[:3])
     traces = json.loads((tmp_path / "ltlsim.json").read_text())
     shown = [test for test in found.tests if test.polarity is not Polarity.UNKNOWN]
     assert [known["traceID"] for known in traces] == [test.name for test in shown]

@@ -79,8 +79,8 @@ def test_what_is_about_another_sentence_is_left_out(made: Made) -> None:
 
 
 FAULTS: dict[str, tuple[str, Callable[[Any], object]]] = {
-    "a place outside": ("cannot name a test", lambda t: t.update(name="../../x")),
-    "a line break": ("cannot name a test", lambda t: t.update(name="x\n")),
+    "a place outside": ("is not a valid name for a test", lambda t: t.update(name="../../x")),
+    "a line break": ("is not a valid name for a test", lambda t: t.update(name="x\n")),
     "a value that is not there": ("lacks values of `", lambda t: t["rows"][0].update(values={})),
     "a number for a truth value": (
         "cannot be 1",
@@ -91,7 +91,7 @@ FAULTS: dict[str, tuple[str, Callable[[Any], object]]] = {
         lambda t: t["rows"][0]["values"].update(battery=True, near="x"),
     ),
     "a truth that its numbers do not have": (
-        "expects what the monitor does not say|lacks",
+        "expects another result than the monitor gives|lacks",
         lambda t: [
             row["values"].update({"(battery < 20)": None, "near": None}) for row in t["rows"]
         ],
@@ -103,10 +103,13 @@ FAULTS: dict[str, tuple[str, Callable[[Any], object]]] = {
         ],
     ),
     "another verdict": (
-        "expects what the monitor does not say",
+        "expects another result than the monitor gives",
         lambda t: t.update(verdict="no data"),
     ),
-    "another tick": ("expects what the monitor does not say", lambda t: t.update(decided=77)),
+    "another tick": (
+        "expects another result than the monitor gives",
+        lambda t: t.update(decided=77),
+    ),
     "too many ticks": ("more than 1000000 ticks", lambda t: t["rows"][0].update(count=2**40)),
 }
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from fretc.testing.exports.files import Form
+from fretc.testing.exports.files import SuiteFormat
 from fretc.testing.exports.self_test import NAME
 from tests import meaning
 from tests.c_monitors import CHECKED, STRICT
@@ -50,7 +50,7 @@ def first_failing(folder: Path) -> int:
 @pytest.mark.slow
 def test_it_passes_without_a_warning_or_undefined_behaviour(tmp_path: Path) -> None:
     sentences = (*SENTENCES[:3], *SHORT, *OTHERS) if FULL else (SENTENCES[1], *SHORT, *OTHERS[1:3])
-    suite, _ = written(tmp_path, Form.C, *sentences)
+    suite, _ = written(tmp_path, SuiteFormat.C, *sentences)
     text = (tmp_path / NAME).read_text()
     numbers = [int(number) for number in re.findall(r"^    /\* (\d+) r\d+-", text, re.MULTILINE)]
     assert numbers == [*range(1, len(suite.tests) + 1)]
@@ -63,14 +63,16 @@ def test_it_passes_without_a_warning_or_undefined_behaviour(tmp_path: Path) -> N
 @each("scope", meaning.SCOPES)
 def test_it_passes_for_every_template(scope: str, tmp_path_factory: pytest.TempPathFactory) -> None:
     folder = tmp_path_factory.mktemp(scope)
-    written(folder, Form.C, *(each.sentence for each in templates((2,)) if each.scope == scope))
+    written(
+        folder, SuiteFormat.C, *(each.sentence for each in templates((2,)) if each.scope == scope)
+    )
     assert first_failing(folder) == 0
 
 
 @pytest.mark.slow
 @each("cc", [("gcc", "-m32"), ("clang",), ("g++", "-x", "c++", "-std=c++17")])
 def test_it_compiles_without_a_library(cc: tuple[str, ...], tmp_path: Path) -> None:
-    written(tmp_path, Form.C, *OTHERS)
+    written(tmp_path, SuiteFormat.C, *OTHERS)
     name, *flags = cc
     strict = [flag for flag in STRICT if "g++" not in name or not flag.startswith("-std")]
     command = [installed(name), *flags, *strict, *_BARE, "-c", str(NAME)]
@@ -88,7 +90,7 @@ def test_it_compiles_without_a_library(cc: tuple[str, ...], tmp_path: Path) -> N
 
 @pytest.mark.slow
 def test_its_main_tells_by_its_status(tmp_path: Path) -> None:
-    written(tmp_path, Form.C, OTHERS[0])
+    written(tmp_path, SuiteFormat.C, OTHERS[0])
     path = built(tmp_path, "gcc", "-std=c99", "-DFRETC_SELF_TEST_MAIN", main="")
     assert subprocess.run([path], check=False).returncode == 0
     spoil(tmp_path, 1)
@@ -107,7 +109,7 @@ def spoil(folder: Path, number: int) -> None:
 
 @pytest.mark.slow
 def test_it_gives_the_number_of_the_test_that_fails(tmp_path: Path) -> None:
-    suite, _ = written(tmp_path, Form.C, *SENTENCES[:2])
+    suite, _ = written(tmp_path, SuiteFormat.C, *SENTENCES[:2])
     for number in some((len(suite.tests), len(suite.tests) // 2, 1), 2):
         spoil(tmp_path, number)
         assert first_failing(tmp_path) == number
@@ -127,7 +129,7 @@ FAULTS = (
 
 @pytest.mark.slow
 def test_a_wrong_monitor_fails(tmp_path: Path) -> None:
-    written(tmp_path, Form.C, OTHERS[0])
+    written(tmp_path, SuiteFormat.C, OTHERS[0])
     path = tmp_path / "r1_monitor.c"
     right = path.read_text()
     assert first_failing(tmp_path) == 0

@@ -10,7 +10,7 @@ from compiler.project.folder import load
 from compiler.project.project import Project
 from fretc.analysis.assumptions import assumptions
 from fretc.testing.assembly import jobs, suite
-from fretc.testing.log_synthesis.logs import StagedTest, logs
+from fretc.testing.log_synthesis.logs import LogTestResult, logs
 from tests.effort import some
 
 BINDINGS = """
@@ -71,7 +71,7 @@ expr = "nameless > 1"
 """
 
 
-def staged(sentence: str, folder: Path) -> list[StagedTest]:
+def staged(sentence: str, folder: Path) -> list[LogTestResult]:
     """What becomes of the tests of a sentence."""
     project = read(sentence, folder)
     assumed, _ = assumptions(project.formalized, project.declarations)
@@ -120,9 +120,9 @@ def test_what_looks_back_has_ticks_before_the_test(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("torn", "what is unknown in it counts as known"),
+        ("torn", "it turns unknown values into known ones"),
         ("faster", "reads numbers of the tick before"),
-        ("unnamed", "the binding of `nameless` names no type of message"),
+        ("unnamed", "the binding of `nameless` names no message type"),
     ],
 )
 def test_what_messages_cannot_bring_about_is_refused_in_words(

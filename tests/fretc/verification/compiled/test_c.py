@@ -33,7 +33,7 @@ def test_a_header_of_another_form_is_refused(edit: tuple[str, str]) -> None:
 
 
 def test_a_compiler_that_writes_nothing_is_none() -> None:
-    with pytest.raises(ToolError, match=r"compiles it, and writes no `text\.so`"):
+    with pytest.raises(ToolError, match=r"compiles it, but writes no `text\.so`"):
         compiled("/bin/true", (), {"text.c": ""}, [()], "text.so")
 
 

@@ -233,7 +233,7 @@ def test_what_a_requirement_does_not_speak_of_has_no_part_in_it(
     checked = tongue.language.checked(edited(monitor, edits.since, edits.foreign), requirements)
     checked.plan(other)
     with pytest.raises(
-        UnexpectedLayoutError, match="R1 depends on what its sentence does not speak of"
+        UnexpectedLayoutError, match="R1 depends on names that its sentence does not mention"
     ):
         checked.plan(one)
 

@@ -202,13 +202,13 @@ WHOLE = HEAD + row(3) + row(5)
 @each(
     "case",
     [
-        (HEAD + row(3), SUMMARY, "", "says nothing of 1 assertions"),
-        (HEAD, SUMMARY, "", "says nothing of 2 assertions"),
+        (HEAD + row(3), SUMMARY, "", "gives no result for 1 assertions"),
+        (HEAD, SUMMARY, "", "gives no result for 2 assertions"),
         ("", SUMMARY, "", "not laid out"),
         (WHOLE + "x\n", SUMMARY, "", "not laid out"),
         (HEAD.replace("status", "state") + row(3) + row(5), SUMMARY, "", "not laid out"),
         (WHOLE.replace("\t5\t", "\tx\t"), SUMMARY, "", "not laid out"),
-        (HEAD + row(3) + row(3), SUMMARY, "", "says nothing of 1 assertions, and 1 more"),
+        (HEAD + row(3) + row(3), SUMMARY, "", "gives no result for 1 assertions, and 1 more"),
         (HEAD + row(3) + row(5, "Unknown"), SUMMARY, "", "user assertion: unknown"),
         (HEAD + row(3) + row(5, "Dead"), SUMMARY, "", "user assertion: dead"),
         (HEAD + row(3) + row(5, "Considered valid"), SUMMARY, "", "considered valid"),
@@ -271,7 +271,7 @@ def test_a_monitor_in_python_is_none_in_c(
     result = fretc("verify", "r1.fret", "--file", "build/r1_monitor.py", "--with", "frama-c")
     assert result.status == 2
     assert "F907" in result.err
-    assert "takes a monitor in C" in result.err
+    assert "needs a monitor in C" in result.err
 
 
 @needs_frama_c

@@ -86,15 +86,15 @@ def test_lines_that_debians_z3_adds_do_not_matter(dafny: Fake) -> None:
         ("sleep 60", "Dafny did not finish within 2 s"),
         (
             f'echo "{FINISHED} 1 verified, 0 errors"',
-            "Dafny verified 1 parts, and the file has at least 2",
+            "Dafny verified 1 parts, but the file has at least 2",
         ),
         (
             f'echo "{FINISHED} 2 verified, 0 errors"; exit 4',
-            "Dafny tells of 0 errors, and its exit status is 4",
+            "Dafny reports 0 errors, and its exit status is 4",
         ),
         (
             f'echo "{FINISHED} 1 verified, 1 error"',
-            "Dafny tells of 1 errors, and its exit status is 0",
+            "Dafny reports 1 errors, and its exit status is 0",
         ),
         (
             f'echo "{FINISHED} 2 verified, 0 errors, 1 time out"',
@@ -139,7 +139,7 @@ def test_dafny_2_is_asked_in_its_own_way(dafny: Fake) -> None:
 
 def test_a_program_without_a_version_is_not_dafny(dafny: Fake) -> None:
     answer = dafny.says(f'echo "{FINISHED} 2 verified, 0 errors"', version="Dafny")
-    assert answer == not_checked("`dafny` tells no version: it is not Dafny")
+    assert answer == not_checked("`dafny` prints no version: it is not Dafny")
 
 
 def test_without_dafny_nothing_is_known_and_what_to_do_is_said(
@@ -427,7 +427,7 @@ def test_velocities_that_nobody_looks_into_are_whole_numbers_for_crosshair() -> 
     (proof,) = with_crosshair(KEEPING, seconds=10)
     assert outcome(proof) == proved("confirmed over all paths")
     assert proof.assumptions == (
-        "the numbers of a velocity are whole; no function names one of them",
+        "the fields of a velocity are integers; no function reads one of them",
     )
 
 

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from fretc.verification.engines.sandbox import DEFAULT, Limits, Session, Stopped, confined
+from fretc.verification.engines.sandbox import DEFAULT, Limits, NoResult, Session, confined
 from tests.effort import full_only
 
 
@@ -51,7 +51,7 @@ def die() -> None:
 @pytest.mark.slow
 def test_time_on_the_wall_is_limited(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Limits, "wall", 0.7)
-    assert confined(DEFAULT, sleep) == Stopped("out of time: no answer within 0.7 s")
+    assert confined(DEFAULT, sleep) == NoResult("out of time: no answer within 0.7 s")
     assert multiprocessing.active_children() == []
 
 
@@ -77,20 +77,20 @@ def work(seconds: float) -> tuple[int, float]:
 def test_calls_of_a_session_share_a_process_and_each_has_its_limits() -> None:
     with Session(Limits(seconds=1, memory=2**30)) as session:
         session.call(pretend, 0.0)
-        assert session.call(spin) == Stopped("out of time: more than 1 s of a processor")
+        assert session.call(spin) == NoResult("out of time: more than 1 CPU seconds")
         assert session.call(twice, 21) == 42
         session.call(pretend, 41.5)
         first, second = session.call(limit), session.call(limit)
         assert first == second
-        assert not isinstance(first, Stopped)
+        assert not isinstance(first, NoResult)
         assert first[1] == 43, "counted from what was taken before the call"
         with pytest.raises(ValueError, match="no"):
             session.call(fail)
         with pytest.raises(RuntimeError, match="LocalError: no"):
             session.call(fail_with_what_cannot_be_sent)
-        assert session.call(fill) == Stopped("out of memory: more than 1 GiB")
+        assert session.call(fill) == NoResult("out of memory: more than 1 GiB")
         crashed = "the process crashed (signal 11); it may have had too little memory"
-        assert session.call(die) == Stopped(crashed)
+        assert session.call(die) == NoResult(crashed)
         assert session.call(twice, 4) == 8
     assert multiprocessing.active_children() == []
 
@@ -98,9 +98,9 @@ def test_calls_of_a_session_share_a_process_and_each_has_its_limits() -> None:
 @full_only("CPU seconds")
 def test_the_limit_is_counted_from_what_was_taken_before_the_call() -> None:
     with Session(Limits(seconds=1)) as session:
-        assert session.call(spin) == Stopped("out of time: more than 1 s of a processor")
+        assert session.call(spin) == NoResult("out of time: more than 1 CPU seconds")
         answers = [session.call(work, seconds) for seconds in (0, 1.2, 0)]
-    found = [each for each in answers if not isinstance(each, Stopped)]
+    found = [each for each in answers if not isinstance(each, NoResult)]
     assert len(found) == 3, answers
     assert len({process for process, _ in found}) == 1
     assert all(0.9 < left < 2.1 for _, left in found[::2]), "before the work, and after it"

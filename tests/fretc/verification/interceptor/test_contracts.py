@@ -36,7 +36,7 @@ PAPER = Interception("/stop", "/cmd_vel", "/wheels", form=InterceptorForm.EVENT,
 OPTIONS = Options(2, 3, 2, 3)
 EMITTED = text(NODE, "bindings.toml")
 
-FIRST = "at first no stop is in force"
+FIRST = "initially no stop is in force"
 SETS = "each message of the safety function sets the stop or clears it"
 LATCHES = "each message of the safety function sets the stop, and no message clears it"
 PASSES = "each command is passed on unchanged, or is zero where the robot must stand"
@@ -89,8 +89,9 @@ def test_the_emitted_interceptor_keeps_every_contract() -> None:
     assert {outcome(e) for e in proofs} == {proved("225 states, 1125 steps")}
     assert {e.layer for e in proofs} == {Layer.INTERCEPTOR}
     assert proofs[0].assumptions == (
-        "the ROS node hands every message to the core, one at a time, and publishes what it says",
-        "the timer rings at every period in [interceptor]",
+        "the ROS node passes every message to the core, one at a time, and publishes the core's "
+        "output",
+        "the timer expires at every period in [interceptor]",
     )
 
 
@@ -100,7 +101,7 @@ def test_the_papers_interceptor_keeps_its_own() -> None:
         FIRST, LATCHES, PASSES, STOPPED, FOR_EVER, NOTHING_ELSE, ONLY_THEN, RANGE,
     ]  # fmt: skip
     assert refuted(proofs) == set()
-    assert proofs[0].assumptions[1:] == ("no silence is noticed: form = event in [interceptor]",)
+    assert proofs[0].assumptions[1:] == ("silence is not detected: form = event in [interceptor]",)
 
 
 @pytest.mark.slow
@@ -267,7 +268,7 @@ def test_a_state_has_fields_by_which_states_are_told_apart() -> None:
     changed = mutant(
         ("@dataclass(frozen=True, slots=True)\nclass State:", "class State(NamedTuple):")
     )
-    assert reason(changed) == ("its core is not as fretc can read it: `class State(NamedTuple):`")
+    assert reason(changed) == ("fretc cannot read its core: `class State(NamedTuple):`")
 
 
 def test_a_latch_that_releases_is_told() -> None:
@@ -378,7 +379,7 @@ def test_a_core_that_may_not_be_pure_is_not_executed(case: tuple[str, str, str])
     if "HOLD" in new:
         changed = mutant((SCANNED, "    return replace(state, held=HOLD.hold), None"), of=changed)
     message = reason(changed)
-    assert message.startswith("its core is not as fretc can read it: ")
+    assert message.startswith("fretc cannot read its core: ")
     assert why in message or not new
     with pytest.raises(NotAnInterceptorError) as refused:
         InterceptorMachine(changed, interceptor_options())
@@ -414,13 +415,13 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
             f"return replace(after, held=command), {PASSED[14:]}",
             "its state has a command in the place of a number",
         ),
-        (SCANNED, "    return state.command", "a step gives no state and command"),
-        ("hold=2", "hold=3", "its options are not those that are declared"),
+        (SCANNED, "    return state.command", "a step returns no state and command"),
+        ("hold=2", "hold=3", "its options differ from the declared options"),
         (SCANNED, "    return replace(state, age=0), None", "a step fails: TypeError"),
-        (SCANNED, "    return None", "a step gives no state and command"),
+        (SCANNED, "    return None", "a step returns no state and command"),
         (GROWS, "stop_age=state.stop_age + 1", f"it has more than {MOST} states"),
-        ("    held: int\n", "    hold: int\n", "its core is not as fretc can read it"),
-        ("def halted(", "def halted((", "it is no Python"),
+        ("    held: int\n", "    hold: int\n", "fretc cannot read its core"),
+        ("def halted(", "def halted((", "it is not valid Python"),
     ],
 )
 def test_where_nothing_can_be_said_the_reason_is(case: tuple[str, str, str]) -> None:

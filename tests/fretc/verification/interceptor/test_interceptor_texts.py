@@ -296,7 +296,10 @@ def test_a_node_that_differs_in_anything_is_not_the_one_that_is_declared(
     old: str, new: str
 ) -> None:
     deviation = otherwise(sub(old, new), DECLARED)
-    assert deviation == "its node is not one that fretc writes for these bindings: emit it again"
+    assert (
+        deviation
+        == "its node is not the one that fretc generates for these bindings: emit it again"
+    )
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ import pytest
 from compiler.logic.claims import Result, not_checked, proved
 from fretc.verification.loop import abstraction as looptwin
 from fretc.verification.loop import bounds
-from fretc.verification.loop.abstraction import Numbers, Plain, Times, covered
+from fretc.verification.loop.abstraction import Plain, Times, TwinState, covered
 from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.bounds import Answer, Question, search
 from fretc.verification.loop.model import Loop
@@ -37,7 +37,7 @@ def test_a_bound_that_is_long_enough() -> None:
     assert answer.answered.result is Result.PROVED
     assert answer.answered.detail.startswith("by an inductive invariant; ")
     assert answer.enough == proved(
-        "the least that is kept is 4 ticks (400 ms); with one tick less a run of 5 ticks "
+        "the smallest satisfied bound is 4 ticks (400 ms); with one tick less a run of 5 ticks "
         "violates it"
     )
 
@@ -47,7 +47,7 @@ def test_a_bound_that_is_a_tick_too_short_is_shown_by_a_run() -> None:
     answer = search(question(WITHIN.format(3)))
     assert answer.answered.result is Result.PROVED, "the law holds all the same"
     assert answer.enough.result is Result.COUNTEREXAMPLE
-    assert answer.enough.detail == "the least that is kept is 4 ticks (400 ms)"
+    assert answer.enough.detail == "the smallest satisfied bound is 4 ticks (400 ms)"
     assert answer.enough.trace is not None
     assert len(answer.enough.trace.rows) == 5
 
@@ -72,7 +72,7 @@ def test_the_least_bound_is_the_one_that_is_proved(channel: Channel, least: int)
     answer = search(question(EVENTUALLY, interceptor_options(), channel))
     plural = "" if least == 1 else "s"
     assert answer.enough == proved(
-        f"the least that is kept is {least} tick{plural} ({least * 100} ms)"
+        f"the smallest satisfied bound is {least} tick{plural} ({least * 100} ms)"
     )
 
 
@@ -81,7 +81,7 @@ def test_a_loop_that_does_something_else_is_not_checked() -> None:
     wrong = edited(
         CORE, "return after, ZERO if halted(after, options) else command", "return after, command"
     )
-    reason = not_checked("the loop does what its model in whole numbers does not")
+    reason = not_checked("the loop has a step that its integer model does not have")
     assert search(question(WITHIN.format(4), core=wrong)) == Answer(reason, reason)
 
 
@@ -137,10 +137,10 @@ def test_a_twin_whose_heart_beats_too_fast_is_found() -> None:
 
 @pytest.mark.slow
 def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
-    def too_strong(at: Numbers, times: Times, bound: object, logic: Plain) -> object:
+    def too_strong(at: TwinState, times: Times, bound: object, logic: Plain) -> object:
         return logic.both(real(at, times, bound, logic), at.open <= 0)
 
     real = bounds._invariant
     monkeypatch.setattr(bounds, "_invariant", too_strong)
     answer = search(question(EVENTUALLY, interceptor_options(), Channel(1)))
-    assert answer.answered == not_checked("of the invariant: a step does not keep it")
+    assert answer.answered == not_checked("of the invariant: a step does not preserve it")

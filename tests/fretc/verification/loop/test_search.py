@@ -80,7 +80,7 @@ def test_a_heartbeat_repairs_what_is_lost_on_change_only() -> None:
         "001-01 a stop is requested, and the message is sent again, and lost",
         "001-01 a stop is requested, and no message is sent",
         "001-01 a stop is requested, and no message is sent",
-        "001110 a stop is requested, and the message is sent again; `true` is heard",
+        "001110 a stop is requested, and the message is sent again; `true` is received",
     ]
 
 
@@ -104,8 +104,8 @@ def test_a_heartbeat_of_one_tick_speaks_at_every_tick() -> None:
 def test_the_latch_of_the_paper_lets_the_wheels_turn_where_the_planner_falls_silent() -> None:
     results = search(case(WITHIN.format(2), LATCH, EDGE))
     assert trace(results.kept) == [
-        "010-01 no stop is requested; a command to move is heard",
-        "101111 a stop is requested, and the message is sent; `true` is heard",
+        "010-01 no stop is requested; a command to move is received",
+        "101111 a stop is requested, and the message is sent; `true` is received",
         "001-11 a stop is requested, and no message is sent",
         "001-11 a stop is requested, and no message is sent",
     ]
@@ -114,8 +114,8 @@ def test_the_latch_of_the_paper_lets_the_wheels_turn_where_the_planner_falls_sil
 def test_without_a_bound_that_run_has_no_end() -> None:
     kept = search(case(EVENTUALLY, LATCH, EDGE)).kept
     assert trace(kept) == [
-        "010-01 no stop is requested; a command to move is heard",
-        "101111 a stop is requested, and the message is sent; `true` is heard",
+        "010-01 no stop is requested; a command to move is received",
+        "101111 a stop is requested, and the message is sent; `true` is received",
         "001-11 a stop is requested, and no message is sent",
     ]
     assert kept.result is Result.COUNTEREXAMPLE
@@ -133,7 +133,7 @@ def test_a_loop_that_loses_two_messages_keeps_a_bound_of_three() -> None:
     assert trace(search(case(WITHIN.format(2), TIMER, lossy)).kept)[1:] == [
         "101-01 a stop is requested, and the message is lost",
         "001-01 a stop is requested, and the message is lost",
-        "001110 a stop is requested, and the message is sent; `true` is heard",
+        "001110 a stop is requested, and the message is sent; `true` is received",
     ]
 
 
@@ -179,15 +179,15 @@ def test_a_watchdog_stops_a_robot_for_good_where_silence_is_normal() -> None:
 FORWARDS = "return after, ZERO if halted(after, options) else command"
 SCANNED = "return replace(state, scan_age=0), None"
 KEEPS = "command=command, command_age=0"
-LOOKS = "it looks into a command: what is shown with one would not hold for all"
-UNREADABLE = "its core is not as fretc can read it"
+LOOKS = "it reads the content of a command: a proof with one command would not hold for all"
+UNREADABLE = "fretc cannot read its core"
 
 
 def test_an_interceptor_that_forwards_while_it_is_stopped_is_refuted() -> None:
     wrong = edited(CORE, FORWARDS, "return after, command")
     kept = search(case(WITHIN.format(2), core=wrong)).kept
     assert kept.result == "counterexample"
-    assert "`true` is heard" in trace(kept)[1]
+    assert "`true` is received" in trace(kept)[1]
 
 
 def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
@@ -205,7 +205,11 @@ def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
     [
         (FORWARDS, "return after, ZERO if command.vx > 1 else command", LOOKS),
         (SCANNED, f"print(state)\n    {SCANNED}", f"{UNREADABLE}: `print(state)`"),
-        (SCANNED, f"{SCANNED[:-4]}Velocity(1.0)", "it makes a velocity that it has not heard"),
+        (
+            SCANNED,
+            f"{SCANNED[:-4]}Velocity(1.0)",
+            "it publishes a velocity that it has not received",
+        ),
         (
             SCANNED,
             "after = replace(state, command=ZERO)\n    return (after, ZERO) if after == state "
@@ -213,7 +217,7 @@ def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
             LOOKS,
         ),
         (FORWARDS, "return (after, None) if after == state else (after, command)", LOOKS),
-        (SCANNED, "return state.command", "a step gives no state and command"),
+        (SCANNED, "return state.command", "a step returns no state and command"),
         (KEEPS, f"stop=command, {KEEPS}", LOOKS),
         (KEEPS, f"held=command, {KEEPS}", LOOKS),
         ("def halted(", "def stopped(", "its core has no `halted`"),

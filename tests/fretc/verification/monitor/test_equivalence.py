@@ -283,7 +283,9 @@ def test_what_is_proved_is_equal_and_what_is_equal_is_proved(changes: Steps) -> 
 )
 def test_predicates_about_other_ticks_are_left(text: str, predicate: str) -> None:
     result = compare(within(0), read(text), 0, ("p", "q"))
-    assert result == f"`{predicate}` speaks of other ticks, and the automaton knows one"
+    assert (
+        result == f"`{predicate}` refers to other ticks, and the automaton reads one tick at a time"
+    )
 
 
 def test_thirteen_propositions_are_too_many() -> None:

@@ -22,7 +22,7 @@ from tests.strategies import Template, few_templates, templates
 WITHIN = "whenever p the sw shall within 3 ticks satisfy q"
 FOR = "when p the sw shall for 3 ticks satisfy q"
 LAYOUT = "it is not laid out as fretc writes it"
-RUNTIME = "the run time in it is not the one of this version of fretc"
+RUNTIME = "its runtime part is not the one of this version of fretc"
 
 
 def check(sentence: str, text: str | None = None, limit: int = 10**6) -> Outcome:
@@ -50,12 +50,12 @@ def reason(outcome: Outcome) -> str:
 
 SIZES = re.compile(
     r"the same at every tick of every trace \((\d+) states, (\d+) steps\); "
-    r"columns agree on (\d+) drawn ticks"
+    r"its column program agrees on (\d+) random ticks"
 )
 
 
 def sizes(outcome: Outcome) -> tuple[int, ...]:
-    """Of a proof: states, steps, and drawn ticks."""
+    """Of a proof: states, steps, and random ticks."""
     assert outcome.result is Result.PROVED, outcome
     match = SIZES.match(outcome.detail)
     assert match is not None
@@ -250,7 +250,7 @@ def test_the_trace_of_a_disagreement_names_the_atoms_in_their_order() -> None:
 
 def test_predicates_about_other_ticks_are_not_checked() -> None:
     why = reason(check("whenever occurred(3, p) the sw shall satisfy q"))
-    assert why == "`occurred` speaks of other ticks, and the automaton knows one"
+    assert why == "`occurred` refers to other ticks, and the automaton reads one tick at a time"
 
 
 @pytest.mark.slow
@@ -268,7 +268,7 @@ def test_more_states_than_the_limit_are_not_checked() -> None:
 
 def test_a_monitor_of_other_requirements_is_not_checked() -> None:
     outcome = verified(requirement(WITHIN, "R2"), emitted(WITHIN))
-    assert reason(outcome) == "the monitor is of other requirements"
+    assert reason(outcome) == "the monitor is for other requirements"
 
 
 @pytest.mark.parametrize(
@@ -510,13 +510,13 @@ def test_a_time_bomb_goes_off_where_it_is_not_looked_at(what: str) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("x = 1\n", "names no"),
-        ("", "names no"),
-        ("def f(:\n", "no Python"),
-        ("raise SystemExit(0)\n", "names no"),
-        ("import nothing_of_that_name\n", "names no"),
-        ("MONITOR = 3\n", "names no"),
-        ("x = '\0'\n", "no Python"),
+        ("x = 1\n", "defines no"),
+        ("", "defines no"),
+        ("def f(:\n", "not valid Python"),
+        ("raise SystemExit(0)\n", "defines no"),
+        ("import nothing_of_that_name\n", "defines no"),
+        ("MONITOR = 3\n", "defines no"),
+        ("x = '\0'\n", "not valid Python"),
     ],
 )
 def test_what_is_no_monitor_is_told(text: str, message: str) -> None:

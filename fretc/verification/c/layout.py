@@ -1,9 +1,9 @@
-"""Whether a monitor in C has the form that fretc writes, read off its text before anything runs.
+"""Check that a monitor in C has the layout that fretc writes, before anything runs.
 
-The header, the types and the functions that lead to the step are token for token those of fretc.
-What the step and the first state do may be changed, within statements that give one cell, signal
-or local truth value to an expression of such. They have no call, no loop, no pointer and no address
-of their own, so they reach no memory but that of the one rail, and a step depends on nothing else.
+The header, the types and the functions that lead to the step must equal those of fretc token for
+token. The body of the step and the initial state may differ, within statements that assign an
+expression to one cell, signal or local truth value. Such statements have no call, loop, pointer or
+address, so they access only the memory of the rail, and a step depends on nothing else.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise, zip_longest
 
-from fretc.verification.compiled.flow import Flow, Form, Grammar
+from fretc.verification.compiled.flow import CheckedLayout, Flow, Grammar
 from fretc.verification.compiled.text import (
     NAME,
     Lexis,
@@ -26,7 +26,7 @@ from fretc.verification.compiled.text import (
 
 LEXIS = Lexis(
     re.compile(
-        r"(?!<:|:>|<%|%>|%:|\?\?)"  # other spellings of brackets, braces, operators and `#`
+        r"(?!<:|:>|<%|%>|%:|\?\?)"  # Alternative spellings of brackets, braces, operators and `#`.
         r"(?:(?P<gap>[ \t\r\n]+|/\*.*?\*/)"
         r"|#[^\n]*|[A-Za-z_]\w*|\d\w*|\"C\"|->|\+\+|--|&&|\|\||<<=?|>>=?|"
         r"[-+*/%&|^<>=!]=|[-+*/%<>=!&|~?:;,.(){}\[\]])",
@@ -34,8 +34,8 @@ LEXIS = Lexis(
     ),
     re.compile(r"\\\s*\n|\?\?/|\r(?!\n)"),
 )
-"""A directive ends with its line, so it is one token. What changes a value within an expression
-(`--`, `>>=`) is one, too: as two signs it would look like harmless ones."""
+"""A directive ends with its line, so it is one token. Operators that change a value within an
+expression (`--`, `>>=`) are one token, too, so that they are not read as two harmless ones."""
 _SIGNS = frozenset("! & | && || < <= > >= == != + - ? : ( ) true false".split())
 _KEPT = frozenset(
     """
@@ -43,9 +43,9 @@ _KEPT = frozenset(
     const bool uint32_t UINT32_C true false fretc_reading
     """.split()
 )
-"""Parameters, which stand before `->` only; and words of C."""
+"""Parameters, which occur only before `->`; and keywords of C."""
 _POINTED = frozenset("* [ <<".split())
-"""Only what fretc writes for rings, and where it declares `reading`, has these."""
+"""Pointers are allowed only in the ring code of fretc, and in its declaration of `reading`."""
 
 
 _POINTER = re.compile(r"\w+ -> ")
@@ -53,18 +53,20 @@ _SUM = re.compile(r"(?:^|(?<=[?:] ))(?P<open>\( )?(?!\d+ . \d)\w+ [+-] \w+(?(ope
 _NEGATIVE = re.compile(r"(?:^|(?<=[?:=(] ))- \d+\b")
 
 
-def formed(text: str, written: str, base: str, cells: Sequence[str], inputs: Sequence[str]) -> Form:
-    """The form of a text of a C file.
+def check_layout(
+    text: str, written: str, base: str, cells: Sequence[str], inputs: Sequence[str]
+) -> CheckedLayout:
+    """The parsed layout of a C file.
 
     Args:
-        text: it.
-        written: what fretc writes for the same requirements.
-        base: what the names of its functions begin with.
-        cells: the members of the struct of a rail.
-        inputs: those of the struct of inputs.
+        text: text of the file.
+        written: text that fretc writes for the same requirements.
+        base: prefix of the function names.
+        cells: members of the rail's struct.
+        inputs: members of the inputs' struct.
 
     Raises:
-        UnexpectedLayoutError: it has another form.
+        UnexpectedLayoutError: the layout differs.
     """
     given, own = LEXIS.tokens(text), LEXIS.tokens(written)
     free = ((f"{base}_clear",), (f"{base}_advance",))
@@ -78,16 +80,16 @@ def formed(text: str, written: str, base: str, cells: Sequence[str], inputs: Seq
     step = _Step(known, cells, literals)
     for statement in _statements(stepped):
         step.read(statement)
-    return Form(step.sources, literals)
+    return CheckedLayout(step.sources, literals)
 
 
 def without_comments(text: str) -> str:
-    """A text in this form, with blanks for comments: each statement keeps its line."""
+    """The text with blanks in place of comments, so that each statement keeps its line."""
     return re.sub(r"/\*.*?\*/", lambda comment: re.sub(r".", " ", comment[0]), text, flags=re.S)
 
 
 def _statements(body: Tokens) -> Iterator[Tokens]:
-    """Up to each semicolon and brace; an `else` stands with the brace that it comes after."""
+    """Statements up to each semicolon or brace; an `else` belongs to the preceding brace."""
     start, depth = 0, 0
     for place, token in enumerate(body):
         depth += {"(": 1, ")": -1}.get(token, 0)
@@ -100,9 +102,9 @@ def _statements(body: Tokens) -> Iterator[Tokens]:
 
 
 def _same_cells(cleared: Tokens, own: Tokens) -> None:
-    """Raises UnexpectedLayoutError where not each cell gets a first value, in the order of fretc.
+    """Raise UnexpectedLayoutError unless each cell gets a first value, in the order of fretc.
 
-    What has none depends on what the memory held before: no exploration tries all of that.
+    A cell without a first value depends on earlier memory, which no exploration covers.
     """
     given, written = [*_statements(cleared)], [*_statements(own)]
     for actual, expected in zip_longest(given, written, fillvalue=()):
@@ -114,7 +116,7 @@ def _same_cells(cleared: Tokens, own: Tokens) -> None:
 
 
 def _is_first_value(statement: Tokens) -> bool:
-    """Whether it gives a constant to a cell."""
+    """Whether the statement assigns a constant to a cell."""
     match statement:
         case ("rail", "->", name, "=", *value, ";"):
             return bool(NAME.fullmatch(name)) and is_constant(value)
@@ -128,12 +130,12 @@ class _Step(Flow):
     def __init__(
         self, known: frozenset[Tokens], cells: Sequence[str], literals: Mapping[str, int]
     ) -> None:
-        """Nothing is read yet.
+        """A step without statements.
 
         Args:
-            known: the statements that fretc writes.
-            cells: all of a rail.
-            literals: all of them.
+            known: statements that fretc writes.
+            cells: all cells of a rail.
+            literals: all literals.
         """
         self._known = known
         self._rings = {a for each in known for a, b in pairwise(each) if b == "["}
@@ -143,10 +145,10 @@ class _Step(Flow):
         self._outcome = ""
 
     def read(self, statement: Tokens) -> None:
-        """One more statement.
+        """Read one more statement.
 
         Raises:
-            UnexpectedLayoutError: it is of no form that is known to be harmless.
+            UnexpectedLayoutError: it has no known harmless form.
         """
         if not (self._branch(statement) or self._assignment(statement) or self._fixed(statement)):
             raise strange(statement)
@@ -154,11 +156,12 @@ class _Step(Flow):
     def names(self, value: Sequence[str], statement: Sequence[str]) -> frozenset[str]:
         """The names in an expression.
 
-        A sum is the whole value, or what a condition chooses for it. An operand that overflows may
-        be dropped by a compiler before it looks for overflows, as of `x + 1 - 1` or of `x + 1 > x`.
+        A sum must be the whole value, or an alternative of a condition. Within a larger expression
+        a compiler may drop an overflowing operand before it checks for overflows, as in `x + 1 - 1`
+        or `x + 1 > x`.
 
         Raises:
-            UnexpectedLayoutError: there is anything else in it.
+            UnexpectedLayoutError: the expression contains anything else.
         """
         text = _NEGATIVE.sub("", _POINTER.sub("", " ".join(value)))
         for each in _SUM.finditer(text):
@@ -198,7 +201,7 @@ class _Step(Flow):
                 return False
 
     def _fixed(self, statement: Tokens) -> bool:
-        """What is as fretc writes it: the outcome that is reported next, and rings."""
+        """The fixed statements: the reported outcome, and rings."""
         if statement not in self._known:
             return False
         match statement:
@@ -210,7 +213,7 @@ class _Step(Flow):
             case _:
                 names = frozenset(filter(_is_free, statement))
                 left = statement[: statement.index("=")] if "=" in statement else ()
-                # What points to a ring changes it, and is changed with it.
+                # A pointer to a ring counts as a change of the ring.
                 local = statement[2:3] if statement[:2] == ("const", "bool") else ()
                 self.known(names, names & {*left, *self._rings}, local)
                 return True

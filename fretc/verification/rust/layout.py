@@ -1,9 +1,10 @@
-"""Whether a monitor in Rust has the form that fretc writes, read off its text before rustc does.
+"""Check that a monitor in Rust has the layout that fretc writes, before rustc reads it.
 
-All but the first values of cells and the body of `advance` are token for token those of fretc, and
-so is `forbid(unsafe_code)`. In `advance` a statement gives one cell or local truth value to an
-expression of such; the last one makes the readings of such. There is no call, no macro and no loop,
-so neither the compiler nor the step runs anything else, and a step depends on nothing else.
+All tokens except the first values of cells and the body of `advance` must equal those of fretc,
+including `forbid(unsafe_code)`. In `advance` a statement assigns an expression to one cell or local
+truth value; the last one builds the readings from such expressions. There is no call, no macro and
+no loop, so neither the compiler nor the step runs anything else, and a step depends on nothing
+else.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import re
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
-from fretc.verification.compiled.flow import Flow, Form, Grammar
+from fretc.verification.compiled.flow import CheckedLayout, Flow, Grammar
 from fretc.verification.compiled.text import (
     NAME,
     Lexis,
@@ -35,33 +36,33 @@ LEXIS = Lexis(
     ),
     re.compile(r"\r(?!\n)"),
 )
-"""`/*` is no gap: such comments may hold others."""
+"""`/*` is not skipped, because such comments can be nested."""
 _SIGNS = frozenset("! & | && || < <= > >= == != + - ( ) { } if else true false".split())
 _KEPT = frozenset("self Self now true false if else let mut ref Reading None".split())
 _FREE: tuple[Tokens, ...] = (("const", "fn", "new"), ("fn", "advance"))
 _READ = re.compile(r"(\w+) : inputs \. (\w+) == Some")
 _DEADLINE = (("u32 :: try_from (", "("), (") . ok ( )", ")"), ("None", "0"))
-"""What only the ticks to a deadline have, and expressions that depend on the same."""
+"""Tokens and expressions that occur only for the ticks to a deadline."""
 
 
-def formed(
+def check_layout(
     text: str,
     written: str,
     cells: Sequence[str],
     inputs: Sequence[str],
     outcomes: Sequence[str],
-) -> Form:
-    """The form of a text of a library.
+) -> CheckedLayout:
+    """The parsed layout of a library.
 
     Args:
-        text: it.
-        written: what fretc writes for the same requirements.
-        cells: the fields of a rail.
-        inputs: those of the inputs.
-        outcomes: those of the outcomes.
+        text: text of the library.
+        written: text that fretc writes for the same requirements.
+        cells: fields of a rail.
+        inputs: fields of the inputs.
+        outcomes: fields of the outcomes.
 
     Raises:
-        UnexpectedLayoutError: it has another form.
+        UnexpectedLayoutError: the layout differs.
     """
     given, own = LEXIS.tokens(text), LEXIS.tokens(written)
     outside, (first, stepped) = split(given, _FREE)
@@ -77,11 +78,11 @@ def formed(
         step.read(statement)
     head = ("Reading", "{")
     step.tell(outcomes, records(last, head), records(readings, head), _of_deadline)
-    return Form(step.sources, literals)
+    return CheckedLayout(step.sources, literals)
 
 
 def _statements(body: Tokens) -> list[Tokens]:
-    """Heads of branches up to their brace, others up to the semicolon; what is left is the last."""
+    """Heads of branches up to their brace, other statements to the semicolon; then the rest."""
     found, start = list[Tokens](), 0
     while start < len(body):
         end = _end(body, start)
@@ -91,7 +92,7 @@ def _statements(body: Tokens) -> list[Tokens]:
 
 
 def _end(body: Tokens, start: int) -> int:
-    """The last token of the statement, or the end of the body."""
+    """Last token of the statement, or the end of the body."""
     if body[start] != "if" and body[start] != "}":
         return end_of(body, start, ";")
     if body[start] == "}" and body[start + 1 : start + 2] != ("else",):
@@ -105,12 +106,12 @@ class _Step(Flow):
     def __init__(
         self, known: frozenset[Tokens], cells: Sequence[str], literals: Mapping[str, int]
     ) -> None:
-        """Nothing is read yet.
+        """A step without statements.
 
         Args:
-            known: the statements that fretc writes.
-            cells: all of a rail.
-            literals: all of them.
+            known: statements that fretc writes.
+            cells: all cells of a rail.
+            literals: all literals.
         """
         self._known = known
         self._rings = {a for each in known for a, b in pairwise(each) if b == "["}
@@ -119,10 +120,10 @@ class _Step(Flow):
         super().__init__(Grammar(members, _SIGNS, _KEPT))
 
     def read(self, statement: Tokens) -> None:
-        """One more statement.
+        """Read one more statement.
 
         Raises:
-            UnexpectedLayoutError: it is of no form that is known to be harmless.
+            UnexpectedLayoutError: it has no known harmless form.
         """
         if not (self._branch(statement) or self._fixed(statement) or self._assignment(statement)):
             raise strange(statement)
@@ -151,7 +152,7 @@ class _Step(Flow):
                 return False
 
     def _fixed(self, statement: Tokens) -> bool:
-        """Of a ring, as fretc writes it: its bits, and its place."""
+        """Fixed statements of a ring: its bits, and its index."""
         names = frozenset(name for name in statement if _is_free(name))
         rings = {name for name in names if name.removesuffix("_at") in self._rings}
         if statement not in self._known or not rings:
@@ -166,7 +167,7 @@ def _is_free(name: str) -> bool:
 
 
 def _of_deadline(name: str, value: Tokens) -> Tokens:
-    """The value, without what only the ticks to a deadline have."""
+    """The value, without the parts that only the ticks to a deadline have."""
     words = " ".join(value)
     for special, plain in _DEADLINE if name == "left" else ():
         words = words.replace(special, plain)

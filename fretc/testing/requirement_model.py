@@ -1,7 +1,7 @@
-"""A requirement under test among others: its counters, and shortest words of them.
+"""A requirement under test with related requirements: its counters, and shortest runs.
 
-All variables are chosen freely: a test is a run, not a play. The others are kept at every tick, and
-so that they can be kept for ever after it; the requirement itself may be broken.
+All variables are chosen freely: a test is a run, not a game. The other requirements are satisfied
+at every tick, and can be satisfied for ever afterwards; the requirement under test may be violated.
 """
 
 from __future__ import annotations
@@ -35,20 +35,20 @@ Ids = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """What a sentence says of the run up to a tick, over a state and a letter."""
+    """Signals of a sentence for the run up to a tick, over a state and a valuation."""
 
     breaks: Function
-    """A demand is broken here, and none before."""
+    """The requirement is violated at this tick, and not before."""
     broken: Function
-    """A demand is broken, here or before."""
+    """The requirement is violated at this tick or before."""
     accepts: Function
-    """FRET's verdict, were the run to end here."""
+    """FRET's verdict if the run ended here."""
     owes: Function
-    """A demand is open, if none is broken."""
+    """An obligation is open, without a violation."""
 
 
-class Bench:
-    """One requirement, and those whose variables hang together with its own."""
+class RequirementModel:
+    """A requirement under test, and those that share variables with it, directly or indirectly."""
 
     def __init__(
         self,
@@ -58,14 +58,14 @@ class Bench:
         budget: Budget,
         fresh: Numbers | None = None,
     ) -> None:
-        """The bench.
+        """The model.
 
         Args:
             requirement: the requirement under test.
-            others: requirements and assumptions that its tests keep.
-            more: sentences whose atoms belong to the letters, too.
-            budget: for all searches.
-            fresh: variables, where their order matters.
+            others: requirements and assumptions that its tests satisfy.
+            more: further sentences whose atoms belong to the valuations.
+            budget: time limit for all searches.
+            fresh: variables, if their order matters.
 
         Raises:
             UnsupportedError: the requirement has no counter.
@@ -77,7 +77,7 @@ class Bench:
         self._shared: dict[Function, Bit] = {}
         alphabet = alphabet_of(every, roles, self._fresh, Role.OUTPUT, of_moments=True)
         self.beyond: dict[str, str] = {}
-        """Why another requirement has no counter, by its id."""
+        """Id of another requirement without a counter → the reason."""
         self._counters: dict[str, Counter] = {}
         for each in near_each_other([requirement, *others]):
             try:
@@ -93,15 +93,13 @@ class Bench:
             except UnsupportedError as error:
                 if each not in others:
                     raise
-                raise UnsupportedError(
-                    f"its tests have to keep {each.id}, and there {error}"
-                ) from None
+                raise UnsupportedError(f"its tests must satisfy {each.id}, but {error}") from None
         numbers_before = alphabet.memory()
         self._always = () if numbers_before is None else (numbers_before,)
         self.alphabet = Fixed(alphabet)
         self._letters = (*self.alphabet.inputs, *self.alphabet.outputs)
         self._quiet = frozenset(self._asked(requirement))
-        self.others: Ids = tuple(each.id for each in others if each.id in self._counters)
+        self.others: Ids = tuple(other.id for other in others if other.id in self._counters)
         self._memory = Memory(self._fresh, self._shared)
         self._past = Past(self.alphabet.atom, self._memory)
         self._own = self._judged(
@@ -112,17 +110,17 @@ class Bench:
         self._ends = cache(self._endings)
 
     def _asked(self, requirement: FormalizedRequirement) -> Iterator[int]:
-        """The variables of condition, response and stop condition."""
+        """Variables of condition, response and stop condition."""
         whole = demands(requirement)
         for part in (whole.trigger, whole.demand.response, whole.demand.stop):
             for name in atoms(part):
                 yield from bdd.support(self.alphabet.atom(name))
 
     def order(self) -> Numbers:
-        """Variables for another bench like this one, once all goals are known.
+        """Variables for another model like this one, once all goals are known.
 
-        What goals count and what the requirement counts stand side by side: they are compared, and
-        two long counts one after the other need as many nodes for that as they have values.
+        The counts of goals are adjacent to those of the requirement, because they are compared:
+        with two long counts one after the other, the diagrams need a node for each value.
         """
         words = [*self._counters[self.requirement.id].words, *self._memory.words]
         return side_by_side(words, next(self._fresh))
@@ -130,7 +128,7 @@ class Bench:
     # Situations
 
     def goal(self, formula: Formula) -> Function:
-        """A formula of the past, over a state and a letter; all goals come before all searches.
+        """A formula of the past, over a state and a valuation; all goals come before all searches.
 
         Raises:
             UnsupportedError: it looks ahead, or too far back.
@@ -140,15 +138,15 @@ class Bench:
     def shortest(
         self, goal: Function, polarity: Polarity, kept: Ids, *, at_end: bool
     ) -> tuple[Letter, ...] | None:
-        """A shortest word by the goal that keeps or breaks the requirement; None: there is none.
+        """A shortest run through the goal with the given polarity; None: there is none.
 
         Args:
-            goal: of `goal`.
-            at_end: whether only the last tick of the word counts for the goal.
-            polarity: a word that keeps it ends with nothing open, or, where that cannot be, where
-                it may end; one that breaks it ends as it breaks it, or, where that cannot be, after
-                that, or where it may not end.
-            kept: ids of the others that it keeps.
+            goal: a result of `goal`.
+            at_end: whether only the last tick of the run counts for the goal.
+            polarity: a satisfying run ends without an open obligation or, if impossible, where it
+                may end; a violating run ends with the violation or, if impossible, after it, or
+                where it may not end.
+            kept: ids of the other requirements that it satisfies.
 
         Raises:
             OutOfTimeError: it takes too long.
@@ -182,7 +180,7 @@ class Bench:
     # Two sentences side by side
 
     def difference(self, mutant: FormalizedRequirement, kept: Ids) -> tuple[Letter, ...] | None:
-        """A shortest word that the requirement accepts and the mutant does not, or the reverse.
+        """A shortest run that the requirement accepts and the mutant does not, or the reverse.
 
         None: there is none.
 
@@ -200,15 +198,15 @@ class Bench:
     def doubt_of(
         self, goal: Function, atom: str, kept: Ids
     ) -> tuple[tuple[Letter, ...], int] | None:
-        """A shortest word whose verdict depends on an atom at one tick of the goal, and that tick.
+        """A shortest run whose verdict depends on an atom at one tick of the goal, and that tick.
 
-        The sentence is judged twice, the second time with the opposite value of the atom there.
+        The sentence is evaluated twice, the second time with the opposite value of the atom there.
         None: there is none.
 
         Args:
-            goal: of `goal`.
-            atom: of the sentence.
-            kept: ids of others that the word keeps, with the first value.
+            goal: a result of `goal`.
+            atom: an atom of the sentence.
+            kept: ids of other requirements that the run satisfies, with the first value.
 
         Raises:
             OutOfTimeError: it takes too long.
@@ -234,7 +232,7 @@ class Bench:
     def _beside(
         self, requirement: FormalizedRequirement, alphabet: Alphabet, memory: Memory
     ) -> tuple[Judgement, Counter]:
-        """What another sentence says of a run, and its bits."""
+        """Signals of another sentence for a run, and its bits."""
         theirs = counter(requirement, alphabet, self._fresh, memory.shared)
         judged = self._judged(theirs, requirement, Past(alphabet.atom, memory), memory)
         bits = _of_memory(memory)
@@ -260,7 +258,7 @@ class Bench:
         letters: tuple[int, ...] = (),
         safe: Function | None = None,
     ) -> tuple[Words, Function]:
-        """The words that keep some counters, and the ticks after which these can last."""
+        """Runs that satisfy some counters, and the ticks after which this can last for ever."""
         runs, lasting = self._kept(kept, with_rule)
         counters = [self._counters[id] for id in (self.requirement.id, *kept)]
         memory = _of_memory(self._memory)
@@ -271,7 +269,7 @@ class Bench:
         return words, transition.moved(lasting)
 
     def _keeping(self, kept: Ids, with_rule: bool) -> tuple[Runs, Function]:
-        """The runs that keep some counters, and the states from which they last for ever."""
+        """Runs that satisfy some counters, and the states from which this can last for ever."""
         ids = (*kept, self.requirement.id) if with_rule else kept
         counters = [*(self._counters[id] for id in ids), *self._always]
         runs = Runs(self.alphabet, counters, self.budget)
@@ -279,12 +277,12 @@ class Bench:
 
     @property
     def doubt(self) -> str:
-        """Why letters may be more than there can be; empty: they are not."""
+        """Why some valuations may be impossible; empty: all are possible."""
         return self.alphabet.doubts.get(Role.OUTPUT, "")
 
 
 def demands(requirement: FormalizedRequirement) -> Obligation:
-    """What a requirement demands, as formulas of the past over what letters tell."""
+    """Demands of a requirement, as formulas of the past over valuations."""
     return obligation(requirement.sentence, requirement.ticks or 0, PastWords())
 
 

@@ -1,9 +1,9 @@
-"""Whether a monitor in JavaScript has the form that fretc writes, read off before anything runs.
+"""Check that a monitor in JavaScript has the layout that fretc writes, before anything runs.
 
-All but the first values of cells and the body of `advance` are token for token those of fretc. In
-`advance` a statement gives one cell or local truth value to an expression of such, and the signals
-are made of such; literals, windows and marks are as fretc writes them. There is no call, no loop
-and no member but a cell, so a step reaches nothing else, and depends on nothing else.
+All tokens except the first values of cells and the body of `advance` must equal those of fretc. In
+`advance` a statement assigns an expression to one cell or local truth value, and the signals are
+such expressions; literals, windows and marks are as fretc writes them. There is no call, no loop
+and no member except a cell, so a step depends on nothing else.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 
-from fretc.verification.compiled.flow import Flow, Form, Grammar
+from fretc.verification.compiled.flow import CheckedLayout, Flow, Grammar
 from fretc.verification.compiled.text import (
     NAME,
     Lexis,
@@ -43,24 +43,24 @@ _FREE: tuple[Tokens, ...] = (("function", "rail"), ("function", "advance"))
 _READ = re.compile(r"const (\w+) = truths \[ (\d+) \] === null")
 
 
-def formed(
+def check_layout(
     text: str,
     written: str,
     cells: Sequence[str],
     windows: Collection[str],
     outcomes: Sequence[str],
-) -> Form:
-    """The form of a text of a module.
+) -> CheckedLayout:
+    """The parsed layout of a module.
 
     Args:
-        text: it.
-        written: what fretc writes for the same requirements.
-        cells: of a rail, all.
-        windows: those among them that are windows.
-        outcomes: names for them.
+        text: text of the module.
+        written: text that fretc writes for the same requirements.
+        cells: all cells of a rail.
+        windows: the cells that are windows.
+        outcomes: names of the outcomes.
 
     Raises:
-        UnexpectedLayoutError: it has another form.
+        UnexpectedLayoutError: the layout differs.
     """
     given, own = LEXIS.tokens(text), LEXIS.tokens(written)
     outside, (first, stepped) = split(given, _FREE)
@@ -78,11 +78,11 @@ def formed(
     told, own_told = statements[place][4:], own_statements[own_place][4:]
     step.tell(outcomes, records(told, ("{",)), records(own_told, ("{",)))
     same(_joined(statements[place + 1 :]), _joined(own_statements[own_place + 1 :]))
-    return Form(step.sources, literals)
+    return CheckedLayout(step.sources, literals)
 
 
 def _signals_at(statements: Sequence[Tokens]) -> int:
-    """The place of the statement that tells the signals."""
+    """Index of the statement that returns the signals."""
     head = ("rail", ".", "signals", "=")
     places = [i for i, each in enumerate(statements) if each[:4] == head]
     if len(places) != 1:
@@ -98,20 +98,20 @@ class _Step(Flow):
     """The body of `advance`, read statement by statement."""
 
     def __init__(self, known: frozenset[Tokens], cells: Collection[str]) -> None:
-        """Nothing is read yet.
+        """A step without statements.
 
         Args:
-            known: the statements that fretc writes, without semicolons.
-            cells: those of a rail that are no windows.
+            known: statements that fretc writes, without semicolons.
+            cells: cells of a rail that are not windows.
         """
         self._known = known
         super().__init__(Grammar({("rail", "."): cells}, _SIGNS, _KEPT))
 
     def read(self, statement: Tokens) -> None:
-        """One more statement; what an `if` or `else` holds is a single one.
+        """Read one more statement; an `if` or `else` contains a single one.
 
         Raises:
-            UnexpectedLayoutError: it is of no form that is known to be harmless.
+            UnexpectedLayoutError: it has no known harmless form.
         """
         if statement in self._known and self._fixed(statement):
             self.conditions = []
@@ -119,7 +119,7 @@ class _Step(Flow):
             raise strange(statement)
 
     def _branch(self, statement: Tokens) -> Tokens:
-        """What stands behind the conditions, which are those of the statement now."""
+        """The statement after its conditions, which become those of the current statement."""
         rest = statement
         if rest[:1] != ("else",):
             self.conditions = []
