@@ -151,7 +151,7 @@ def test_a_text_of_another_form_is_refused() -> None:
     strange = own.text.replace(BEGIN, f"{BEGIN}#ifdef __FRAMAC__\n#endif\n")
     (examined,) = analysed([one], replace(own, text=strange), "", LIMITS)
     assert examined.outcome.result is Result.NOT_CHECKED
-    assert "not laid out" in examined.outcome.detail
+    assert "unknown layout" in examined.outcome.detail
     assert examined.artefacts.keys() == {own.name, own.header_name}
 
 
@@ -204,10 +204,10 @@ WHOLE = HEAD + row(3) + row(5)
     [
         (HEAD + row(3), SUMMARY, "", "gives no result for 1 assertions"),
         (HEAD, SUMMARY, "", "gives no result for 2 assertions"),
-        ("", SUMMARY, "", "not laid out"),
-        (WHOLE + "x\n", SUMMARY, "", "not laid out"),
-        (HEAD.replace("status", "state") + row(3) + row(5), SUMMARY, "", "not laid out"),
-        (WHOLE.replace("\t5\t", "\tx\t"), SUMMARY, "", "not laid out"),
+        ("", SUMMARY, "", "unknown layout"),
+        (WHOLE + "x\n", SUMMARY, "", "unknown layout"),
+        (HEAD.replace("status", "state") + row(3) + row(5), SUMMARY, "", "unknown layout"),
+        (WHOLE.replace("\t5\t", "\tx\t"), SUMMARY, "", "unknown layout"),
         (HEAD + row(3) + row(3), SUMMARY, "", "gives no result for 1 assertions, and 1 more"),
         (HEAD + row(3) + row(5, "Unknown"), SUMMARY, "", "user assertion: unknown"),
         (HEAD + row(3) + row(5, "Dead"), SUMMARY, "", "user assertion: dead"),

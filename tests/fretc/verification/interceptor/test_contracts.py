@@ -327,7 +327,7 @@ def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
     ]
 
 
-LOOKS = "it looks into a command"
+LOOKS = "it reads the content of a command"
 MOST = 3000 if FULL else 1000
 
 # What is not checked --------------------------------------------------------------------------
