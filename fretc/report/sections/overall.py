@@ -16,7 +16,7 @@ from fretc.report.sections.proofs import is_refuted
 from fretc.report.sections.runs import Run, trust
 from fretc.report.sections.signatures import BROKEN
 from fretc.traceability.lock import WithdrawnRequirement
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import has_errors
 
 _ALL = sign_mark("all shown", signs.GOOD)

@@ -24,7 +24,7 @@ from fretc.report.sections.signatures import of_review, of_waiver
 from fretc.traceability.changes import Change as TextChange
 from fretc.traceability.comparison import OTHER_TEXTS, Difference, difference
 from fretc.traceability.lock import Review, WithdrawnRequirement
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 
 _ACCEPTED = sign_mark("reviewed", signs.GOOD)
 _UNSIGNED = sign_mark("reviewed", signs.OPEN)

@@ -22,7 +22,7 @@ from fretc.audit.evidence.schema import Checked, Finding, Topic
 from fretc.report.model import phrases
 from fretc.report.model.views import Remark, RunSummary, TopicView, sign_mark
 from fretc.traceability.acceptances import as_diagnostic
-from fretish.diagnostics import signs
+from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Severity
 
 _NONE = "\N{EN DASH}"
