@@ -61,7 +61,9 @@ EACH_SHAPE_ONCE = [*zip(SHAPES, cycle(COMMANDS))]
     ("shape", "command"), [*product(SHAPES, COMMANDS)] if FULL else EACH_SHAPE_ONCE
 )
 def test_twice_the_size_costs_twice_as_much(fretc: Fretc, shape: str, command: str) -> None:
-    options = [command] if command != "json" else ["--emit", "json"]
+    options = {"check": ["check", "--requirements"], "json": ["--emit", "json"]}.get(
+        command, [command]
+    )
 
     def cost(size: int) -> int:
         write("requirements/r.fret", f'+++\nid = "R"\n+++\n{SENTENCE}{SHAPES[shape](size)}\n')
@@ -80,4 +82,5 @@ def test_a_deep_sentence_needs_no_more_room_than_there_is(
     fretc: Fretc, command: str, shape: str
 ) -> None:
     write("requirements/r.fret", f'+++\nid = "R"\n+++\n{SENTENCE}{SHAPES[shape](900)}\n')
-    assert "F115" not in fretc(command, "requirements/r.fret").err
+    place = ["--requirements"] if command == "check" else []
+    assert "F115" not in fretc(command, *place, "requirements/r.fret").err

@@ -273,7 +273,7 @@ def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
         time.sleep(0.01)
     os.killpg(run.pid, signal.SIGINT)  # as Ctrl-C does: all processes of the terminal
     _, errors = run.communicate(timeout=LONG)
-    (count,) = re.findall(r"^stopped: (\d+) of 12 logs are kept, the same command goes", errors)
+    (count,) = re.findall(r"^stopped: (\d+) of 12 logs are saved; run the same command", errors)
     assert run.returncode == 130
     assert fretc("audit", *logs).err.startswith(f"{count} of 12 logs are unchanged")
     assert tables() == evidence

@@ -502,7 +502,7 @@ def test_a_mistyped_name_does_not_cost_the_evidence_of_the_last_audit(fretc: Fre
     before = {**tables(), "": (STORE / "manifest.json").read_bytes()}
     run = fretc("audit", "no.mcap", "none.mcap", "-o", str(STORE))
     assert run.status == 2
-    assert f"no log could be read: `{STORE}` stays as it was\n" in run.err
+    assert f"no log could be read: `{STORE}` is unchanged\n" in run.err
     assert before == {**tables(), "": (STORE / "manifest.json").read_bytes()}
     assert fretc("audit", "no.mcap", "none.mcap", "-o", "new").status == 2
     assert not Path("new").exists()

@@ -204,7 +204,7 @@ def test_verify_finds_that_the_loop_does_not_stop_and_never_starts_again(robot: 
     run = robot("verify", "requirements/r1.fret", "--layer", "loop")
     assert run.status == 1
     kept, released = [line for line in run.out.splitlines() if line.startswith("✘ R1")]
-    assert "keep the requirement" in kept
+    assert "satisfy the requirement" in kept
     assert "the stop is released" in released
 
 

@@ -152,7 +152,7 @@ def test_limits_that_are_not_reached_change_nothing(robot: Fretc) -> None:
     [
         (["--time", "soon"], "`--time soon` is not a duration"),
         (["--log-time", "5"], "`--log-time 5` is not a duration"),
-        (["--since", "soon"], "`--since soon` is neither a date nor a time ago"),
+        (["--since", "soon"], "`--since soon` is neither a date nor a length of time"),
         (["--time", "1h", "--engine", "dask"], "`--engine dask` does not support time limits"),
         (["--notify", ""], "`--notify` names no command: it is empty"),
         (["--notify", "a 'b"], "`--notify` names no command: no closing quotation"),

@@ -63,7 +63,7 @@ def test_a_waiver_that_has_ended_is_reported() -> None:
         ('"no data"', '"satisfied"', "`satisfied` is not a verdict that can be waived"),
         ('"no data"', '"suspect"', "`suspect` is not a verdict that can be waived"),
         ('"no data"', "7", "`7` is not a verdict that can be waived"),
-        ("reason", "raeson", "`raeson` is no field of [R1]"),
+        ("reason", "raeson", "unknown field `raeson` in [R1]"),
     ],
 )
 def test_a_waiver_with_a_mistake_waives_nothing(old: str, new: str, message: str) -> None:

@@ -9,7 +9,7 @@
 import sys
 
 if __name__ == "__main__" and not getattr(sys.flags, "safe_path", False):
-    del sys.path[0]  # what stands beside this file is no library
+    del sys.path[0]  # files beside this one are not libraries
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple

@@ -252,7 +252,7 @@ def test_a_log_is_never_replaced(fretc: Fretc) -> None:
     before = Path("run.fretc.mcap").read_bytes()
     run = fretc("audit", "run.mcap", "run.fretc.mcap", "--annotations", ".")
     assert run.status == 2
-    assert "which is read" in run.err
+    assert "which is an input" in run.err
     assert Path("run.fretc.mcap").read_bytes() == before
 
 

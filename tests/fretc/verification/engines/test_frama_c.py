@@ -151,7 +151,7 @@ def test_a_text_of_another_form_is_refused() -> None:
     strange = own.text.replace(BEGIN, f"{BEGIN}#ifdef __FRAMAC__\n#endif\n")
     (examined,) = analysed([one], replace(own, text=strange), "", LIMITS)
     assert examined.outcome.result is Result.NOT_CHECKED
-    assert "unknown layout" in examined.outcome.detail
+    assert "is not laid out as fretc writes it" in examined.outcome.detail
     assert examined.artefacts.keys() == {own.name, own.header_name}
 
 
