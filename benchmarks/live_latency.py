@@ -4,7 +4,7 @@
 
 A lidar of 720 beams at 40 Hz is near in each second scan; both nodes hear it at the same time. Wall
 time from before its publication to the arrival of the stop, and of zero, at its process; the share
-of a processor that each node takes. No test asserts them.
+of CPU time that each node takes. No test asserts them.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def package(folder: Path, kind: str, count: int, time: str) -> Path:
 
 
 def seconds(process: subprocess.Popen[str]) -> float:
-    """Of a processor that it has taken."""
+    """Of CPU time that it has taken."""
     fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 

@@ -88,7 +88,7 @@ def hard() -> None:
 def pump() -> None:
     """26 requirements like those of an infusion pump: alarms by priority, and commands.
 
-    Two of the alarms do not look at those above them, and fight with those that want other modes.
+    Two of the alarms do not look at those above them, and conflict with those of other modes.
     """
     modes = [f"mode_{i}" for i in range(8)]
     exclusive = [

@@ -127,7 +127,7 @@ def main() -> None:
     asked = [*jobs(together, (), 60), *(job for each in alone for job in jobs([each], (), 60))]
     start = time.process_time()
     batches = [batch for job in asked for batch in job.ask(())]
-    print(f"{len(requirements)} sentences: {time.process_time() - start:.1f} s of a processor")
+    print(f"{len(requirements)} sentences: {time.process_time() - start:.1f} s of CPU time")
     obligations = [one for batch in batches for one in batch.obligations]
     print(
         f"{len(obligations)} obligations:", dict(Counter(str(each.outcome) for each in obligations))

@@ -74,7 +74,7 @@ def check(target: Target, parquet: str | None) -> None:
         return
     if not target.is_store:
         if path.exists() and not path.is_file():
-            fail(not_written(str(path), "it is no regular file"))
+            fail(not_written(str(path), "it is not a regular file"))
         return
     if not path.is_dir():
         fail(_no_folder(path))
@@ -88,7 +88,7 @@ def _check_table(parquet: str, evidence: Path) -> None:
     if parquet == "-":
         fail(not_written(parquet, "a Parquet table cannot be printed"))
     if os.path.exists(parquet) and not os.path.isfile(parquet):
-        fail(not_written(parquet, "it is no regular file"))
+        fail(not_written(parquet, "it is not a regular file"))
     if os.path.realpath(parquet) == os.path.realpath(evidence):
         fail(not_written(parquet, "two outputs would go there"))
 

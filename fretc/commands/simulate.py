@@ -202,7 +202,7 @@ def _file(out: str) -> Path:
     if out == "-":
         fail(not_written(out, "a recording cannot be printed"))
     if path.exists() and not path.is_file():
-        fail(not_written(out, "it is no regular file"))
+        fail(not_written(out, "it is not a regular file"))
     _folder(path.parent, out)
     return path
 

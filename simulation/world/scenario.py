@@ -203,7 +203,7 @@ def load(name: str) -> Scenario:
             raise ScenarioError(f"there is no scenario `{name}`; there are {', '.join(names())}")
         path = Path(str(files("simulation"))) / "scenarios" / f"{name}.toml"
     if path.exists() and not path.is_file():
-        raise ScenarioError(f"`{name}` is no regular file")
+        raise ScenarioError(f"`{name}` is not a regular file")
     if path.is_file() and path.stat().st_size > _MOST:
         raise ScenarioError(f"`{name}` is larger than a scenario is")
     try:

@@ -522,7 +522,7 @@ class Hash:
     sha256: str
 
 
-REALIZABLE, UNREALIZABLE = "can be kept together", "cannot be kept together"
+REALIZABLE, UNREALIZABLE = "can be satisfied together", "cannot be satisfied together"
 
 
 # All requirements together ------------------------------------------------------------------

@@ -109,12 +109,14 @@ def _headline(analysis: Analysis) -> str:
     match analysis.verdict:
         case Verdict.REALIZABLE:
             held = ", while the assumptions hold" if analysis.assumptions else ""
-            return f"All requirements can be kept together{held}."
+            return f"All requirements can be satisfied together{held}."
         case Verdict.NOT_CHECKED:
-            return f"Whether all requirements can be kept together is not known: {analysis.why}."
+            return (
+                f"Whether all requirements can be satisfied together is not known: {analysis.why}."
+            )
         case Verdict.UNREALIZABLE if analysis.conflicts:
             ids = analysis.conflicts[0].requirements
-            what = "can be kept by no system" if len(ids) == 1 else "cannot be kept together"
+            what = "can be kept by no system" if len(ids) == 1 else "cannot be satisfied together"
             more = len(analysis.conflicts) - 1
             rest = f"; there {'is' if more == 1 else 'are'} {phrases.times(more, 'more conflict')}"
             return f"{phrases.joined(ids)} {what}{rest if more else ''}."
@@ -163,7 +165,7 @@ def sentence(found: SetAnalysis) -> str:
         parts.append(f"The analysis of all requirements together is suspect: {why}.")
     if found.left_out:
         names = phrases.some(found.left_out)
-        parts.append(f"Not analyzed: whether {names} can be kept together with the others.")
+        parts.append(f"Not analyzed: whether {names} can be satisfied together with the others.")
     return " ".join(parts)
 
 

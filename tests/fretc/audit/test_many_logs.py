@@ -314,7 +314,7 @@ def test_evidence_that_cannot_be_written_is_told_before_the_audit(fretc: Fretc) 
     )
     Path("x.json").mkdir()
     run = fretc("audit", "run.mcap", "no.mcap", "-o", "x.json")
-    assert run.err.startswith("F905 `x.json` cannot be written: it is no regular file\n")
+    assert run.err.startswith("F905 `x.json` cannot be written: it is not a regular file\n")
 
 
 @pytest.mark.slow

@@ -75,7 +75,7 @@ def test_a_conflict_is_accepted_by_its_name_only_and_stays_red(fretc: Fretc) -> 
     assert "F561" in fretc("check", "--analyze").err
     fretc("report", "-o", "build/report.json", "--format", "json")
     overall = json.loads(Path("build/report.json").read_text())["overall"]
-    assert overall["mark"]["word"] == "cannot be kept together"
+    assert overall["mark"]["word"] == "cannot be satisfied together"
 
 
 @pytest.mark.slow

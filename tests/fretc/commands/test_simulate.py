@@ -74,7 +74,7 @@ def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(fretc: Fretc
         (("walker", "nominal", "-o", "a.mcap"), "F907 several scenarios need --campaign"),
         (("-o", "bad.toml/a.mcap"), "F905 `bad.toml/a.mcap` cannot be written: File exists"),
         (("-o", "-"), "F905 `-` cannot be written"),
-        (("-o", "."), "F905 `.` cannot be written: it is no regular file"),
+        (("-o", "."), "F905 `.` cannot be written: it is not a regular file"),
         (("-o", "a.x", "--png", "a.x"), "F905 `a.x` cannot be written: two outputs"),
         (("-o", "a.mcap", "--png", "bad.toml/a.png"), "F905 `bad.toml/a.png` cannot be written"),
         (("-o", "a.mcap", "--duration", "inf"), "F905 `a.mcap` cannot be written: the duration"),

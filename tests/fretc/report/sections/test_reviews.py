@@ -229,3 +229,18 @@ def test_two_reports_of_one_state_are_the_same_bytes(tmp_path: Path) -> None:
     path = str(tmp_path / "evidence.json")
     first, second = (make(known, path, lock=str(tmp_path / "fretc.lock")) for _ in range(2))
     assert (first.html, first.json) == (second.html, second.json)
+
+
+def test_where_nothing_is_reviewed_the_summary_says_so(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    report = reported(known, tmp_path, result(known, "satisfied"))
+    assert "No requirement has been reviewed." in str(report)
+
+
+def test_new_violations_since_the_review_are_counted(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    reported(known, tmp_path, result(known, "satisfied"))
+    lock(known, tmp_path)
+    assert "new since the review" not in str(reported(known, tmp_path, result(known, "satisfied")))
+    broken = result(known, "violated", violations=[violation(1, 2)])
+    assert "1 violation is new since the review." in str(reported(known, tmp_path, broken))

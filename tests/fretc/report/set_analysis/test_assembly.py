@@ -1,4 +1,4 @@
-"""The report says whether all requirements can be kept together, and loses nothing red of it."""
+"""Whether requirements can be satisfied together: what the report shows of an analysis."""
 
 import json
 from collections.abc import Mapping
@@ -47,10 +47,10 @@ def test_a_conflict_is_in_every_headline(fretc: Fretc) -> None:
     write(FIGHT)
     assert fretc("analyze").status == 1
     content = report(fretc)
-    told = "R1 and R2 cannot be kept together."
+    told = "R1 and R2 cannot be satisfied together."
     assert content["front"]["headline"].endswith(told)
     assert content["overall"]["headline"].endswith(told)
-    assert content["overall"]["mark"]["word"] == "cannot be kept together"
+    assert content["overall"]["mark"]["word"] == "cannot be satisfied together"
     assert told in fretc("report", "--format", "markdown").out.splitlines()[0]
     assert fretc("report", "--strict").status == 1
 
@@ -80,7 +80,7 @@ def test_a_conflict_without_a_run_is_still_one(fretc: Fretc) -> None:
     content = json.loads(path.read_text())
     content["analysis"]["conflicts"][0]["play"] = []
     path.write_text(json.dumps(content))
-    assert "R1 and R2 cannot be kept together." in report(fretc)["front"]["headline"]
+    assert "R1 and R2 cannot be satisfied together." in report(fretc)["front"]["headline"]
     assert "No run is drawn" in Path("r.html").read_text()
 
 
@@ -91,7 +91,7 @@ def test_a_set_that_can_be_kept_takes_nothing_from_the_headline(fretc: Fretc) ->
     assert fretc("analyze").status == 0
     content = report(fretc)
     assert content["front"]["headline"] == headline
-    assert "All requirements can be kept together." in content["front"]["notes"]
+    assert "All requirements can be satisfied together." in content["front"]["notes"]
 
 
 @pytest.mark.slow
@@ -113,7 +113,7 @@ def test_a_stale_conflict_stays_in_the_headline(fretc: Fretc) -> None:
     fretc("analyze")
     write(FREE)
     headline = report(fretc)["front"]["headline"]
-    assert "R1 and R2 cannot be kept together." in headline
+    assert "R1 and R2 cannot be satisfied together." in headline
     assert "is suspect: R2 has changed since." in headline
 
 
@@ -123,7 +123,7 @@ def test_what_is_not_known_is_in_the_headline(fretc: Fretc) -> None:
     assert fretc("analyze").status == 3
     content = report(fretc)
     assert (
-        "Whether all requirements can be kept together is not known"
+        "Whether all requirements can be satisfied together is not known"
         in (content["front"]["headline"])
     )
     assert fretc("report", "--strict").status in (1, 3)
@@ -136,7 +136,7 @@ def test_free_text_was_not_asked_about(fretc: Fretc) -> None:
     content = report(fretc)
     assert content["analysis"]["left_out"] == ["R3"]
     assert (
-        "Not analyzed: whether R3 can be kept together with the others."
+        "Not analyzed: whether R3 can be satisfied together with the others."
         in (content["front"]["headline"])
     )
 
