@@ -9,8 +9,11 @@ from pathlib import Path
 import pytest
 
 from tests.command import PROCESS
+from tests.effort import FULL
 
 pytestmark = pytest.mark.slow
+
+SECONDS = "1" if FULL else "0.1"
 
 ROOT = Path(__file__).parent.parent
 
@@ -80,5 +83,5 @@ def test_it_makes_a_monitor_far_from_the_checkout(installed: Path, tmp_path: Pat
 
 
 def test_it_simulates_far_from_the_checkout(installed: Path, tmp_path: Path) -> None:
-    run = ran(installed, tmp_path, "simulate", "walker", "--duration", "0.1", "-o", "run.mcap")
+    run = ran(installed, tmp_path, "simulate", "walker", "--duration", SECONDS, "-o", "run.mcap")
     assert (run.returncode, run.stderr) == (0, "wrote run.mcap\n")

@@ -40,8 +40,7 @@ def limit(requirement: FormalizedRequirement) -> str:
         return f"No run can violate {requirement.id}: every run satisfies it."
     return (
         f"No run can violate {requirement.id}: it sets no bound, so an answer that has not come "
-        "may "
-        "always come later."
+        "may always come later."
     )
 
 

@@ -422,8 +422,7 @@ def _terms(
     if any(_looks_back(requirement) for requirement in requirements):
         yield (
             "before the first tick every proposition is false; `preBool`, `preInt` and `preReal` "
-            "state their "
-            "own first value"
+            "state their own first value"
         )
     if any(comparisons(requirement) for requirement in requirements):
         yield (

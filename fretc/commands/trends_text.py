@@ -217,8 +217,7 @@ def _rest(trends: Trends) -> Iterator[Line]:
     yield (
         (
             f"latencies and margins, {compared}: {len(trends.with_finding(Finding.REGRESSED))} "
-            "regressed, "
-            f"{chance} no worse than chance, {few} with too few runs to tell",
+            f"regressed, {chance} no worse than chance, {few} with too few runs to tell",
             None,
         ),
     )

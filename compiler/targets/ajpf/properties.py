@@ -107,8 +107,7 @@ def weakened(requirement: FormalizedRequirement, options: Options = DEFAULT) -> 
         return None
     loss = (
         f"`{printing_of(requirement.sentence.timing)}` has lost its bound: a response that comes "
-        "later, "
-        "however late, satisfies it"
+        "later, however late, satisfies it"
     )
     scope = requirement.sentence.scope
     if scope is None or scope.kind is s.ScopeKind.AFTER:
@@ -302,8 +301,7 @@ def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Di
         requirement,
         Code.NO_TIME_TO_REACT,
         f"{requirement.id} demands its response in the very state of its trigger: it is false of "
-        "every "
-        "agent that has to react",
+        "every agent that has to react",
         "an agent needs some nine states from a percept to its answer: state it with `eventually`",
     )
 

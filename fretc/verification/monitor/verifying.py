@@ -211,8 +211,7 @@ def _proved(same: Equivalence, ticks: int, states: int = 0) -> Outcome:
     if states:
         further = (
             "; triggers, responses, open obligations and unknown values as in the generated "
-            "monitor "
-            f"({states} states)"
+            f"monitor ({states} states)"
         )
     return proved(
         f"the same at every tick of every trace ({same.states} states, {same.steps} steps); its "

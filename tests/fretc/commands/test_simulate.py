@@ -9,7 +9,7 @@ import pytest
 from mcap.reader import make_reader
 
 from tests.command import PROCESS, Fretc, write
-from tests.effort import some
+from tests.effort import FULL, some
 
 ROOT = Path(__file__).parents[3]
 
@@ -49,7 +49,7 @@ def test_the_scenarios_are_named(fretc: Fretc) -> None:
 
 @pytest.mark.slow
 def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(fretc: Fretc) -> None:
-    stated = 'title = "Mine"\nduration = 2\n[expect]\n'
+    stated = f'title = "Mine"\nduration = {3 if FULL else 2}\n[expect]\n'
     write("mine.toml", f'{stated}inconclusive = ["R12"]\n')
     ran = fretc("simulate", "mine.toml", "--campaign", "2", "--jobs", "2")
     assert ran.status == 0, ran.err

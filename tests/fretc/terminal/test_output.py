@@ -19,7 +19,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from tests.command import PROCESS, Fretc
-from tests.effort import some
+from tests.effort import FULL, some
 
 ROOT = Path(__file__).parents[3]
 LOG = str(ROOT / "traces/mission-seed15.mcap")
@@ -178,7 +178,7 @@ def test_what_is_no_regular_file_is_never_replaced(folder: Path, fretc: Fretc) -
 
 @pytest.mark.slow
 def test_a_termination_leaves_no_temporary_file(folder: Path) -> None:
-    ids = "".join(f'+++\nid = "R{i}"\n+++\n{R1}' for i in range(300))
+    ids = "".join(f'+++\nid = "R{i}"\n+++\n{R1}' for i in range(1000 if FULL else 300))
     (folder / "many.fret").write_text(ids, "utf-8")
     run = subprocess.Popen(
         [*PROCESS, "many.fret", "--emit", "monitor"],

@@ -19,10 +19,10 @@ from fretish.diagnostics.source import Source
 from tests.command import Fretc
 from tests.fretc.audit import results as results_of
 from tests.fretc.report.sarif_schema import SARIF
-from tests.monitoring import requirement as rule
+from tests.monitoring import requirement
 
 ROOT = Path(__file__).parents[4]
-RULES = [rule(f"the sw shall\n always satisfy q{i}", f"R{i}") for i in range(1, 6)]
+RULES = [requirement(f"the sw shall\n always satisfy q{i}", f"R{i}") for i in range(1, 6)]
 
 
 def result(verdict: str, id: str = "R1", run: str = "a.mcap", **more: Any) -> OneRun:

@@ -187,25 +187,27 @@ def test_the_words_agree_with_what_the_monitor_saw(
     known: Project, of: dict[str, list[tuple[int, float]]], lost: list[tuple[int, int]]
 ) -> None:
     log = recording(known, of, gaps=tuple(lost), intact=not lost)
-    for about, result, truths in judged(known, log):
+    for formalized, result, truths in judged(known, log):
         for violation in result.violations:
-            for cause in causes(violation, result, about):
+            for cause in causes(violation, result, formalized):
                 seen = truths.columns[cause.proposition].at(violation.first_tick)
-                assert seen is cause.value, (about.id, cause)
-            if falsity(violation, about):
-                timing = about.sentence.timing
+                assert seen is cause.value, (formalized.id, cause)
+            if falsity(violation, formalized):
+                timing = formalized.sentence.timing
                 trigger = violation.trigger if isinstance(timing, s.Within) else None
                 first = trigger or violation.first
                 for tick in range(first.tick, violation.last_tick + 1):
-                    value = kleene(about.sentence.response, truths, tick, about)
-                    assert value is isinstance(timing, s.Never), (about.id, tick, value)
+                    value = kleene(formalized.sentence.response, truths, tick, formalized)
+                    assert value is isinstance(timing, s.Never), (formalized.id, tick, value)
 
 
 def said(known: Project, id: str, of: dict[str, list[tuple[int, float]]]) -> tuple[str, str]:
-    """What is said of the first violation of a about."""
-    about, result, _ = next(one for one in judged(known, recording(known, of)) if one[0].id == id)
+    """What is said of the first violation of a requirement."""
+    formalized, result, _ = next(
+        one for one in judged(known, recording(known, of)) if one[0].id == id
+    )
     first = result.violations[0]
-    return falsity(first, about), in_words(causes(first, result, about))
+    return falsity(first, formalized), in_words(causes(first, result, formalized))
 
 
 def every(step: int, value: float) -> list[tuple[int, float]]:
