@@ -219,6 +219,7 @@ def test_node_watch_and_audit_say_one_thing(here: Ros, tmp_path: Path, fretc: Fr
         watch.close()
     record.send_signal(signal.SIGINT)
     record.wait(20)
+    until("the bag has its name", bag.exists)  # `rosbag` ends before what it has started
 
     audit, alive = audited(fretc, "halt"), audited(fretc, "alive")["ALIVE"]
     edges = {each["ns"] for each in audit["EDGE"]["triggers"]}
@@ -229,9 +230,8 @@ def test_node_watch_and_audit_say_one_thing(here: Ros, tmp_path: Path, fretc: Fr
     live = [line for line in watch.lines if line["type"] == "requirement"]
     for id in FOLDERS["halt"]:
         expected = {each["ns"] for each in audit[id]["triggers"]}
-        assert triggers(said, id) <= expected, (
-            id
-        )  # of two ticks judged at once the last is reported
+        # Of two ticks judged at once the last is reported.
+        assert triggers(said, id) <= expected, id
         assert triggers(live, id) <= expected, id
         broken = audit[id]["violations"][0]["start_ns"]
         assert violated(said, id) == violated(live, id) == broken, id
