@@ -140,10 +140,9 @@ class Relation:
         self.budget.check()
         if bdd.size(relation) > MOST_NODES:
             raise TooLargeError
-        first, then = relation, relation
-        for bit in self.bits:
-            first = bdd.compose(first, bit.after, bdd.variable(bit.later))
-            then = bdd.compose(then, bit.now, bdd.variable(bit.later))
+        later = [(bit, bdd.variable(bit.later)) for bit in self.bits]
+        first = bdd.substitute(relation, {bit.after: variable for bit, variable in later})
+        then = bdd.substitute(relation, {bit.now: variable for bit, variable in later})
         return bdd.and_exists(first, then, bdd.cube(bit.later for bit in self.bits))
 
 
@@ -156,6 +155,4 @@ def identity(bits: tuple[Bit, ...]) -> Function:
 
 
 def _renamed(states: Function, bits: tuple[Bit, ...]) -> Function:
-    for bit in bits:
-        states = bdd.compose(states, bit.now, bdd.variable(bit.after))
-    return states
+    return bdd.substitute(states, {bit.now: bdd.variable(bit.after) for bit in bits})
