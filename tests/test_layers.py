@@ -17,8 +17,8 @@ ORDER = """
 monitors.kernel  monitors
 fretish.diagnostics  fretish.reading  fretish.error_rules  fretish  fretish.bindings
 fretish.bindings.tables
-compiler.files  compiler.logic.ordering  compiler.logic.spelling  compiler.logic
-compiler.formalization  compiler.formalization.numbers
+compiler.files  compiler.logic.diagrams  compiler.logic.ordering  compiler.logic.spelling
+compiler.logic  compiler.formalization  compiler.formalization.numbers
 compiler.situations  compiler.project  compiler.agents  compiler.program  compiler.signals
 compiler.targets  compiler.targets.python  compiler.targets.c  compiler.targets.rust
 compiler.targets.ros  compiler.targets.javascript  compiler.targets.automata  compiler.targets.ajpf
@@ -64,8 +64,9 @@ DOORS = {
         "fretish/parser.py",
         "fretish/reading/grammars.py",
     },
-    "spot": {"compiler/logic/decision_diagrams.py", "compiler/logic/spot.py"},
-    "buddy": {"compiler/logic/decision_diagrams.py", "compiler/logic/spot.py"},
+    "spot": {"compiler/logic/diagrams/buddy_engine.py", "compiler/logic/spot.py"},
+    "buddy": {"compiler/logic/diagrams/buddy_engine.py", "compiler/logic/spot.py"},
+    "oxidd": {"compiler/logic/diagrams/oxidd_engine.py"},
     "jinja2": {"compiler/files/templating.py"},
     "securesystemslib": {"fretc/attestation/keys.py"},
     "cryptography": {"fretc/attestation/keys.py"},

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.memory import Bit, Counter
 
 State = Mapping[int, bool]

@@ -8,8 +8,8 @@ import z3
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Term
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.memory import Counter, Memory

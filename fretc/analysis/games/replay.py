@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
+from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.transition import Transition

@@ -14,8 +14,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.memory import Bit, Counter
 from fretc.analysis.arena.transition import State

@@ -10,8 +10,8 @@ import pytest
 import spot
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic import decision_diagrams as bdd
 from compiler.logic import printing
+from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.targets.python import monitor as target
 from fretc.analysis.analysis import Options, analyze
 from fretc.analysis.arena.alphabet import Tick

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams.decision_diagrams import Function
 from compiler.logic.formula import atoms
 from compiler.logic.spot import holds_on
 from fretc.analysis.arena.budget import Budget, OutOfTimeError

@@ -17,8 +17,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
-    from compiler.logic.buddy_engine import BuddyEngine
-    from compiler.logic.oxidd_engine import OxiddEngine
+    from compiler.logic.diagrams.buddy_engine import BuddyEngine
+    from compiler.logic.diagrams.oxidd_engine import OxiddEngine
 
     Engine: TypeAlias = BuddyEngine | OxiddEngine
 
@@ -30,10 +30,10 @@ Function = Any
 def engine() -> Engine:
     """OxiDD, or the engine of Spot if `FRETC_DIAGRAMS` is `buddy`, which tests compare with it."""
     if os.environ.get("FRETC_DIAGRAMS") == "buddy":
-        from compiler.logic.buddy_engine import BuddyEngine
+        from compiler.logic.diagrams.buddy_engine import BuddyEngine
 
         return BuddyEngine()
-    from compiler.logic.oxidd_engine import OxiddEngine
+    from compiler.logic.diagrams.oxidd_engine import OxiddEngine
 
     return OxiddEngine()
 
