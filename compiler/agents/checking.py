@@ -125,6 +125,8 @@ def _checked(
         mismatch = _other_agent(prop, read)
         if mismatch is not None:
             return mismatch
+    if not automata.is_installed():
+        return _unknown(props, automata.ABSENT, artefacts)
     try:
         explored = _ExploredModel.of(Model(read, tuple(drawn)), limit)
         spoilt = broken if isinstance(broken, Agent) else None

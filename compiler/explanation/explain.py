@@ -14,8 +14,7 @@ from compiler.explanation.reasons import why
 from compiler.formalization import record
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import Valuation, letters_by_valuation
-from compiler.logic.definition import holds
-from compiler.logic.formula import longest_bound
+from compiler.logic.definition import holds, holds_on_lasso
 from compiler.targets import ltl
 from fretish import syntax as s
 from fretish.diagnostics import status_symbols as signs
@@ -105,29 +104,21 @@ def _notes(requirement: FormalizedRequirement, traces: Examples) -> Iterator[str
 # Traces -----------------------------------------------------------------------------------------
 
 _CHECKED = 30
-"""Traces up to this number of ticks are also checked by the slow definition of the operators."""
+"""Traces up to this number of ticks are also checked by the slow definitions of the operators."""
 
 
 def _check(requirement: FormalizedRequirement, atoms: Sequence[str], example: Example) -> None:
-    """Check that the formulas agree with the automaton on the trace.
-
-    Spot evaluates the endless trace, if the bound is small enough.
-    """
+    """Check that the formulas agree with the automaton on the trace, and on what it goes on to."""
     prefix = [dict(zip(atoms, values, strict=True)) for values in example.prefix]
     loop = [dict(zip(atoms, values, strict=True)) for values in example.loop]
     trace = [*prefix, *loop]
-    if len(trace) <= _CHECKED:
-        assert holds(requirement.ft_finite, trace) is example.satisfied
-        assert holds(requirement.pt, trace, len(trace) - 1) is example.satisfied
-    if (
-        s.duration(requirement.sentence.timing) is None
-        and longest_bound(requirement.ft_infinite) == 0
-    ):
-        from compiler.logic.spot import holds_on
-
-        if loop or example.decided is not None:
-            on_all_of_it = holds_on(requirement.ft_infinite, prefix, loop or prefix[-1:])
-            assert on_all_of_it is example.satisfied
+    if len(trace) > _CHECKED:
+        return
+    assert holds(requirement.ft_finite, trace) is example.satisfied
+    assert holds(requirement.pt, trace, len(trace) - 1) is example.satisfied
+    if loop or example.decided is not None:
+        on_all_of_it = holds_on_lasso(requirement.ft_infinite, prefix, loop or prefix[-1:])
+        assert on_all_of_it is example.satisfied
 
 
 def _shown(

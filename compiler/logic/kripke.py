@@ -110,6 +110,7 @@ def check(kripke: Kripke, formula: Formula) -> Lasso | None:
 
     Raises:
         ValueError: the formula speaks of a last tick or of probabilities.
+        ImportError: Spot is not installed.
 
     Source: Vardi, Wolper, An automata-theoretic approach to automatic program verification, LICS
     1986; Spot translates, builds the product and looks for the run.

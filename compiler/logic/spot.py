@@ -1,5 +1,6 @@
 """Interface to Spot; the only module that imports it, on the first call.
 
+Spot is not installed everywhere: `is_installed` says whether the other functions may be called.
 An atom's name may be any text, so Spot gets names that are made here. Bounds must be small, because
 Spot expands them into chains of X. So no path from a sentence to its generated files may depend on
 this module.
@@ -24,13 +25,34 @@ from compiler.logic.formula import (
     longest_bound,
     rebuild,
 )
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
+_INSTALL = (
+    "install Spot: `pip install spottl` on Linux x86-64 with CPython 3.11 to 3.13; elsewhere "
+    "`conda install -c conda-forge spot`, in the environment of fretc"
+)
+ABSENT = f"{Code.MISSING_EXTRA.number} Spot is not installed: {_INSTALL}"
+"""The reason why a claim is not checked."""
 
-def equivalent(left: Formula, right: Formula) -> bool:
-    """Whether two future-time formulas hold on the same infinite traces (and `LAST` is free)."""
-    names = _names(*atoms(left), *atoms(right))
-    return same_language(*(printing.future(_renamed(formula, names)) for formula in (left, right)))
+
+def is_installed() -> bool:
+    """Whether Spot can be imported: a package of the same name is not Spot."""
+    try:
+        return hasattr(_spot(), "otf_product")
+    except ImportError:
+        return False
+
+
+def unless_installed(need: str) -> Diagnostic | None:
+    """F908 if Spot is not installed.
+
+    Args:
+        need: the feature and a verb: `a proof needs`.
+    """
+    if is_installed():
+        return None
+    return Diagnostic(Code.MISSING_EXTRA, f"{need} Spot, which is not installed", None, _INSTALL)
 
 
 def same_language(left: str, right: str) -> bool:
@@ -43,39 +65,6 @@ def same_language(left: str, right: str) -> bool:
     """
     spot = _spot()
     return bool(spot.are_equivalent(spot.formula(left), spot.formula(right)))
-
-
-def holds_on(
-    formula: Formula, prefix: Sequence[Mapping[str, bool]], loop: Sequence[Mapping[str, bool]]
-) -> bool:
-    """Whether an endless trace satisfies a future-time formula, according to Spot's automaton.
-
-    Args:
-        formula: with small bounds, which Spot expands; without `LAST`.
-        prefix: the values of its atoms at the first ticks.
-        loop: the ticks that repeat for ever, at least one.
-
-    Source: Duret-Lutz et al., CAV 2022 (`twa_word`).
-    """
-    spot = _spot()
-    names = _names(*atoms(formula), *(name for values in (*prefix, *loop) for name in values))
-
-    def letters(ticks: Sequence[Mapping[str, bool]]) -> list[str]:
-        return [
-            _letter({names[name]: value for name, value in valuation.items()})
-            for valuation in ticks
-        ]
-
-    parts = [*letters(prefix), f"cycle{{{'; '.join(letters(loop))}}}"]
-    word = spot.parse_word("; ".join(parts), spot.make_bdd_dict())
-    renamed = spot.formula(printing.future(_renamed(formula, names)))
-    automaton = renamed.translate(dict=word.get_dict())
-    return bool(word.as_automaton().intersects(automaton))
-
-
-def _letter(values: Mapping[str, bool]) -> str:
-    """A conjunction of literals, in Spot's syntax."""
-    return " & ".join(f"{'' if value else '!'}{name}" for name, value in values.items()) or "1"
 
 
 _PROVABLE_BOUND = 12

@@ -10,7 +10,7 @@ from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
-from compiler.logic import printing
+from compiler.logic import printing, spot
 from compiler.logic.identifiers import legal_names
 from compiler.logic.spelling.reserved_words import SMV
 from compiler.targets.comparison_names import comparison_names, definitions
@@ -40,7 +40,7 @@ def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
         "meaning": meaning(requirement.written, requirement.ticks, requirement.clock),
         "FT": printing.text(requirement.ft_infinite, dialect),
     }
-    if options.simplify:
+    if options.simplify and spot.is_installed():
         lines["FT, simplified"] = _simplified(requirement)
     lines["FT, finite"] = printing.text(requirement.ft_finite, dialect)
     lines["PT"] = (
@@ -75,9 +75,7 @@ def _names(requirement: FormalizedRequirement, dialect: printing.Dialect) -> Map
 
 def _simplified(requirement: FormalizedRequirement) -> str:
     """Spot's shorter form, proved equivalent; or the reason why there is none."""
-    from compiler.logic.spot import simplified
-
-    shorter = simplified(requirement.ft_infinite)
+    shorter = spot.simplified(requirement.ft_infinite)
     return shorter if shorter is not None else "(Spot finds nothing shorter)"
 
 

@@ -55,7 +55,9 @@ _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
     show_default=True,
     help="Notation of the formulas.",
 )
-@click.option("--simplify", is_flag=True, help="Also show a simplified formula.")
+@click.option(
+    "--simplify", is_flag=True, help="Also show a simplified formula, if Spot is installed."
+)
 @click.option(
     "--one-file", is_flag=True, help="Generate one file with the monitors of all requirements."
 )
@@ -249,7 +251,7 @@ def _emitted(
 
     requirements = project.formalized
     answers = [(requirement, target.refuse(requirement)) for requirement in requirements]
-    wrong = [diagnostic for _, diagnostic in answers if diagnostic is not None]
+    wrong = [*dict.fromkeys(diagnostic for _, diagnostic in answers if diagnostic is not None)]
     whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
     one_file = target.together or (options.one_file and target.joins)
     if one_file:

@@ -267,6 +267,8 @@ def _reason(requirement: FormalizedRequirement, result: AjpfResult, options: Opt
     refused = bundle.refusal(requirement, options)
     if refused is not None:
         why = f"{refused.code.number} {refused.message}"
+        if refused.code is Code.MISSING_EXTRA:
+            return f"it cannot be compared with the present bundle: {why}"
         return f"{requirement.id} can no longer be exported as a bundle: {why}"
     artifacts = bundle.emit([requirement], options)
     texts = {artifact.path.name: artifact.text for artifact in artifacts}

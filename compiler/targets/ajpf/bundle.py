@@ -22,6 +22,7 @@ from compiler.files.templating import render, to_json
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Proof, Result
+from compiler.logic.spot import unless_installed
 from compiler.targets.ajpf import names
 from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.ajpf.safety_function import Reaction, Sif, sif
@@ -38,8 +39,13 @@ _WEAKEN = Options(weaken=True)
 
 @with_recursion_limit
 def refusal(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
-    """F601 for what AJPF or the agent cannot express; F614 if the agent is not proved correct."""
-    refused = ajpf.refusal(requirement, options)
+    """F601 for what AJPF or the agent cannot express; F614 if the agent is not proved correct.
+
+    F908 if the agent cannot be checked, because Spot is not installed.
+    """
+    refused = ajpf.refusal(requirement, options) or unless_installed(
+        "the agent of a bundle is checked before it is emitted, which needs"
+    )
     if refused is not None:
         return refused
     agent = checked_agent(requirement, options)

@@ -2,9 +2,11 @@
 
 A sentence that counts no ticks has the same verdict when a trace stutters. So it has a form without
 X, though its formula in `compiler/formalization/future.py` marks the ends of intervals by X. Here
-the form is built from two dual operators that stay within an interval of the scope. Spot proves
+the form is built from two dual operators that stay within an interval of the scope. Spot has proved
 each of its shapes equal to that formula, with plain propositions for the expressions: a result
-about propositions holds for all expressions in their places. Source: Peled and Wilke,
+about propositions holds for all expressions in their places. `proved_pairs.txt` has the hash of
+each pair of formulas that was proved equal, so a form that differs from the proved one counts as
+not proved. Tests have Spot prove all of them again. Source: Peled and Wilke,
 Stutter-invariant temporal properties are expressible without the next-time operator, IPL 63 (1997),
 for the existence of such forms; the forms are our own.
 """
@@ -13,11 +15,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from importlib.resources import files
 from typing import assert_never
 
+from compiler.files.text_files import sha256
 from compiler.formalization.future import future
 from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait
 from compiler.logic import formula as f
+from compiler.logic import printing
 from compiler.logic.formula import (
     FALSE,
     TRUE,
@@ -65,14 +70,34 @@ def next_free(obligation: Obligation) -> Formula | None:
     return _Interval(obligation.scope, obligation.mode).everywhere(obligation)
 
 
+Pair = tuple[Formula, Formula]
+"""A formula without X, and the formula to which it should be equal."""
+
+
 @cache
 def is_proved(scope: ScopeKind | None, condition: ConditionKind | None, kind: Kind) -> bool:
-    """Whether Spot finds the shape equal to the formula of `compiler/formalization/future.py`."""
-    from compiler.logic.spot import equivalent
+    """Whether Spot has proved the shape equal to the formula of `future.py`."""
+    pair = exact_pair(scope, condition, kind)
+    return pair is not None and digest(pair) in _proved_pairs()
 
+
+def exact_pair(scope: ScopeKind | None, condition: ConditionKind | None, kind: Kind) -> Pair | None:
+    """The form of a shape, and its formula; None if the demand counts ticks."""
     shape = _shape(scope, condition, kind)
-    ours = next_free(shape)
-    return ours is not None and equivalent(ours, f.endless(future(shape)))
+    form = next_free(shape)
+    return None if form is None else (form, f.endless(future(shape)))
+
+
+def digest(pair: Pair) -> str:
+    """SHA-256 of the texts of both formulas."""
+    return sha256("\n".join(map(printing.future, pair)))
+
+
+@cache
+def _proved_pairs() -> frozenset[str]:
+    """The digests of the pairs that Spot has proved equal."""
+    text = files("compiler.targets.ajpf").joinpath("proved_pairs.txt").read_text(encoding="utf-8")
+    return frozenset(line.split()[0] for line in text.splitlines())
 
 
 def unbounded(obligation: Obligation) -> Formula | None:
@@ -99,16 +124,20 @@ def _has_deadline(kind: Kind) -> bool:
 
 @cache
 def is_weaker(scope: ScopeKind | None, condition: ConditionKind | None) -> bool:
-    """Whether Spot proves the unbounded shape equal to `within n` without its bound.
+    """Whether Spot has proved the unbounded shape equal to `within n` without its bound."""
+    pair = weaker_pair(scope, condition)
+    return pair is not None and digest(pair) in _proved_pairs()
+
+
+def weaker_pair(scope: ScopeKind | None, condition: ConditionKind | None) -> Pair | None:
+    """The unbounded form of `within n`, and its formula without the bound; None: it has none.
 
     The bounds of the formula are under no negation, so the formula implies its unbounded form for
     any n; and the shape is equal to that form.
     """
-    from compiler.logic.spot import equivalent
-
     shape = _shape(scope, condition, Kind.WITHIN, 2)
     weak = unbounded(shape)
-    return weak is not None and equivalent(_without_bounds(f.endless(future(shape))), weak)
+    return None if weak is None else (weak, _without_bounds(f.endless(future(shape))))
 
 
 def _without_bounds(formula: Formula) -> Formula:

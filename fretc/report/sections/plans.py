@@ -11,6 +11,7 @@ from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import Planned, ProofView
 from fretc.report.sections.proofs import covering, in_words, is_proved, worst
+from fretish.diagnostics.diagnostic import Code
 
 _AUDIT = "audit"
 
@@ -69,6 +70,9 @@ def _at_hand(assessment: Assessment, method: str) -> str:
         return ""
     if assessment.requirement is None:
         return f", and none is possible: the requirement is {UNFORMALIZED}"
-    if target.refuse(assessment.requirement) is not None:
+    refused = target.refuse(assessment.requirement)
+    if refused is not None and refused.code is Code.MISSING_EXTRA:
+        return f", and its file cannot be generated here: {refused.message}"
+    if refused is not None:
         return f", and none is possible: {method} cannot express the requirement"
     return "; its file can be generated, but no check of it is recorded"

@@ -92,10 +92,16 @@ def _evidence(
         Layer.LOOP,
         claim,
         result,
-        f"fretc, explicit states; Spot {automata.version()}",
+        engine(),
         premises,
         artefacts(requirement, setup),
     )
+
+
+def engine() -> str:
+    """The engine as proofs name it."""
+    own = "fretc, explicit states"
+    return f"{own}; Spot {automata.version()}" if automata.is_installed() else own
 
 
 def artefacts(requirement: FormalizedRequirement, setup: Setup) -> dict[str, str]:

@@ -1,7 +1,8 @@
 """Exploration of the closed loop: a shortest violation, an endless one, a stop that stays.
 
 All of it is reachability in a finite graph (`fretc.verification.loop.model`); Spot searches for
-endless runs. The code replays each run before a result contains it.
+endless runs, and without it no claim about them is checked. The code replays each run before a
+result contains it.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from functools import lru_cache
 from typing import assert_never
 
 from compiler.logic import formula as f
+from compiler.logic import spot
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted, vacuous
 from compiler.logic.kripke import Explored, TooManyStatesError, check, explore
 from compiler.logic.orders import Exclusion
@@ -221,6 +223,8 @@ def _requirement_result(case: Case, parts: Parts, reached: Exploration, runs: Ru
         return proved(looked)
     if f.longest_bound(case.formula) > LONGEST:
         return not_checked(f"no finite run violates it; Spot is not asked above {LONGEST} ticks")
+    if not spot.is_installed():
+        return not_checked(f"no finite run violates it; for endless ones {spot.ABSENT}")
     lasso = _lasso(parts, runs, case.formula)
     if lasso is None:
         return proved(f"{looked}; Spot finds no endless run that violates it")
@@ -228,10 +232,12 @@ def _requirement_result(case: Case, parts: Parts, reached: Exploration, runs: Ru
 
 
 def _release_result(parts: Parts, runs: Runs) -> Outcome:
+    if not any(_HALT.name in label for label in runs.explored.kripke.labels):
+        return vacuous("no stop is ever in force")
+    if not spot.is_installed():
+        return not_checked(spot.ABSENT)
     lasso = _lasso(parts, runs, RELEASE)
     if lasso is None:
-        if not any(_HALT.name in label for label in runs.explored.kripke.labels):
-            return vacuous("no stop is ever in force")
         return proved("Spot finds no endless run that violates it")
     return refuted("the stop is never released: the last ticks repeat for ever", lasso)
 

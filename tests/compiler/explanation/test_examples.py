@@ -9,10 +9,10 @@ from compiler.explanation import examples as made_of
 from compiler.explanation.examples import Example, Examples, examples
 from compiler.explanation.reasons import why
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.spot import holds_on
 from tests import meaning
 from tests.effort import FULL
 from tests.monitoring import monitor, requirement, steps
+from tests.spot_oracle import holds_on
 from tests.strategies import Template, some_templates
 
 QUIET = 3

@@ -18,7 +18,7 @@ from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.definition import holds
 from compiler.logic.formula import Formula, children, endless
-from compiler.logic.spot import equivalent, same_language
+from compiler.logic.spot import same_language
 from fretish.clock import Clock, Rounding, in_ticks
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
@@ -28,6 +28,7 @@ from tests import fret_notation as fret
 from tests.each import each
 from tests.effort import FULL, some
 from tests.meaning import SCOPES
+from tests.spot_oracle import equivalent
 from tests.strategies import Template, some_templates, templates
 
 DATA = Path(__file__).parents[2] / "data"

@@ -10,11 +10,12 @@ from hypothesis import strategies as st
 from compiler.formalization.formalize import formalize
 from compiler.logic import formula as f
 from compiler.logic import printing
-from compiler.logic.spot import equivalent, holds_on, same_language, simplified
+from compiler.logic.spot import same_language, simplified
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from tests.each import each
 from tests.effort import examples, some
+from tests.spot_oracle import equivalent, holds_on
 from tests.strategies import quoted_texts
 
 a, b = f.Atom("a"), f.Atom("b")

@@ -13,7 +13,7 @@ from compiler.agents.psl_printing import property_text
 from compiler.emit import TARGETS
 from compiler.logic import formula as f
 from compiler.logic import printing
-from compiler.logic.spot import equivalent, same_language
+from compiler.logic.spot import same_language
 from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.target import DEFAULT, Options, Target
 from fretish import expressions as e
@@ -24,6 +24,7 @@ from fretish.diagnostics.source import Source
 from fretish.printer import canonical
 from tests.bound_requirements import bound_requirement as requirement
 from tests.effort import FULL, examples, some
+from tests.spot_oracle import equivalent
 from tests.strategies import Template, templates
 
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"

@@ -7,7 +7,6 @@ import pytest
 
 from compiler.logic.diagrams.decision_diagrams import Function
 from compiler.logic.formula import atoms
-from compiler.logic.spot import holds_on
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.games import game_traces, squaring
 from fretc.analysis.games.game import Game, Letter
@@ -24,6 +23,7 @@ from tests.requirement_sets import (
     staged,
     synthesized,
 )
+from tests.spot_oracle import holds_on
 
 SETS = 5_000 if FULL else 32
 """With `--hypothesis-profile=full` it takes two minutes."""
