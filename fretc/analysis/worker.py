@@ -45,9 +45,13 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
         number = 0
         while number < len(jobs) and not is_stopped():
             process, answers = _started(jobs[number:], found)
+            is_full = False
             progress(jobs[number].title)
             try:
-                while not isinstance(finding := _next(process, answers, is_stopped), MemoryError):
+                while True:
+                    finding = _next(process, answers, is_stopped)
+                    if is_full := isinstance(finding, MemoryError):
+                        break
                     if isinstance(finding, Exception):
                         raise finding
                     if finding is not None:
@@ -64,7 +68,8 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
                 process.join()
                 answers.close()
             if number < len(jobs) and not is_stopped():
-                found.append(jobs[number].lost(_ending(process.exitcode or 0)))
+                why = _FULL if is_full else _ending(process.exitcode or 0)
+                found.append(jobs[number].lost(why))
                 yield found[-1]
                 number += 1
         if is_stopped():
@@ -118,7 +123,7 @@ def _started(jobs: Sequence[Job[F]], found: Sequence[F]) -> tuple[ForkProcess, C
 def _answer(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[F]) -> None:
     """Send each finding, None at the end of each job, and an internal error if there is one."""
     ignore_interrupts()
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # BuDDy's last words
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # last words of a library
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     guard()
@@ -136,6 +141,12 @@ def _answer_all(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[
             known.append(finding)
             connection.send(finding)
         connection.send(None)
+
+
+_FULL = (
+    f"it took more than {MEMORY // 2**30} GiB of memory, or more decision diagrams than their table "
+    "holds"
+)
 
 
 def _ending(status: int) -> str:

@@ -15,7 +15,7 @@ from oxidd.util import BooleanOperator
 
 _STEP = 256
 _NODES = 2**25
-"""Limit of the table: 16 bytes a node, of which the system gives those that are used."""
+"""Capacity of the table: 16 bytes a node, of which the system gives those that are used."""
 _CACHE = 2**20
 
 
@@ -49,9 +49,14 @@ class OxiddEngine:
 
     name = "OxiDD"
 
-    def __init__(self) -> None:
+    def __init__(self, nodes: int = _NODES) -> None:
+        """An engine of its own; its functions do not go together with those of another one.
+
+        Args:
+            nodes: capacity of the table.
+        """
         _add_operators()
-        self._manager = BDDManager(_NODES, _CACHE, 1)
+        self._manager = BDDManager(nodes, _CACHE, 1)
         self._variables: list[Any] = []
         self.true: Any = self._manager.true()
         self.false: Any = self._manager.false()

@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 
 import pytest
 
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.oxidd_engine import OxiddEngine
 from fretc.analysis.analysis import Finding, Job
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import OpenQuestion
@@ -44,6 +46,36 @@ def test_a_process_that_dies_is_replaced() -> None:
         ("b", "lost: it took more than 4 GiB of memory, or failed (exit status 6)"),
         ("c", "4 before"), ("c", "end"),
     ]  # fmt: skip
+
+
+def test_a_full_table_of_diagrams_loses_one_answer() -> None:
+    def fill() -> None:
+        there = OxiddEngine(nodes=2**10)
+        function = there.true
+        for bit in range(20):
+            function = function & (there.variable(bit) ^ there.variable(100 + bit))
+
+    assert told([job("a", fill), job("b")]) == [
+        ("a", "0 before"),
+        (
+            "a",
+            "lost: it took more than 4 GiB of memory, or more decision diagrams than their table "
+            "holds",
+        ),
+        ("b", "2 before"),
+        ("b", "end"),
+    ]
+
+
+def test_a_process_goes_on_with_the_diagrams_of_its_parent() -> None:
+    one, other = bdd.variable(0), bdd.variable(1)
+    function = one ^ other
+
+    def go_on() -> None:
+        assert bdd.exists(function & bdd.variable(2), bdd.cube([0])) == bdd.variable(2)
+        assert bdd.ite(one, -other, other) == function
+
+    assert told([job("a", go_on)])[-1] == ("a", "end")
 
 
 @pytest.mark.slow
