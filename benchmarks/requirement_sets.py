@@ -1,7 +1,13 @@
-"""Can a set be kept: our game against Spot's synthesis from formulas, and sets that are hard."""
+"""Can a set be kept: our game against Spot's synthesis from formulas, and sets that are hard.
+
+Each line is printed with OxiDD and with BuDDy; `--one` measures the engine of `FRETC_DIAGRAMS`.
+"""
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import time
 from collections.abc import Sequence
 
@@ -13,6 +19,7 @@ from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import Roles
 from tests.requirement_sets import ROLES, drawn, requirements, roles, staged
 
+ENGINES = ("OxiDD", "BuDDy")
 LIMIT = 60
 """Seconds after which a set counts as not answered."""
 
@@ -121,7 +128,27 @@ def show(what: str, sentences: Sequence[str], named: Roles) -> None:
     print(f"{what}: {'realizable' if verdict else 'unrealizable'}, {seconds:.2f} s", flush=True)
 
 
+def beside() -> None:
+    """All of it with each engine of decision diagrams, line by line beside each other."""
+    outputs = [
+        subprocess.run(
+            [sys.executable, "-m", "benchmarks.requirement_sets", "--one"],
+            env={**os.environ, "FRETC_DIAGRAMS": engine.lower()},
+            stdout=subprocess.PIPE,
+            check=True,
+            text=True,
+        ).stdout.splitlines()
+        for engine in ENGINES
+    ]
+    for lines in zip(*outputs, strict=True):
+        for engine, line in zip(ENGINES, lines, strict=True):
+            print(f"{engine}  {line}")
+
+
 if __name__ == "__main__":
-    against_spot()
-    hard()
-    pump()
+    if "--one" in sys.argv:
+        against_spot()
+        hard()
+        pump()
+    else:
+        beside()

@@ -29,8 +29,8 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
 _INSTALL = (
-    "install Spot: `pip install spottl` on Linux x86-64 with CPython 3.11 to 3.13; elsewhere "
-    "`conda install -c conda-forge spot`, in the environment of fretc"
+    "install Spot: `pip install spottl` on Linux x86-64 with CPython 3.11 to 3.13; on macOS and "
+    "other Linux `conda install -c conda-forge spot` in the environment of fretc"
 )
 ABSENT = f"{Code.MISSING_EXTRA.number} Spot is not installed: {_INSTALL}"
 """The reason why a claim is not checked."""

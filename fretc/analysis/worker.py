@@ -144,8 +144,8 @@ def _answer_all(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[
 
 
 _FULL = (
-    f"it took more than {MEMORY // 2**30} GiB of memory, or more decision diagrams than their table "
-    "holds"
+    f"it took more than {MEMORY // 2**30} GiB of memory, or more decision diagrams than their "
+    "table holds"
 )
 
 

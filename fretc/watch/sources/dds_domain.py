@@ -78,7 +78,8 @@ def join() -> Domain | Diagnostic:
         return Diagnostic(
             Code.MISSING_EXTRA,
             f"watching DDS needs Cyclone DDS, which is not installed: {error}",
-            help=install_help("live"),
+            help=f"{install_help('live')}; Cyclone DDS has no wheel for Python 3.14 and none for "
+            "Linux on ARM64: there use `fretc watch foxglove` with a bridge",
         )
     number = domain_id()
     return number if isinstance(number, Diagnostic) else _joined(number)

@@ -1,7 +1,9 @@
 """Shorter formulas: equivalent, never longer, and no bound is unrolled."""
 
+import sys
 from collections.abc import Iterator
 from itertools import product
+from types import ModuleType
 
 import pytest
 from hypothesis import given
@@ -10,7 +12,8 @@ from hypothesis import strategies as st
 from compiler.formalization.formalize import formalize
 from compiler.logic import formula as f
 from compiler.logic import printing
-from compiler.logic.spot import same_language, simplified
+from compiler.logic.spot import is_installed, same_language, simplified, unless_installed
+from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from tests.each import each
@@ -44,6 +47,27 @@ def formulas(sentence: str) -> tuple[f.Formula, f.Formula]:
 def steps(text: str) -> int:
     """How many operators look at the next tick."""
     return text.replace("(", " ").replace("!", " ").split().count("X")
+
+
+# Missing --------------------------------------------------------------------------------------
+
+
+def test_a_package_of_the_same_name_is_not_spot(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert is_installed()
+    monkeypatch.setitem(sys.modules, "spot", ModuleType("spot"))
+    assert not is_installed()
+
+
+def test_what_needs_spot_names_the_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert unless_installed("a proof needs") is None
+    monkeypatch.setitem(sys.modules, "spot", None)
+    missing = unless_installed("a proof needs")
+    assert missing is not None
+    assert render(missing) == (
+        "F908 a proof needs Spot, which is not installed\n"
+        "help: install Spot: `pip install spottl` on Linux x86-64 with CPython 3.11 to 3.13; on "
+        "macOS and other Linux `conda install -c conda-forge spot` in the environment of fretc"
+    )
 
 
 # Equivalence ----------------------------------------------------------------------------------

@@ -21,7 +21,9 @@ from compiler.logic.diagrams.oxidd_engine import OxiddEngine
 ROOT = Path(__file__).parents[4]
 NUMBERS = (0, 2, 4, 300)
 SPARE = {number: number + 1 for number in NUMBERS}
-ASSIGNMENTS = [dict(zip(NUMBERS, values, strict=True)) for values in product((False, True), repeat=4)]
+ASSIGNMENTS = [
+    dict(zip(NUMBERS, values, strict=True)) for values in product((False, True), repeat=4)
+]
 Table = tuple[bool, ...]
 """Shape (16,): the value for each assignment."""
 tables = st.tuples(*[st.booleans()] * len(ASSIGNMENTS))
