@@ -9,6 +9,7 @@ import signal
 import sys
 import warnings
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,7 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 import pytest  # noqa: E402
 from hypothesis import HealthCheck, settings  # noqa: E402
 
-with warnings.catch_warnings():
+with warnings.catch_warnings(), suppress(ImportError):  # it is not installed everywhere
     # Spot's bindings warn while they are imported, and crash where a warning is an error.
     warnings.simplefilter("ignore", DeprecationWarning)
     import spot  # noqa: F401

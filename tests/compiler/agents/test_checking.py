@@ -6,6 +6,7 @@ import pytest
 
 from compiler.agents.checking import check_agent
 from compiler.logic.claims import Layer, Proof, Result, not_checked, proved, vacuous
+from compiler.logic.spot import ABSENT
 from compiler.targets.ajpf import properties as ajpf
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
@@ -45,6 +46,13 @@ def refused(properties: str, percepts: Sequence[str], agent: str = PAPER) -> Dia
 
 def statuses(found: tuple[Proof, ...]) -> list[tuple[str, str]]:
     return [(line.requirement, line.result) for line in found]
+
+
+def test_without_spot_nothing_about_an_agent_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("compiler.logic.spot.is_installed", lambda: False)
+    found = lines(f"1a: {R1}\n{CONTROLS}", ["too_close"])
+    assert [line.requirement for line in found] == ["1a", "1a_reach", "1a_resp"]
+    assert all(outcome(line) == not_checked(ABSENT) and line.engine == "fretc" for line in found)
 
 
 def test_the_papers_agent_is_proved_where_its_trigger_comes_and_the_check_can_fail() -> None:

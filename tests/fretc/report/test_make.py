@@ -376,6 +376,19 @@ def test_a_planned_method_without_a_result_is_reported(tmp_path: Path) -> None:
     )
 
 
+def test_without_spot_the_file_of_a_planned_bundle_is_not_at_hand(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("compiler.logic.spot.is_installed", lambda: False)
+    sentence = "whenever near the robot shall eventually satisfy stopped"
+    known = project(tmp_path, requirement("R1", sentence, verify=["ajpf-bundle"]))
+    (planned,) = content_of(known, tmp_path)["planned"]
+    assert planned["result"] == (
+        "no result is recorded, and its file cannot be generated here: the agent of a bundle is "
+        "checked before it is emitted, which needs Spot, which is not installed"
+    )
+
+
 def test_what_a_target_cannot_say_is_not_expressible(tmp_path: Path) -> None:
     sentence = "when near the robot shall within 3 ticks satisfy stopped"
     known = project(tmp_path, requirement("R1", sentence, verify=["ajpf"]))

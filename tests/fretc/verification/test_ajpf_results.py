@@ -153,6 +153,17 @@ def test_a_result_of_the_requirement_as_it_was_is_stale(ran: Mcapl) -> None:
 
 
 @pytest.mark.slow
+def test_without_spot_a_result_is_compared_with_no_bundle(
+    ran: Mcapl, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("compiler.logic.spot.is_installed", lambda: False)
+    assert outcome(only(ran)) == not_checked(
+        "it cannot be compared with the present bundle: F908 the agent of a bundle is checked "
+        "before it is emitted, which needs Spot, which is not installed"
+    )
+
+
+@pytest.mark.slow
 def test_a_stale_refutation_is_told_as_one(ran: Mcapl) -> None:
     ran.says({"R1.jpf": (RECORDED, 0)})
     ran.run()

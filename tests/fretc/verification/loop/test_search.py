@@ -6,6 +6,7 @@ import pytest
 
 from compiler.logic import formula as f
 from compiler.logic.claims import Outcome, Result, not_checked, vacuous
+from compiler.logic.spot import ABSENT
 from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.search import is_safety, search
 from monitors.interceptor import Options
@@ -55,6 +56,16 @@ def test_what_each_loop_keeps_within_two_ticks(
 ) -> None:
     results = search(case(WITHIN.format(2), settings, channel))
     assert (results.kept.result, results.released.result) == (kept, released)
+
+
+@pytest.mark.slow
+def test_without_spot_only_finite_runs_are_searched(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("compiler.logic.spot.is_installed", lambda: False)
+    bounded = search(case(WITHIN.format(2)))
+    assert bounded.kept.result is Result.PROVED
+    assert bounded.released == not_checked(ABSENT)
+    endless = search(case(EVENTUALLY))
+    assert endless.kept == not_checked(f"no finite run violates it; for endless ones {ABSENT}")
 
 
 def test_without_a_bound_only_what_is_sent_once_is_lost() -> None:
