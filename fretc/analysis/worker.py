@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
 from multiprocessing.context import ForkProcess
+from pathlib import Path
 from typing import Any, TypeVar
 
 from compiler.files.processes import ignore_interrupts, reply, stops_blocked
@@ -23,7 +24,7 @@ from fretish.reading.recursion import with_recursion_limit
 
 F = TypeVar("F")
 MEMORY = 4 * 2**30
-"""Limit of the process's address space, in bytes."""
+"""Address space, in bytes, that the process may use besides that of its parent."""
 
 
 class Interrupted(Exception):  # noqa: N818
@@ -125,12 +126,18 @@ def _answer(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[F]) 
     ignore_interrupts()
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # last words of a library
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    most = _address_space() + MEMORY
+    resource.setrlimit(resource.RLIMIT_AS, (most, most))
     guard()
     with suppress(OSError):
         is_complete, error = reply(_answer_all, connection, jobs, found)
         if not is_complete:
             connection.send(error)
+
+
+def _address_space() -> int:
+    """The size of the process in bytes, which it has from its parent."""
+    return int(Path("/proc/self/statm").read_bytes().split()[0]) * os.sysconf("SC_PAGE_SIZE")
 
 
 @with_recursion_limit

@@ -1,5 +1,6 @@
 """Questions in a process of their own: one that dies or hangs costs no other its answer."""
 
+import mmap
 import multiprocessing
 import os
 import signal
@@ -65,6 +66,17 @@ def test_a_full_table_of_diagrams_loses_one_answer() -> None:
         ("b", "2 before"),
         ("b", "end"),
     ]
+
+
+def test_a_large_parent_leaves_memory_to_the_question() -> None:
+    """The table of an engine alone is 1.7 GiB of address space."""
+
+    def start() -> None:
+        OxiddEngine()
+
+    private = mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS
+    with mmap.mmap(-1, 5 * 2**30, flags=private, prot=mmap.PROT_READ):
+        assert told([job("a", start)])[-1] == ("a", "end")
 
 
 def test_a_process_goes_on_with_the_diagrams_of_its_parent() -> None:
