@@ -359,7 +359,10 @@ def test_without_the_package_the_extra_is_named(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(sys.modules, "cyclonedds.domain", None)
     (problem,) = [each for each in Dds().arrivals(["/x"]) if isinstance(each, Problem)]
     assert problem.diagnostic.code is Code.MISSING_EXTRA
-    assert problem.diagnostic.help == install_help("live")
+    assert problem.diagnostic.help == (
+        f"{install_help('live')}; Cyclone DDS has no wheel for Python 3.14 and none for Linux on "
+        "ARM64: there use `fretc watch foxglove` with a bridge"
+    )
 
 
 def test_words_and_names() -> None:
