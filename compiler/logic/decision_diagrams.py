@@ -88,11 +88,6 @@ def exists(function: Function, variables: Function) -> Function:
     return _buddy().bdd_exist(function, variables)
 
 
-def forall(function: Function, variables: Function) -> Function:
-    """Universal quantification over the variables of a cube."""
-    return _buddy().bdd_forall(function, variables)
-
-
 def and_exists(left: Function, right: Function, variables: Function) -> Function:
     """`exists(left & right, variables)`, without the conjunction ever being built."""
     buddy = _buddy()

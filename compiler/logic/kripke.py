@@ -139,29 +139,3 @@ def _is_run(kripke: Kripke, lasso: Lasso) -> bool:
     states = (*lasso.states, lasso.cycle[0])
     steps = pairwise(states)
     return states[0] == kripke.initial and all(b in kripke.successors(a) for a, b in steps)
-
-
-def way_to(kripke: Kripke, goal: Callable[[frozenset[str]], bool]) -> tuple[int, ...] | None:
-    """A shortest path to a state whose atoms the goal accepts.
-
-    Returns:
-        The states from the initial one to that state; None if no run reaches one.
-    """
-    came: dict[int, int | None] = {kripke.initial: None}
-    waiting = [kripke.initial]
-    for state in waiting:
-        if goal(kripke.labels[state]):
-            return _way(came, state)
-        for following in kripke.successors(state):
-            if following not in came:
-                came[following] = state
-                waiting.append(following)
-    return None
-
-
-def _way(came: dict[int, int | None], state: int | None) -> tuple[int, ...]:
-    way: list[int] = []
-    while state is not None:
-        way.append(state)
-        state = came[state]
-    return tuple(reversed(way))

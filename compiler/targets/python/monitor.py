@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
+from typing import Any
 
 from compiler.files.artifact import Artifact
 from compiler.files.build_id import __version__
@@ -154,9 +155,7 @@ def text(*requirements: FormalizedRequirement) -> str:
         requirement for requirement in requirements if requirement.sentence.probability
     ]
     requirements = tuple(map(without_probability, requirements))
-    names = tuple(
-        dict.fromkeys(name for requirement in requirements for name in requirement.watched)
-    )
+    names = watched(requirements)
     prefixes = prefixes_of([requirement.id for requirement in requirements])
     compared = input_adapter(requirements, names)
     variables = compared.inputs if compared else {}
@@ -169,12 +168,9 @@ def text(*requirements: FormalizedRequirement) -> str:
     inputs = [_Input(name, parameters[name], _is_negated(name, code)) for name in names]
     return render(
         "monitor/monitor.py.j2",
-        title=", ".join(requirement.id for requirement in requirements),
+        **description(requirements),
         class_name=_class_name(requirements[0].id) if len(requirements) == 1 else "All",
-        version=__version__,
-        formalized=[description_of(requirement) for requirement in requirements],
         probabilistic=[_probability_note(requirement) for requirement in probabilistic],
-        tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         inputs=inputs,
         row=_tuple([p.name for p in inputs]),
         by_mapping=len(inputs) > MOST_PARAMETERS,
@@ -303,6 +299,23 @@ def _probability_note(requirement: FormalizedRequirement) -> dict[str, str]:
         "id": requirement.id,
         "odds": f"{odds.op} {odds.digits}",
         "fingerprint": requirement.fingerprint,
+    }
+
+
+def watched(requirements: Sequence[FormalizedRequirement]) -> tuple[str, ...]:
+    """The propositions that a monitor of all requirements reads, each once."""
+    return tuple(
+        dict.fromkeys(name for requirement in requirements for name in requirement.watched)
+    )
+
+
+def description(requirements: Sequence[FormalizedRequirement]) -> dict[str, Any]:
+    """The description at the top of a monitor, as values for a template."""
+    return {
+        "title": ", ".join(requirement.id for requirement in requirements),
+        "version": __version__,
+        "formalized": [description_of(requirement) for requirement in requirements],
+        "tick": str(requirements[0].clock) if requirements[0].clock else "not declared",
     }
 
 

@@ -50,30 +50,10 @@ class NotAMonitorError(Exception):
     """The text cannot be executed as a generated monitor; the message gives the reason."""
 
 
-def verified(
-    requirement: FormalizedRequirement,
-    text: str,
-    limit: int = MOST_STATES,
-    others: Sequence[FormalizedRequirement] = (),
-) -> Outcome:
-    """Compare the text of a monitor with its requirement.
-
-    Args:
-        requirement: a requirement that the target accepts, on its own clock.
-        text: text of its monitor, perhaps with monitors of other requirements.
-        limit: maximum number of states of the exploration.
-        others: further requirements that the text may implement.
-
-    Raises:
-        NotAMonitorError: the text is not a generated monitor.
-    """
-    return verified_beside(requirement, text, written(text, (requirement, *others)), limit)
-
-
 def verified_beside(
     requirement: FormalizedRequirement, text: str, whole: str | None, limit: int = MOST_STATES
 ) -> Outcome:
-    """Same as `verified`, for several requirements of one text.
+    """Compare the text of a monitor with its requirement.
 
     Args:
         requirement: a requirement that the target accepts, on its own clock.
