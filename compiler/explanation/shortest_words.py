@@ -119,7 +119,8 @@ class ShortestWords:
             return run  # an interval that never ends has no last tick
         for first in self._moves(start):
             second = self._after(first)
-            if second is not None and self._stays(first, second, accepted=accepted):
+            stays = second is not None and first.target == second.target
+            if stays and self.final[first.target] is accepted:
                 return Run(run.moves, (first,))
         return run
 
@@ -128,10 +129,6 @@ class ShortestWords:
         if move.target == BROKEN:
             return None
         return next(again for again in self._moves(move.target) if again.letter == move.letter)
-
-    def _stays(self, first: Move, second: Move, *, accepted: bool) -> bool:
-        """Whether repeating the letter stays in a loop with that verdict."""
-        return first.target == second.target and self.final[first.target] is accepted
 
     @property
     def needs_end(self) -> bool:

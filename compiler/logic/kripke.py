@@ -50,7 +50,7 @@ class Lasso:
         return self.prefix + self.cycle
 
 
-class TooManyStatesError(Exception):
+class ModelTooLargeError(Exception):
     """The model has more states than was allowed."""
 
     def __init__(self, limit: int) -> None:
@@ -82,7 +82,7 @@ def explore(
         limit: the maximum number of states.
 
     Raises:
-        TooManyStatesError: there are more states.
+        ModelTooLargeError: there are more states.
     """
     numbers = {initial: 0}
     states = [initial]
@@ -93,7 +93,7 @@ def explore(
             number = numbers.setdefault(state, len(states))
             if number == len(states):
                 if number >= limit:
-                    raise TooManyStatesError(limit)
+                    raise ModelTooLargeError(limit)
                 states.append(state)
             following[number] = None
         edges.append(tuple(following))

@@ -11,7 +11,7 @@ from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.transition import State
 from fretc.analysis.games.game import Game, Letter, Solution, Trap, whole
-from fretc.analysis.games.squaring import Relation, TooLargeError
+from fretc.analysis.games.squaring import Relation, RelationTooLargeError
 
 Run = tuple[Letter, int]
 """A valuation, and its number of ticks."""
@@ -129,7 +129,7 @@ class Counterstrategy:
         moves = game.transition.relation(stays, bdd.true(), known)
         try:
             return Relation(game.transition.bits, moves, self._budget).longest(state)
-        except TooLargeError:
+        except RelationTooLargeError:
             return 0, state
 
     def _following(self, state: State, promise: int) -> int:

@@ -22,16 +22,14 @@ from compiler.logic.claims import (
     Layer,
     Outcome,
     Proof,
-    not_applicable,
     not_checked,
     proof,
     proved,
     refuted,
 )
-from compiler.logic.kripke import TooManyStatesError
+from compiler.logic.kripke import ModelTooLargeError
 from compiler.targets.python import monitor as target
-from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, NoResult
+from fretc.verification.engines.sandbox import Limits
 from fretc.verification.interceptor.file import is_original
 from fretc.verification.interceptor.machine import NotAnInterceptorError
 from fretc.verification.loop.abstraction import (
@@ -46,7 +44,14 @@ from fretc.verification.loop.abstraction import (
     times_of,
 )
 from fretc.verification.loop.actuation_model import ActuationModel, Channel
-from fretc.verification.loop.closed_loop import Setup, artefacts, assumptions, case, inapplicable
+from fretc.verification.loop.closed_loop import (
+    Setup,
+    answered,
+    artefacts,
+    assumptions,
+    case,
+    inapplicable,
+)
 from fretc.verification.loop.search import Case, NotALoopError, Parts, as_table, reach
 from fretc.verification.monitor.statements import is_same
 from fretish import syntax as s
@@ -102,15 +107,8 @@ def bounds_proofs(
     """Proofs of both claims: a response comes in time for all times; and the bound is enough."""
     reason = _inapplicable(requirement, setup)
     query = reason or question(requirement, setup)
-    answer: Answer | NoResult
-    if reason is not None:
-        answer = Answer(not_applicable(reason), not_applicable(reason))
-    elif isinstance(query, str):
-        answer = NoResult(query)
-    else:
-        answer = processes.confined(limits, search, query)
-    if isinstance(answer, NoResult):
-        answer = Answer(not_checked(answer.reason), not_checked(answer.reason))
+    found = answered(reason, query, search, limits)
+    answer = Answer(found, found) if isinstance(found, Outcome) else found
     at_declared, at_any = (
         ()
         if isinstance(query, str)
@@ -203,19 +201,19 @@ def _answers(sentence: s.Sentence, stands: str) -> bool:
 def search(query: Question) -> Answer:
     """Prove the invariant, compare abstraction and code, and search for the least bound."""
     try:
-        endless = _endless(query)
+        endless = _with(query, s.Eventually())  # so that no run ends at a deadline
         parts = Parts.of(endless)
         longest, steps, loops = _covered(query, endless, parts)
         obstacle, version = _proved(times_of(query.case.channel))
         if obstacle is not None:
             return Answer(not_checked(obstacle), not_checked(obstacle), version)
-        answered: Outcome = proved(
+        in_time: Outcome = proved(
             f"by an inductive invariant; {steps:,} steps of {loops} loops are steps of its model"
         )
         if query.unknown is not None:
-            answered = not_checked(query.unknown)
-        return Answer(answered, _least(query, longest + 1, parts.loop.drive), version)
-    except (NotALoopError, NotAnInterceptorError, TooManyStatesError) as error:
+            in_time = not_checked(query.unknown)
+        return Answer(in_time, _least(query, longest + 1, parts.loop.drive), version)
+    except (NotALoopError, NotAnInterceptorError, ModelTooLargeError) as error:
         return Answer(not_checked(str(error)), not_checked(str(error)))
 
 
@@ -281,11 +279,6 @@ def _formula(channel: Channel) -> int:
     """D: ticks within which each obligation is met, as in the claim."""
     filled = -(-(channel.latency + channel.braking) // channel.cells)
     return channel.lost * times_of(channel).heartbeat + max(1, filled)
-
-
-def _endless(query: Question) -> Case:
-    """The case with `eventually` in place of the bound, so that no run ends at a deadline."""
-    return _with(query, s.Eventually())
 
 
 def _with(query: Question, timing: s.Timing) -> Case:

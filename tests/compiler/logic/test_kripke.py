@@ -7,7 +7,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from compiler.logic import formula as f
-from compiler.logic.kripke import Kripke, Lasso, TooManyStatesError, check, explore
+from compiler.logic.kripke import Kripke, Lasso, ModelTooLargeError, check, explore
 from tests.lassos import keeps, lassos
 
 p, q = f.Atom("B(a,p)"), f.Atom("B(a,q)")
@@ -108,7 +108,7 @@ def test_states_are_explored_breadth_first_and_edges_are_not_repeated() -> None:
 
 
 def test_there_is_a_limit_to_the_states() -> None:
-    with pytest.raises(TooManyStatesError, match="more than 1,000 states"):
+    with pytest.raises(ModelTooLargeError, match="more than 1,000 states"):
         counter(1000)
     assert len(counter(999).labels) == 1000
 
