@@ -10,7 +10,8 @@ from compiler.program.lowering import program
 from compiler.program.program import Counter
 from compiler.program.rails import Rail, Ring, rail
 from compiler.targets.comparison_names import comparison_names, in_words
-from compiler.targets.python.monitor import prefixes_of, watched
+from compiler.targets.python.monitor import watched
+from compiler.targets.python.names import prefixes_of
 from compiler.targets.target import not_expressible
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit

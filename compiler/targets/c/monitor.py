@@ -21,7 +21,8 @@ from compiler.signals.functions import Functions, functions
 from compiler.targets.c import signals
 from compiler.targets.c.printer import Printer
 from compiler.targets.fixed_memory import input_names, inputs, rail_of, too_large
-from compiler.targets.python.monitor import description, module, prefixes_of, refusal, remark
+from compiler.targets.python.monitor import description, refusal, remark
+from compiler.targets.python.names import module, prefixes_of
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit

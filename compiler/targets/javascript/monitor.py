@@ -18,15 +18,10 @@ from compiler.program.lowering import program
 from compiler.targets.javascript import signals
 from compiler.targets.javascript.constants import Constants, scale, truth
 from compiler.targets.javascript.printer import Printer
-from compiler.targets.python.comparisons import TRUTH, InputAdapter, Spelling, Writer, input_adapter
-from compiler.targets.python.monitor import (
-    description,
-    description_of,
-    module,
-    refusal,
-    remark,
-    watched,
-)
+from compiler.targets.python.comparisons import TRUTH, Spelling, Writer
+from compiler.targets.python.input_adapter import InputAdapter, input_adapter
+from compiler.targets.python.monitor import description, description_of, refusal, remark, watched
+from compiler.targets.python.names import module
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit

@@ -14,7 +14,8 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.spelling.reserved_words import RUST
 from compiler.targets.fixed_memory import input_names, inputs, rail_of, too_large
-from compiler.targets.python.monitor import description, module, refusal, remark
+from compiler.targets.python.monitor import description, refusal, remark
+from compiler.targets.python.names import module
 from compiler.targets.rust import signals
 from compiler.targets.rust.printer import Printer
 from compiler.targets.target import DEFAULT, Options, Target, stem

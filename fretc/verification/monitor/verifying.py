@@ -24,7 +24,7 @@ from compiler.formalization.numbers.reals import MOST_SEARCHED, with_numeric_cou
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
 from compiler.logic.orders import Exclusion
 from compiler.targets.python import monitor as target
-from compiler.targets.python.monitor import prefixes_of
+from compiler.targets.python.names import prefixes_of
 from fretc.verification.monitor import front_terms, rails
 from fretc.verification.monitor.columns import Disagreement, Terms, Word, agreed
 from fretc.verification.monitor.equivalence import (
