@@ -87,19 +87,19 @@ def planned(
     """
     declarations = project.declarations
     unauditable = refusals(project)
-    left_out = {id(entry) for entry, _ in unauditable}
+    left_out = {entry for entry, _ in unauditable}
     requirements = [
         requirement
         for requirement in active_requirements(project)
-        if id(requirement.entry) not in left_out
+        if requirement.entry not in left_out
     ]
     errors = tuple(dict.fromkeys(reason for _, why in unauditable for reason in why))
     if declarations is None or not requirements:
         return errors or (Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to audit"),)
-    texts = {id(requirement.entry): monitors.text(requirement) for requirement in requirements}
+    texts = {requirement.entry: monitors.text(requirement) for requirement in requirements}
     basis_of = bases(project, monitors={place: sha256(text) for place, text in texts.items()})
     claims = tuple(
-        _claim(requirement, basis_of[id(requirement.entry)], texts[id(requirement.entry)])
+        _claim(requirement, basis_of[requirement.entry], texts[requirement.entry])
         for requirement in requirements
     )
     refused = tuple(_refused(basis_of, entry, why) for entry, why in unauditable)
@@ -112,9 +112,11 @@ def planned(
 
 
 def _refused(
-    basis_of: Mapping[int, Basis], requirement: RequirementEntry, why: tuple[Diagnostic, ...]
+    basis_of: Mapping[RequirementEntry, Basis],
+    requirement: RequirementEntry,
+    why: tuple[Diagnostic, ...],
 ) -> RefusedRequirement:
-    return RefusedRequirement(requirement.id, wording(requirement), basis_of[id(requirement)], why)
+    return RefusedRequirement(requirement.id, wording(requirement), basis_of[requirement], why)
 
 
 def _claim(requirement: FormalizedRequirement, basis: Basis, monitor: str) -> AuditedRequirement:

@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import PurePosixPath
 from typing import Literal, assert_never
 
@@ -334,31 +335,17 @@ def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
     )
 
 
-def _refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(requirement)
-
-
-def _refuse_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(requirement, _WEAKEN)
-
-
-def _remark(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return remark(requirement)
-
-
-def _remark_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return remark(requirement, _WEAKEN)
-
-
 _SUMMARY = "a property file for the AJPF model checker"
 TARGET = Target(
     "ajpf",
     _SUMMARY,
     emit,
-    _refuse,
-    _remark,
+    refusal,
+    remark,
     names=names.everything,
-    weak=Target("ajpf", _SUMMARY, emit, _refuse_weak, _remark_weak),
+    weak=Target(
+        "ajpf", _SUMMARY, emit, partial(refusal, options=_WEAKEN), partial(remark, options=_WEAKEN)
+    ),
 )
 
 
