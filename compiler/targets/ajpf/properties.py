@@ -11,14 +11,12 @@ parser of MCAPL. Controls: Kupferman and Vardi, Vacuity detection in temporal mo
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from pathlib import PurePosixPath
 from typing import Literal, assert_never
 
 from compiler.agents.psl_printing import property_text
-from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Uninterpreted, boolean, obligation
@@ -31,8 +29,8 @@ from compiler.targets.target import (
     DEFAULT,
     Options,
     Target,
+    file_of_each,
     not_expressible,
-    stem,
     too_long,
 )
 from fretish import syntax as s
@@ -312,17 +310,6 @@ def _warning(requirement: FormalizedRequirement, code: Code, message: str, fix: 
     return Diagnostic(code, message, place, fix, Severity.WARNING)
 
 
-@with_recursion_limit
-def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
-) -> tuple[Artifact, ...]:
-    """`<id>.psl` for each requirement: the property, named by its id, and its controls."""
-    return tuple(
-        Artifact(PurePosixPath(f"{stem(requirement)}.psl"), text(requirement, options))
-        for requirement in requirements
-    )
-
-
 def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
     """The property file of one requirement."""
     return render(
@@ -335,16 +322,17 @@ def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
     )
 
 
+_EMIT = file_of_each("psl", text)
 _SUMMARY = "a property file for the AJPF model checker"
 TARGET = Target(
     "ajpf",
     _SUMMARY,
-    emit,
+    _EMIT,
     refusal,
     remark,
     names=names.everything,
     weak=Target(
-        "ajpf", _SUMMARY, emit, partial(refusal, options=_WEAKEN), partial(remark, options=_WEAKEN)
+        "ajpf", _SUMMARY, _EMIT, partial(refusal, options=_WEAKEN), partial(remark, options=_WEAKEN)
     ),
 )
 
