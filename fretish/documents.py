@@ -51,6 +51,10 @@ class RequirementEntry:
     mistakes: tuple[Diagnostic, ...] = ()
     """The errors of the header; if there are any, its fields are not read."""
 
+    def __hash__(self) -> int:
+        """By identity: two requirements may have one id, and none has two meanings."""
+        return id(self)
+
     @property
     def name(self) -> str:
         """The display name: `No contact (R14)`, or the id if there is no title."""

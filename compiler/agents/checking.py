@@ -34,7 +34,7 @@ from compiler.logic.claims import (
     refuted,
     vacuous,
 )
-from compiler.logic.kripke import Explored, Lasso, TooManyStatesError, check
+from compiler.logic.kripke import Explored, Lasso, ModelTooLargeError, check
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.recursion import with_recursion_limit
@@ -129,7 +129,7 @@ def _checked(
         explored = _ExploredModel.of(Model(read, tuple(drawn)), limit)
         spoilt = broken if isinstance(broken, Agent) else None
         return tuple(_PropertyProofs(props, explored, spoilt, artefacts, limit).all())
-    except TooManyStatesError as error:
+    except ModelTooLargeError as error:
         return _unknown(props, f"the agent has {error}", artefacts)
 
 

@@ -151,6 +151,16 @@ def _tokens(text: JoinedText) -> Iterator[_Token]:
         yield _Token(kind, match[0], span)
 
 
+_BINARY: tuple[tuple[str, Callable[[f.Formula, f.Formula], f.Formula]], ...] = (
+    ("U", f.Until),
+    ("R", f.Release),
+    ("->", f.Implies),
+    ("&", lambda left, right: f.And((left, right))),
+    ("||", lambda left, right: f.Or((left, right))),
+)
+"""The binary operators, the loosest first."""
+
+
 class _Reader:
     """A parser with one method for each level of the grammar; it collects `strings`."""
 
@@ -184,29 +194,16 @@ class _Reader:
     # Operators
 
     def formula(self) -> f.Formula:
-        return self._chain(self._rel, "U", f.Until)
+        return self._chain(0)
 
-    def _rel(self) -> f.Formula:
-        return self._chain(self._imp, "R", f.Release)
-
-    def _imp(self) -> f.Formula:
-        return self._chain(self._conj, "->", f.Implies)
-
-    def _conj(self) -> f.Formula:
-        return self._chain(self._disj, "&", lambda left, right: f.And((left, right)))
-
-    def _disj(self) -> f.Formula:
-        return self._chain(self._alw, "||", lambda left, right: f.Or((left, right)))
-
-    def _chain(
-        self,
-        operand: Callable[[], f.Formula],
-        operator: str,
-        build: Callable[[f.Formula, f.Formula], f.Formula],
-    ) -> f.Formula:
-        left = operand()
+    def _chain(self, level: int) -> f.Formula:
+        """A chain of the operator of this level, over chains of the next one."""
+        if level == len(_BINARY):
+            return self._alw()
+        operator, build = _BINARY[level]
+        left = self._chain(level + 1)
         while self.take(operator):
-            left = build(left, operand())
+            left = build(left, self._chain(level + 1))
         return left
 
     def _alw(self) -> f.Formula:

@@ -250,23 +250,25 @@ def _without_signals(sentence: Sentence, declarations: Declarations | None) -> S
     return with_expressions(sentence, partial(with_comparisons, rewrite=answered))
 
 
-def duplicate_ids(requirements: Sequence[RequirementEntry]) -> Mapping[int, Diagnostic]:
+def duplicate_ids(
+    requirements: Sequence[RequirementEntry],
+) -> Mapping[RequirementEntry, Diagnostic]:
     """F201 for every repeated id; case, `-`, `_` and `.` do not distinguish ids.
 
     Returns:
-        The diagnostic by the `id()` of each requirement with a repeated id, the first one included.
+        The diagnostic of each requirement with a repeated id, the first one included.
     """
     first: dict[str, RequirementEntry] = {}
-    diagnostics: dict[int, Diagnostic] = {}
+    diagnostics: dict[RequirementEntry, Diagnostic] = {}
     for requirement in requirements:
         earlier = first.setdefault(re.sub(r"[-.]", "_", requirement.id.lower()), requirement)
         if earlier is not requirement:
             place = earlier.place("id")
-            diagnostics[id(requirement)] = Diagnostic(
+            diagnostics[requirement] = Diagnostic(
                 Code.DUPLICATE_ID,
                 f"the id `{requirement.id}` is taken: {place.source.name}:{place.line}",
                 requirement.place("id"),
                 help="give each requirement another id; case, `-`, `_` and `.` do not count",
             )
-            diagnostics.setdefault(id(earlier), diagnostics[id(requirement)])
+            diagnostics.setdefault(earlier, diagnostics[requirement])
     return diagnostics

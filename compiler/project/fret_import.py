@@ -360,18 +360,13 @@ def assignment_field(role: str) -> str:
     return "modeRequirement" if role == Role.MODE else "assignment"
 
 
-def stands_for_something(role: str) -> bool:
-    """Whether FRET reads an assignment for the role; inputs have none."""
-    return role in (Role.INTERNAL, Role.MODE)
-
-
 def _value(record: Mapping[str, Any], written: str) -> e.Expression | None:
     """The assignment of a variable, as fretc wrote it if FRET's copy still agrees.
 
     None if it has no assignment, as inputs and outputs, or the assignment has no equivalent in
     FRETish.
     """
-    defines = stands_for_something(_text(record.get("idType")).lower())
+    defines = _text(record.get("idType")).lower() in (Role.INTERNAL, Role.MODE)
     if not defines or record.get("variable_name") == "FTP":  # FRETish's own name of the first tick
         return None
     own = record.get(OWN)

@@ -59,9 +59,9 @@ class Project:
     """Diagnostics about neither a single requirement nor a single table of the bindings: those of
     the bindings as a whole, of hazards, of parents and of the settings. An error in a table belongs
     to the requirements that read the table."""
-    mistaken: Mapping[int, Diagnostic] = field(default_factory=dict)
-    """The error of each formalized requirement that has one, by the `id()` of its entry: its id
-    is taken, or its `params` name something undeclared."""
+    mistaken: Mapping[RequirementEntry, Diagnostic] = field(default_factory=dict)
+    """The error of each formalized requirement that has one, by its entry: its id is
+    taken, or its `params` name something undeclared."""
     parents: Mapping[str, Parent] = field(default_factory=dict)
     """Parent requirements in other tools, by their ids."""
     acceptances: tuple[Acceptance, ...] = ()
@@ -80,9 +80,9 @@ class Project:
     @property
     def sound(self) -> Project:
         """The project without its `refused` requirements, retired ones included."""
-        refused = {id(refusal.requirement) for refusal in self.refused}
+        refused = {refusal.requirement for refusal in self.refused}
         requirements = tuple(
-            requirement for requirement in self.formalized if id(requirement.entry) not in refused
+            requirement for requirement in self.formalized if requirement.entry not in refused
         )
         return replace(self, formalized=requirements)
 

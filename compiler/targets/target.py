@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 from typing import Protocol
 
 from compiler.files.artifact import Artifact
@@ -14,6 +15,7 @@ from compiler.logic import formula as f
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.documents import RequirementEntry
+from fretish.reading.recursion import with_recursion_limit
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +83,26 @@ class Target:
     """The names of a requirement's propositions in the target's files."""
     weak: Target | None = None
     """The target when weakening is allowed: it refuses less, and remarks on the loss."""
+
+
+def file_of_each(ending: str, text: Callable[[FormalizedRequirement, Options], str]) -> Emit:
+    """The function `emit` of a target that writes one file, `<id>.ending`, for each requirement.
+
+    Args:
+        ending: the ending of the file, without a dot.
+        text: the text of the file.
+    """
+
+    @with_recursion_limit
+    def emit(
+        requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    ) -> tuple[Artifact, ...]:
+        return tuple(
+            Artifact(PurePosixPath(f"{stem(requirement)}.{ending}"), text(requirement, options))
+            for requirement in requirements
+        )
+
+    return emit
 
 
 def stem(requirement: FormalizedRequirement) -> str:

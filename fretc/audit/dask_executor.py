@@ -20,7 +20,6 @@ from urllib.parse import urlsplit
 from compiler.files.build_id import build_id
 from compiler.files.processes import isolate_imports
 from fretc.audit.many_logs import (
-    EVALUATIONS,
     Engine,
     LogAudits,
     LogResult,
@@ -286,9 +285,7 @@ def _bad_engine(name: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
         f"`{name}` is no engine",
-        help=f"write `--evaluation {name}`"
-        if name in EVALUATIONS
-        else "write `local`, `dask` or `dask://HOST:PORT`",
+        help="write `local`, `dask` or `dask://HOST:PORT`",
     )
 
 

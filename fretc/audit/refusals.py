@@ -33,8 +33,8 @@ def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic
     proposition, a clock, and a monitor.
     """
     requirements = active_requirements(project)
-    own = {id(requirement.entry): requirement for requirement in requirements}
-    refused = {id(each.requirement): each.why for each in project.refused}
+    own = {requirement.entry: requirement for requirement in requirements}
+    refused = {each.requirement: each.why for each in project.refused}
     unusable = (
         _unusable(project, requirements[0])
         if requirements and not has_errors(project.general)
@@ -42,8 +42,8 @@ def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic
     )
     refused_requirements = []
     for entry in project.requirements:
-        requirement = own.get(id(entry))
-        why = [*refused.get(id(entry), ())]
+        requirement = own.get(entry)
+        why = [*refused.get(entry, ())]
         if requirement is not None and unusable is not None:
             why.append(unusable)
         elif requirement is not None and project.declarations is not None:

@@ -60,7 +60,7 @@ if TYPE_CHECKING:
 
 
 _AUDIT = {
-    "Input": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
+    "Input": ("requirements", "bindings", "integrity", "confidence"),
     "Output": ("output_format", "verbose", "output", "parquet", "annotate", "annotations"),
     "Selection": ("since", "sample", "seed"),
     "Many logs, performance": (
@@ -114,14 +114,6 @@ _AUDIT = {
     "--verbose",
     is_flag=True,
     help="List every result. Without it, many runs are shown as a table of symbols.",
-)
-@click.option(
-    "--evaluation",
-    type=click.Choice(("columns", "online")),
-    default="columns",
-    show_default=True,
-    help="How monitors are run: over whole columns at once, or step by step. The results are "
-    "the same.",
 )
 @click.option(
     "--integrity",
@@ -214,7 +206,6 @@ def audit(
     annotations: str | None,
     output_format: str,
     verbose: bool,
-    evaluation: str,
     integrity: str,
     confidence: float,
     labels: tuple[str, ...],
@@ -276,7 +267,7 @@ def audit(
         files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
     )
     print_project_diagnostics(project.diagnostics, requirements)
-    plan = planned(project, evaluation, Integrity(integrity), confidence)
+    plan = planned(project, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
         fail(*(reason for reason in plan if reason not in project.diagnostics))
     plan = replace(plan, labels=given_labels, selection=selection)

@@ -161,10 +161,10 @@ def _deliver_formulas(project: Project, output: str) -> None:
     records = {}
     for requirement in project.formalized:
         names = renamed_propositions(requirement)
-        records[id(requirement.entry)] = formulas(requirement) | ({"names": names} if names else {})
-    records |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
-    records |= {id(r.requirement): failed(r.requirement, r.why[0]) for r in project.refused}
-    text = to_json([records[id(r)] for r in project.requirements])
+        records[requirement.entry] = formulas(requirement) | ({"names": names} if names else {})
+    records |= {f.requirement: failed(f.requirement, f.diagnostic) for f in project.failed}
+    records |= {r.requirement: failed(r.requirement, r.why[0]) for r in project.refused}
+    text = to_json([records[r] for r in project.requirements])
     write_outputs({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})
 
 

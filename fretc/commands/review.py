@@ -214,7 +214,7 @@ def _refused(project: Project) -> Mapping[str, Sequence[Diagnostic]]:
         return {}
     fail_at_end()
     reached = unreviewable(project)
-    refused = {r.id: reached[id(r)] for r in project.requirements if id(r) in reached}
+    refused = {r.id: reached[r] for r in project.requirements if r in reached}
     if len(refused) < len({requirement.id for requirement in project.requirements}):
         print_excluded(refused, len(project.requirements))
     return refused

@@ -47,9 +47,6 @@ from monitors import kernel
 
 NAME = "fretc.lock"
 SCHEMA = "fretc-lock-3"
-_SCHEMAS = ("fretc-lock-2", SCHEMA)
-"""Schemas that are read; a lock of the first one has no texts."""
-_OLDER = ("fretc-lock-1",)
 _TABLE = "review"
 _TEXTS = ("reviewer", "role", "date", "comment")
 _SHA256 = re.compile(r"[0-9a-f]{64}|")
@@ -71,7 +68,7 @@ class Review:
     verdicts: Mapping[str, str]
     """Run → its verdict."""
     texts: ReviewedTexts | None = None
-    """The accepted texts; None if an earlier version of fretc wrote the review."""
+    """The accepted texts; None if they could not be kept."""
 
     @property
     def was_in_force(self) -> bool:
@@ -307,12 +304,7 @@ def _reviews(tables: Tables) -> Iterable[tuple[str, Any]]:
 
 
 def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
-    schema = tables.data.get("schema")
-    # A table `schema` is the review of a requirement of that name.
-    if schema in _OLDER or isinstance(schema, dict):
-        yield _older(tables)
-        return
-    if schema not in _SCHEMAS:
+    if tables.data.get("schema") != SCHEMA:
         yield _wrong(tables, f"the lock does not have the schema `{SCHEMA}`", "schema")
     for name, value in tables.data.items():
         if name not in ("schema", _TABLE) or (name == _TABLE and not isinstance(value, dict)):
@@ -355,16 +347,6 @@ def _broken(tables: Tables, lock: Lock) -> Iterator[Diagnostic]:
         elif is_in_future(review.date):
             what = f"the review of {id} is of {review.date}, a date in the future"
             yield _wrong(tables, what, _TABLE, id, "date")
-
-
-def _older(tables: Tables) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_LOCK,
-        "the lock was written by an earlier version of fretc, which computed fingerprints "
-        "differently",
-        tables.place("schema"),
-        help="rename it, compare with what was accepted, and review again: `fretc lock`",
-    )
 
 
 def _wrong(tables: Tables, what: str, *path: str) -> Diagnostic:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib.resources import files
 from pathlib import PurePosixPath
 from typing import Any
@@ -313,14 +314,6 @@ def _comparisons(declarations: Declarations, expression: e.Expression) -> Iterat
         yield from _comparisons(declarations, part)
 
 
-def _refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(requirement)
-
-
-def _refuse_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(requirement, _WEAKEN)
-
-
 @with_recursion_limit
 def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
     """A warning about the properties (F605, F606, F607); else about the agent (F615)."""
@@ -341,21 +334,19 @@ def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Di
     )
 
 
-def _remark(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return remark(requirement)
-
-
-def _remark_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return remark(requirement, _WEAKEN)
-
-
 _SUMMARY = "an agent, its environment and its properties, ready for AJPF"
 TARGET = Target(
     "ajpf-bundle",
     _SUMMARY,
     emit,
-    _refuse,
-    _remark,
+    refusal,
+    remark,
     names=names.everything,
-    weak=Target("ajpf-bundle", _SUMMARY, emit, _refuse_weak, _remark_weak),
+    weak=Target(
+        "ajpf-bundle",
+        _SUMMARY,
+        emit,
+        partial(refusal, options=_WEAKEN),
+        partial(remark, options=_WEAKEN),
+    ),
 )

@@ -11,13 +11,12 @@ parser of MCAPL. Controls: Kupferman and Vardi, Vacuity detection in temporal mo
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import PurePosixPath
+from functools import partial
 from typing import Literal, assert_never
 
 from compiler.agents.psl_printing import property_text
-from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Uninterpreted, boolean, obligation
@@ -30,8 +29,8 @@ from compiler.targets.target import (
     DEFAULT,
     Options,
     Target,
+    file_of_each,
     not_expressible,
-    stem,
     too_long,
 )
 from fretish import syntax as s
@@ -311,17 +310,6 @@ def _warning(requirement: FormalizedRequirement, code: Code, message: str, fix: 
     return Diagnostic(code, message, place, fix, Severity.WARNING)
 
 
-@with_recursion_limit
-def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
-) -> tuple[Artifact, ...]:
-    """`<id>.psl` for each requirement: the property, named by its id, and its controls."""
-    return tuple(
-        Artifact(PurePosixPath(f"{stem(requirement)}.psl"), text(requirement, options))
-        for requirement in requirements
-    )
-
-
 def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
     """The property file of one requirement."""
     return render(
@@ -334,31 +322,18 @@ def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
     )
 
 
-def _refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(requirement)
-
-
-def _refuse_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(requirement, _WEAKEN)
-
-
-def _remark(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return remark(requirement)
-
-
-def _remark_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return remark(requirement, _WEAKEN)
-
-
+_EMIT = file_of_each("psl", text)
 _SUMMARY = "a property file for the AJPF model checker"
 TARGET = Target(
     "ajpf",
     _SUMMARY,
-    emit,
-    _refuse,
-    _remark,
+    _EMIT,
+    refusal,
+    remark,
     names=names.everything,
-    weak=Target("ajpf", _SUMMARY, emit, _refuse_weak, _remark_weak),
+    weak=Target(
+        "ajpf", _SUMMARY, _EMIT, partial(refusal, options=_WEAKEN), partial(remark, options=_WEAKEN)
+    ),
 )
 
 

@@ -183,8 +183,8 @@ def assessments(
         proofs: the results of verification.
         analyzed: the file of `fretc analyze`; None if there is none.
     """
-    requirements = {id(requirement.entry): requirement for requirement in project.formalized}
-    diagnostics = {id(failed.requirement): failed.diagnostic for failed in project.failed}
+    requirements = {requirement.entry: requirement for requirement in project.formalized}
+    diagnostics = {failed.requirement: failed.diagnostic for failed in project.failed}
     results = briefs.by_requirement if briefs else {}
     products_of = {id: products(requirement) for id, requirement in requirements.items()}
     basis_of = bases(project, monitors=monitors(products_of))
@@ -195,8 +195,8 @@ def assessments(
     assessed: list[Assessment] = []
     for entry, standing in zip(project.requirements, standing_of_each, strict=True):
         anchors.append(_anchor(entry.id, anchors))
-        requirement = requirements.get(id(entry))
-        basis = basis_of[id(entry)]
+        requirement = requirements.get(entry)
+        basis = basis_of[entry]
         suspicions = AboutResults(basis, audited_by, formalized=requirement is not None)
         audits = tuple(
             SingleAudit(result, suspicions.of(result), place)
@@ -207,9 +207,9 @@ def assessments(
                 entry,
                 anchors[-1],
                 requirement,
-                diagnostics.get(id(entry)),
+                diagnostics.get(entry),
                 audits,
-                products_of.get(id(entry), ()),
+                products_of.get(entry, ()),
                 standing,
                 waivers.get(entry.id),
                 requirement is not None and _is_bound(requirement, project.declarations),

@@ -18,6 +18,7 @@ from fretc.traceability.chain import chains
 from fretc.traceability.lock import Lock, accepted
 from fretc.traceability.lock import text as lock_text
 from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.documents import RequirementEntry
 from tests.command import write
 
 BINDINGS = """\
@@ -222,9 +223,9 @@ def basis(known: Project, name: str) -> Mapping[str, str]:
     """What an audit would record of a requirement now."""
     if not _latest or _latest[0] is not known:  # asked once as long as one project is in use
         _latest[:] = known, bases(known)
-    found: Mapping[int, Mapping[str, str]] = _latest[1]
+    found: Mapping[RequirementEntry, Mapping[str, str]] = _latest[1]
     requirement = next((each for each in known.requirements if each.id == name), None)
-    return found[id(requirement)] if requirement is not None else dict.fromkeys(KINDS, "0" * 64)
+    return found[requirement] if requirement is not None else dict.fromkeys(KINDS, "0" * 64)
 
 
 _latest: list[Any] = []
