@@ -189,7 +189,7 @@ def _rows(items: Sequence[Item]) -> list[dict[str, Any]]:
         {
             "requirement": item.requirement,
             "scenario": str(item.scenario),
-            "strip": asdict(strip(item.round_outcomes)),
+            "strip": strip(item.round_outcomes),
             "now": _now(item),
         }
         for item in items
@@ -210,6 +210,6 @@ def _line(one: Comparison) -> str:
 def _charts(trends: Trends, some: Sequence[Comparison], kind: str) -> list[dict[str, Any]]:
     after = trends.is_after
     return [
-        asdict(chart(one, len(trends.rounds), after, f"{kind}-{number}"))
+        chart(one, len(trends.rounds), after, f"{kind}-{number}")
         for number, one in enumerate(some, 1)
     ]

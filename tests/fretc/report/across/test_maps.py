@@ -51,11 +51,11 @@ def test_a_metre_is_as_long_upwards_as_to_the_right() -> None:
     assert found is not None
     assert [(mark.x, mark.y) for mark in found.marks] == [(0, 0), (2, 0), (6, 2)]
     drawn = drawn_map(found, "map", frozenset())
-    places = [(p.x, p.y) for p in drawn.places]
+    places = [(p["x"], p["y"]) for p in drawn["places"]]
     right, up = places[1][0] - places[0][0], places[0][1] - places[2][1]
     assert round(right / 2, 1) == round(up / 2, 1)
-    assert drawn.bar_label == "1 m"
-    assert abs(drawn.bar - right / 2) < 0.2
+    assert drawn["bar_label"] == "1 m"
+    assert abs(drawn["bar"] - right / 2) < 0.2
 
 
 def test_the_page_has_the_map_with_links_and_says_it_in_words(tmp_path: Path) -> None:
