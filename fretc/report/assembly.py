@@ -222,7 +222,7 @@ def _longest_waits(
         if view.mark.shows and not is_bounded(assessment.requirement)
         if (waiting := [row for row in view.results if row.at_once < row.answers])
     ]
-    return {row.requirement: result for row, result in details.results(rows)}
+    return {row.section: result for row, result in details.results(rows)}
 
 
 def _reservations(view: RequirementView, longest: Mapping[str, ResultView]) -> Sequence[str]:

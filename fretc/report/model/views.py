@@ -361,7 +361,22 @@ class Listing:
 
 
 @dataclass(frozen=True, slots=True)
-class ResultRow:
+class ResultHead:
+    """The run and the verdict of a result; it is suspect if `suspicions` is not empty."""
+
+    anchor: str
+    run: str
+    """The anchor of the run."""
+    run_label: str
+    run_file: str
+    mark: Mark
+    suspicions: tuple[str, ...]
+    reason: str
+    triggers: int
+
+
+@dataclass(frozen=True, slots=True)
+class ResultRow(ResultHead):
     """The result of one run in numbers; `fretc.report.sections.details` reads its events."""
 
     place: int
@@ -369,45 +384,29 @@ class ResultRow:
     number: int
     """Number of the result among the results of its requirement, from 1."""
     requirement: str
+    section: str
     """The anchor of the requirement."""
-    run: str
-    run_label: str
-    run_file: str
-    mark: Mark
-    suspicions: tuple[str, ...]
-    reason: str
-    triggers: int
+    ticks: int
     answers: int
     at_once: int
     """Number of answers at the tick of their trigger."""
     open: int
+    unknown: int
+    """Number of intervals of unknown ticks."""
     violations_total: int
     latency_median_s: float | None
     latency_max_s: float | None
 
     @property
-    def anchor(self) -> str:
-        """The anchor of the result."""
-        return result_anchor(self.requirement, self.number)
-
-
-def result_anchor(requirement: str, number: int) -> str:
-    """The anchor of a result, from the anchor of its requirement and its number from 1."""
-    return f"{requirement.replace('req-', 'result-', 1)}.{number}"
+    def count(self) -> tuple[int, int, int]:
+        """Numbers of violations, unknown intervals and open obligations."""
+        return self.violations_total, self.unknown, self.open
 
 
 @dataclass(frozen=True, slots=True)
-class ResultView:
-    """The result of one run; it is suspect if `suspicions` is not empty."""
+class ResultView(ResultHead):
+    """The result of one run with its events."""
 
-    anchor: str
-    run: str
-    run_label: str
-    run_file: str
-    mark: Mark
-    suspicions: tuple[str, ...]
-    reason: str
-    triggers: int
     exercised: str
     latency: Latency | None
     thresholds: tuple[ThresholdView, ...]

@@ -58,7 +58,7 @@ class Details:
     def results(self, rows: Iterable[ResultRow]) -> Iterator[tuple[ResultRow, ResultView]]:
         """The view of each row, in the order of the evidence."""
         for row, result in self.audited(rows):
-            assessment = self.assessments[row.requirement]
+            assessment = self.assessments[row.section]
             yield row, result_view(result, row, assessment, self.project.declarations)
 
     def histograms(self, anchors: Iterable[str]) -> Iterator[tuple[str, tuple[Histogram, ...]]]:

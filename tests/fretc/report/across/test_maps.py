@@ -8,13 +8,11 @@ from hypothesis import strategies as st
 
 from compiler.files.records import decoded
 from fretc.audit.evidence.schema import Way
-from fretc.report.across.lanes import RunStretches
 from fretc.report.across.layout import drawn_map
 from fretc.report.across.maps import RunResult, run_map
-from fretc.report.model.marks import verdict_mark
 from tests.effort import examples
 from tests.fretc.audit.results import result as record
-from tests.fretc.report.cases import R1, as_html, project, report_of, result, violation
+from tests.fretc.report.cases import R1, as_html, project, report_of, result, row, violation
 
 PLAIN: dict[str, Any] = {
     "times_ns": [10**9, 5 * 10**9, 7 * 10**9, 11 * 10**9],
@@ -31,9 +29,7 @@ def of_run(*seconds: float) -> RunResult:
     ns = [10**9 + round(s * 1e9) for s in seconds]
     broken = [{"start_ns": n, "start_s": s} for n, s in zip(ns, seconds, strict=True)]
     found = record(violations=broken)
-    names = ("run-1", "Run 1", "a.mcap", "R1", "req-R1", "R1.1")
-    of = RunStretches(*names, verdict_mark("violated"), 0, True, (len(broken), 0, 0))
-    return RunResult(of, found)
+    return RunResult(row(1, "violated", place=0, violations_total=len(broken)), found)
 
 
 @given(st.lists(st.floats(0, 12).map(lambda number: round(number, 3)), max_size=30).map(sorted))
