@@ -46,7 +46,7 @@ def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> 
         worst: the anchors of the requirements, worst first.
         pictured: how many of these have their own pictures.
     """
-    active = [a for a in details.assessments.values() if a.entry.status != "retired"]
+    active = [a for a in details.assessments.values() if a.entry.is_in_force]
     most = max(_FEWEST, min(_MOST, _ROWS // max(1, len(active))))
     marks = max(10 * _FEWEST, _MARKS // max(1, len(active)))
     in_force = {assessment.anchor for assessment in active}

@@ -152,7 +152,7 @@ def _rootless(project: Project) -> Iterable[str]:
     """Requirements in force whose declared parents lead to no hazard, or form a cycle."""
     declared = {*project.hazards, *project.parents}
     known = declared | {requirement.id for requirement in project.requirements}
-    active = [r for r in project.requirements if r.status != RETIRED]
+    active = [r for r in project.requirements if r.is_in_force]
     for requirement in without_hazard(active, declared) if declared else ():
         if known.issuperset(requirement.parents):
             yield f"the parents of {requirement.id} lead to no hazard"

@@ -143,13 +143,11 @@ def _emission(files: Sequence[str], emits: str) -> str:
 def _of_bindings(project: Project) -> str:
     """SHA-256 of the bindings that requirements in force read, as in the evidence."""
     requirements = {id(requirement.entry): requirement for requirement in project.formalized}
-    inforce = [
-        requirement for requirement in project.requirements if requirement.status != "retired"
-    ]
     return of_all(
         {
             requirement.id: of_bindings(requirements.get(id(requirement)), project.declarations)
-            for requirement in inforce
+            for requirement in project.requirements
+            if requirement.is_in_force
         }
     )
 
