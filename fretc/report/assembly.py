@@ -25,15 +25,15 @@ from fretc.report.diagnostics import idle_waivers, stale_evidence
 from fretc.report.front.front import front
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, assessments
+from fretc.report.model.marks import verdict_mark
+from fretc.report.model.results import ResultView
 from fretc.report.model.views import (
     SCHEMA,
     Count,
     NotShown,
     Report,
     RequirementView,
-    ResultView,
     Withdrawal,
-    verdict_mark,
     worst_first,
 )
 from fretc.report.sections import reviews

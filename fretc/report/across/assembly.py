@@ -21,10 +21,9 @@ from fretc.report.across.lanes import (
 from fretc.report.across.maps import MOST_MAPS, RunResult, run_map
 from fretc.report.across.uses import RunThresholds, uses
 from fretc.report.model import phrases
-from fretc.report.model.across import Across, RequirementAcross, RunMap
 from fretc.report.model.assessments import Assessment
-from fretc.report.model.pictures import WordLane
-from fretc.report.model.views import ResultRow
+from fretc.report.model.pictures import Across, RequirementAcross, RunMap, WordLane
+from fretc.report.model.results import ResultRow
 from fretc.report.pictures.histograms import is_answered, seconds_allowed
 from fretc.report.sections.details import Details, Thresholds
 from fretc.report.sections.results import result_rows

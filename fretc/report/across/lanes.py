@@ -13,10 +13,9 @@ from types import MappingProxyType
 
 from fretc.audit.evidence.result_summaries import Stretches
 from fretc.report.model import phrases
-from fretc.report.model.across import LaneMark, Lanes, RunLane
 from fretc.report.model.marks import Mark
-from fretc.report.model.pictures import WordLane
-from fretc.report.model.views import ResultRow
+from fretc.report.model.pictures import LaneMark, Lanes, RunLane, WordLane
+from fretc.report.model.results import ResultRow
 
 NO_COURSES: Mapping[str, int] = MappingProxyType({})
 MOST_LANES = 40

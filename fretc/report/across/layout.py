@@ -11,7 +11,7 @@ from typing import Any
 
 from fretc.report.across.uses import percent
 from fretc.report.model import phrases
-from fretc.report.model.across import LaneMark, Lanes, PlaceMark, RunMap, Use, UseRow, Uses
+from fretc.report.model.pictures import LaneMark, Lanes, PlaceMark, RunMap, Use, UseRow, Uses
 from fretc.report.pictures.scales import WIDTH, Scale, fitting, frame, words
 
 _LEFT, _RIGHT = 196, WIDTH - 24

@@ -10,8 +10,8 @@ from math import dist
 from fretc.audit.evidence.run_plot_data import position_at
 from fretc.audit.evidence.schema import Result, Way
 from fretc.report.model import phrases
-from fretc.report.model.across import PlaceMark, RunMap
-from fretc.report.model.views import ResultRow
+from fretc.report.model.pictures import PlaceMark, RunMap
+from fretc.report.model.results import ResultRow
 
 MOST_MAPS = 12
 _NEAR = 0.02

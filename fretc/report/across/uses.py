@@ -16,8 +16,8 @@ from math import inf, isfinite
 from fretc.audit.evidence.samples import number
 from fretc.audit.evidence.schema import Threshold
 from fretc.report.model import phrases
-from fretc.report.model.across import Use, UseRow, Uses
-from fretc.report.model.views import ResultRow
+from fretc.report.model.pictures import Use, UseRow, Uses
+from fretc.report.model.results import ResultRow
 from fretish.bindings.amounts import exact
 from monitors import kernel
 

@@ -14,7 +14,8 @@ from collections.abc import Iterator, Sequence
 from fretc.audit.evidence import verdicts
 from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.audit.outputs.junit import Case, Suite, xml
-from fretc.report.model.views import Report, RequirementView, ResultRow
+from fretc.report.model.results import ResultRow
+from fretc.report.model.views import Report, RequirementView
 from fretc.report.sections.proofs import is_refuted, refutations
 
 

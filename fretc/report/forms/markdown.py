@@ -17,14 +17,9 @@ from typing import TypeVar
 from fretc.audit.evidence.verdicts import BROKEN, RETIRED, SUSPECT
 from fretc.report.model import phrases
 from fretc.report.model.changes import Change, follows
-from fretc.report.model.views import (
-    Mark,
-    Report,
-    RequirementView,
-    ResultRow,
-    ResultView,
-    worst_first,
-)
+from fretc.report.model.marks import Mark
+from fretc.report.model.results import ResultRow, ResultView
+from fretc.report.model.views import Report, RequirementView, worst_first
 from fretc.report.sections.details import Details
 from fretc.report.sections.proofs import is_refuted, refutations
 from fretc.report.sections.signatures import BROKEN as DOES_NOT_VERIFY

@@ -15,7 +15,8 @@ from compiler.formalization.formalized import FormalizedRequirement
 from fretc.report.across.layout import drawn_lanes, drawn_map, drawn_uses
 from fretc.report.model.changes import Change, follows, new_violations
 from fretc.report.model.phrases import joined, visible
-from fretc.report.model.views import Report, SetConflict
+from fretc.report.model.sets import SetConflict
+from fretc.report.model.views import Report
 from fretc.report.page.matrix import Picture, picture
 from fretc.report.page.selection import Selection, selection, slimmed
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened

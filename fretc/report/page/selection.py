@@ -11,15 +11,9 @@ from itertools import islice, zip_longest
 
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
-from fretc.report.model.views import (
-    Mark,
-    Report,
-    RequirementView,
-    ResultRow,
-    ResultView,
-    RunSummary,
-    RunView,
-)
+from fretc.report.model.marks import Mark
+from fretc.report.model.results import ResultRow, ResultView
+from fretc.report.model.views import Report, RequirementView, RunSummary, RunView
 from fretc.report.sections.details import Details
 
 COMPACT = 1_000

@@ -10,7 +10,7 @@ from typing import Any
 
 from fretc.report.model.phrases import decimal, whole
 from fretc.report.model.pictures import Flag, Histogram, Panel, Piece, Timeline
-from fretc.report.model.views import ProbabilityView
+from fretc.report.model.results import ProbabilityView
 from fretc.report.pictures.scales import RIGHT, WIDTH, Scale, frame, words
 
 _LEFT, _LETTER = 92, 6

@@ -19,7 +19,8 @@ from compiler.logic.claims import METHODS, Layer, Result
 from fretc.audit.evidence.verdicts import BROKEN
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.report.model import phrases
-from fretc.report.model.views import ProofView, Report, RequirementView, ResultRow
+from fretc.report.model.results import ResultRow
+from fretc.report.model.views import ProofView, Report, RequirementView
 from fretc.report.sections.proofs import SHARED, covering, is_proved
 
 

@@ -11,14 +11,8 @@ from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
-from fretc.report.model.views import (
-    HazardView,
-    Mark,
-    Orphans,
-    RequirementView,
-    Row,
-    sign_mark,
-)
+from fretc.report.model.marks import Mark, sign_mark
+from fretc.report.model.views import HazardView, Orphans, RequirementView, Row
 from fretc.report.sections.proofs import is_proved_layer, is_refuted
 from fretish.diagnostics import status_symbols as signs
 from fretish.reading.natural_order import natural

@@ -18,17 +18,16 @@ from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
 from fretc.audit.evidence.probabilities import shown
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
+from fretc.report.model.marks import verdict_mark
+from fretc.report.model.results import BoundsView, ProbabilityView
 from fretc.report.model.views import (
-    BoundsView,
     Formula,
     Parent,
-    ProbabilityView,
     PropositionView,
     Remark,
     RequirementView,
     SignalView,
     SituationsView,
-    verdict_mark,
 )
 from fretc.report.pictures.histograms import exercise
 from fretc.report.sections.plans import planned

@@ -17,11 +17,9 @@ from fretc.audit.evidence.verdicts import (
     severity,
 )
 from fretc.report.model import phrases
-from fretc.report.model.assessments import Assessment
-from fretc.report.model.audits import ProbabilityAudit, SingleAudit
+from fretc.report.model.assessments import Assessment, ProbabilityAudit, SingleAudit
 from fretc.report.model.causes import causes
-from fretc.report.model.suspicions import since_review
-from fretc.report.model.views import (
+from fretc.report.model.results import (
     Latency,
     Listing,
     ResultHead,
@@ -30,6 +28,7 @@ from fretc.report.model.views import (
     ThresholdView,
     ViolationView,
 )
+from fretc.report.model.suspicions import since_review
 from fretc.report.pictures.first_tick import reading
 from fretc.report.pictures.histograms import seconds_allowed
 from fretc.report.pictures.timeline import answered, timelines

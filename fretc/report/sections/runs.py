@@ -20,7 +20,8 @@ from fretc.audit.evidence.result_summaries import (
 )
 from fretc.audit.evidence.schema import Checked, Finding, Topic
 from fretc.report.model import phrases
-from fretc.report.model.views import Remark, RunSummary, TopicView, sign_mark
+from fretc.report.model.marks import sign_mark
+from fretc.report.model.views import Remark, RunSummary, TopicView
 from fretc.traceability.acceptances import as_diagnostic
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Severity

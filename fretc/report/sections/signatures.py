@@ -11,7 +11,8 @@ from fretc.attestation.statement import Subject
 from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
-from fretc.report.model.views import Signatures, SignatureView, Signed, sign_mark
+from fretc.report.model.marks import sign_mark
+from fretc.report.model.views import Signatures, SignatureView, Signed
 from fretc.traceability.lock import Review
 from fretc.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs

@@ -12,19 +12,18 @@ from fretc.analysis.findings import Analysis, Verdict
 from fretc.analysis.text_output import SIGNS, columns, lanes, remarks
 from fretc.report.model import phrases
 from fretc.report.model.front import Front
-from fretc.report.model.views import (
+from fretc.report.model.marks import Mark, sign_mark
+from fretc.report.model.sets import (
     REALIZABLE,
     UNREALIZABLE,
-    Mark,
-    Overall,
     Play,
     PlayLane,
     SetAnalysis,
     SetComponent,
     SetConflict,
     SetMember,
-    sign_mark,
 )
+from fretc.report.model.views import Overall
 from fretish.bindings.declarations import Role
 from fretish.diagnostics import status_symbols as signs
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from fretc.report.model.views import Play, PlayLane
+from fretc.report.model.sets import Play, PlayLane
 from fretc.report.pictures.scales import Scale
 
 _RIGHT, _TOP, _LANE, _HIGH, _FOOT = 10, 20, 26, 16, 8

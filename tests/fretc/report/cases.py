@@ -14,7 +14,8 @@ from fretc.audit.evidence.basis import BINDINGS as BINDINGS_PART
 from fretc.audit.evidence.basis import KINDS, of_all
 from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.report.make import ReportBuild, make
-from fretc.report.model.views import ResultRow, verdict_mark
+from fretc.report.model.marks import verdict_mark
+from fretc.report.model.results import ResultRow
 from fretc.traceability.chain import chains
 from fretc.traceability.lock import Lock, accepted
 from fretc.traceability.lock import text as lock_text

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from fretc.audit.evidence.result_summaries import Stretches
 from fretc.report.across.lanes import MOST_LANES, plan
-from fretc.report.model.across import LaneMark, Lanes
-from fretc.report.model.views import ResultRow
+from fretc.report.model.pictures import LaneMark, Lanes
+from fretc.report.model.results import ResultRow
 from tests.effort import examples
 from tests.fretc.report.cases import row
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fretc.report.model.views import Play, PlayLane
+from fretc.report.model.sets import Play, PlayLane
 from fretc.report.set_analysis.drawing import drawing
 
 
