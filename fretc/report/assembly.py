@@ -155,7 +155,11 @@ def report(
         runs=run_list,
         claims=_claims(assessed, len(all_runs), evidence.selection if evidence else None),
         counts=_counts(assessed),
-        not_shown=tuple(_not_shown(view) for view in worst_first(sections) if view.reasons),
+        not_shown=tuple(
+            NotShown(view.id, view.title, view.anchor, view.mark, view.reasons)
+            for view in worst_first(sections)
+            if view.reasons
+        ),
         reservations=reservations,
         planned=tuple(plan for view in sections for plan in view.planned if view.status != RETIRED),
         proofs=proof_views((proof for proof in all_proofs if proof.requirement in SHARED), shared),
@@ -206,10 +210,6 @@ def _checks(
 
 
 _OF_REVIEWS = (Code.CHANGED_SINCE_REVIEW, Code.NOT_REVIEWED)
-
-
-def _not_shown(view: RequirementView) -> NotShown:
-    return NotShown(view.id, view.title, view.anchor, view.mark, view.reasons)
 
 
 def _longest_waits(

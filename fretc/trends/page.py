@@ -98,7 +98,10 @@ def html(trends: Trends) -> str:
                 "compared": {"before": trends.compared.before, "after": trends.compared.after},
                 "level": f"{trends.level:g}",
                 "regressed": _charts(trends, regressed[:_MOST_CHARTS], "regressed"),
-                "regressed_lines": [_line(one) for one in regressed[_MOST_CHARTS:]],
+                "regressed_lines": [
+                    f"{one.measure.ids}, {one.measure}: {one.worse}"
+                    for one in regressed[_MOST_CHARTS:]
+                ],
                 "others": _charts(trends, pictured, "other"),
                 "few": len(trends.with_finding(Finding.TOO_FEW)),
                 "chance": len(trends.with_finding(Finding.CHANCE)),
@@ -201,10 +204,6 @@ def _now(item: Item) -> str:
     verdicts = ", ".join(f"{now.count(word)} {word}" for word in sorted({*now}, key=severity))
     notes = ["flaky"] * item.flaky + ["the requirement changed"] * item.changed
     return "; ".join([verdicts or "not judged", *notes])
-
-
-def _line(one: Comparison) -> str:
-    return f"{one.measure.ids}, {one.measure}: {one.worse}"
 
 
 def _charts(trends: Trends, some: Sequence[Comparison], kind: str) -> list[dict[str, Any]]:

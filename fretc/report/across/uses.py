@@ -51,6 +51,7 @@ def uses(
         return None
     shown = [_row(*runs[n], allowed, bounds, letters, worded=True) for n in places[:most]]
     left = [rows[n] for n in places[most:]]
+    more = len(bounds) + bool(allowed) - len(letters)
     notes = tuple(
         filter(
             None,
@@ -58,7 +59,7 @@ def uses(
                 _left_out(left),
                 _unknown([row for row in rows if not row.uses]),
                 _not_bounds([key for key in grouped if key not in bounds]),
-                _more_bounds(len(bounds) + bool(allowed) - len(letters)),
+                f"{phrases.times(more, 'more bound')} not ranked." if more > 0 else "",
                 f"{phrases.times(suspect, 'suspect run')} left out." if suspect else "",
             ],
         )
@@ -257,10 +258,6 @@ def _not_bounds(keys: Sequence[_Key]) -> str:
         "Not ranked, because runs that satisfy the requirement are on both sides of the "
         f"bound, or no value is known: {phrases.some(list(dict.fromkeys(named)))}."
     )
-
-
-def _more_bounds(count: int) -> str:
-    return f"{phrases.times(count, 'more bound')} not ranked." if count > 0 else ""
 
 
 def _in_words(

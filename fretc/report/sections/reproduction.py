@@ -26,7 +26,6 @@ from fretc.report.model import phrases
 from fretc.report.model.views import Command, Hash, RequirementView
 from fretc.report.sections.runs import Run
 from fretc.verification.reader import Proofs
-from fretish.diagnostics.source import Source
 
 if TYPE_CHECKING:
     from fretc.attestation.signers import Signers
@@ -94,19 +93,14 @@ def _options(project: Project) -> str:
 
 def folder_of(project: Project) -> str:
     """The folder of the requirements, by its first file."""
-    files = _files(project)
-    return _folder(files[0].name) if files else "requirements"
+    first = next((r.wording.source.name for r in project.requirements), None)
+    return "requirements" if first is None else _folder(first)
 
 
 def _folder(path: str) -> str:
     """The folder of a file; only the name of the folder if the path is absolute."""
     folder = PurePath(path).parent
     return str(folder) if phrases.place(path) == path else folder.name or str(folder)
-
-
-def _files(project: Project) -> list[Source]:
-    """The files of the requirements, without duplicates."""
-    return list({r.wording.source.name: r.wording.source for r in project.requirements}.values())
 
 
 def _check(runs: Sequence[Run]) -> str:

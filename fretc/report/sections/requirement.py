@@ -94,7 +94,10 @@ def section(
         error=remark(assessment.diagnostic) if assessment.diagnostic else None,
         diagram=words(diagram(requirement)) if requirement else "",
         formulas=_formulas(requirement) if requirement else (),
-        propositions=_propositions(requirement, project.declarations) if requirement else (),
+        propositions=tuple(
+            _proposition(name, project.declarations)
+            for name in (requirement.propositions if requirement else ())
+        ),
         clock=_clock(clock),
         parents=tuple(_parent(parent, project, anchors) for parent in entry.parents),
         rationale=entry.rationale,
@@ -197,12 +200,6 @@ def _parent(id: str, project: Project, anchors: Mapping[str, str]) -> Parent:
 
 
 # Propositions ----------------------------------------------------------------------------------
-
-
-def _propositions(
-    requirement: FormalizedRequirement, declared: Declarations | None
-) -> tuple[PropositionView, ...]:
-    return tuple(_proposition(name, declared) for name in requirement.propositions)
 
 
 def _proposition(name: str, declared: Declarations | None) -> PropositionView:

@@ -259,16 +259,15 @@ def _named(run: Run) -> str:
     return f"{run.name} ({codes})" if codes else run.name
 
 
-def _is_open(run: Run, project: Project) -> bool:
-    """Whether the run has a finding that the project does not accept."""
-    return not all(_accepted(finding, project) for finding in run.facts.health.findings)
-
-
 def trust(runs: Sequence[Run], project: Project) -> str:
     """The condition of the runs in one sentence; "" if there is no run."""
     damaged = [_named(run) for run in runs if not run.facts.health.intact]
     wrong = [_named(run) for run in runs if run.facts.health.intact and _errors(run)]
-    with_findings = [run.name for run in runs if _is_open(run, project)]
+    with_findings = [
+        run.name
+        for run in runs
+        if not all(_accepted(finding, project) for finding in run.facts.health.findings)
+    ]
     if not runs:
         return ""
     if damaged or wrong:
