@@ -12,9 +12,10 @@ from compiler.logic.claims import Proof
 from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.analysis.evidence import AnalyzedSet
+from fretc.attestation.signatures import SignatureBook
 from fretc.audit.bases import bases
 from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.result_summaries import ResultSummaries, ResultSummary
+from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummaries, ResultSummary
 from fretc.audit.evidence.verdicts import (
     BROKEN,
     NOT_EXERCISED,
@@ -32,6 +33,7 @@ from fretc.traceability.artefacts import Product, monitors, products
 from fretc.traceability.chain import chains
 from fretc.traceability.lock import Lock, ReviewedRequirement, standings
 from fretc.traceability.waivers import Waiver
+from fretc.verification.reader import Proofs
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.documents import RequirementEntry
@@ -45,6 +47,30 @@ COVERAGE = (
     EXERCISED_FAIL, SUSPECT, WAIVED, RETIRED,
 )  # fmt: skip
 """The steps from sentence to passing run; see `Assessment.coverage`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inputs:
+    """What a report is made from: a project, and the files about it."""
+
+    project: Project
+    """With or without errors; the report lists unformalized requirements."""
+    path: str
+    """The path of the evidence, which need not exist."""
+    evidence: EvidenceSource | None
+    """None if no run was audited."""
+    lock: Lock | None
+    """None if no requirement is reviewed."""
+    waivers: Mapping[str, Waiver]
+    """Requirement → waiver, for waivers that are valid today."""
+    verification: Proofs | None
+    """The file of `fretc verify`; None if nothing was verified."""
+    proofs: Sequence[Proof]
+    """The proofs of that file, and the results of AJPF."""
+    book: SignatureBook
+    """The checked signatures."""
+    together: AnalyzedSet | None
+    """The file of `fretc analyze`; None if there is none."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,12 +12,10 @@ from compiler.explanation.violability import limit
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
 from compiler.logic import printing
-from compiler.logic.claims import Proof
 from compiler.project.project import Project
-from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
 from fretc.audit.evidence.probabilities import shown
 from fretc.report.model import phrases
-from fretc.report.model.assessments import Assessment
+from fretc.report.model.assessments import Assessment, Inputs
 from fretc.report.model.marks import verdict_mark
 from fretc.report.model.results import BoundsView, ProbabilityView
 from fretc.report.model.views import (
@@ -46,31 +44,26 @@ from fretish.printer import sentence
 
 def section(
     assessment: Assessment,
-    project: Project,
+    inputs: Inputs,
     runs: Mapping[RunKey, Run],
     anchors: Mapping[str, str],
-    audited: bool,
-    proofs: Sequence[Proof] = (),
-    shared_products: Sequence[Product] = (),
-    joint: Collection[str] = (),
-    book: SignatureBook = NO_SIGNATURES,
-    situations: SituationsView | None = None,
+    shared_products: Sequence[Product],
+    joint: Collection[str],
+    situations: SituationsView | None,
 ) -> RequirementView:
     """The view of one requirement.
 
     Args:
         assessment: of the requirement.
-        project: with or without errors.
+        inputs: of the report.
         runs: all runs.
         anchors: id → anchor of the section of a requirement.
-        audited: whether there is any evidence.
-        proofs: proofs about all requirements and about shared parts.
         shared_products: files that targets generate from the bindings.
         joint: SHA-256 of the joint monitors.
-        book: the checked signatures.
         situations: situations that runs have shown; None if no run was audited.
     """
     entry, requirement = assessment.entry, assessment.requirement
+    project, proofs = inputs.project, inputs.proofs
     products = (*assessment.products, *shared_products)
     own = (proof for proof in proofs if proof.requirement == assessment.id)
     own_proofs = proof_views(own, products, requirement, joint)
@@ -109,12 +102,12 @@ def section(
         exercise=exercise(assessment),
         histograms=(),
         results=result_rows(assessment, runs),
-        reasons=reasons(assessment, runs, audited=audited),
+        reasons=reasons(assessment, runs, audited=inputs.evidence is not None),
         limit=_limit(requirement),
         coverage=assessment.coverage,
         situations=situations,
-        review=review(assessment, book),
-        waiver=waiver(assessment, book),
+        review=review(assessment, inputs.book),
+        waiver=waiver(assessment, inputs.book),
     )
 
 
