@@ -38,12 +38,11 @@ from fretc.report.sections.matrix import hazard_views, matrix, orphans
 from fretc.report.sections.overall import overall
 from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.reproduction import commands, folder_of, manifest
-from fretc.report.sections.requirement import remark, section
+from fretc.report.sections.requirement import remark, section, situation_views
 from fretc.report.sections.results import is_bounded
 from fretc.report.sections.runs import Run, run_summaries, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.set_analysis.assembly import in_front, in_overall, set_analysis
-from fretc.report.situations import situations
 from fretc.traceability.acceptances import warnings
 from fretc.traceability.artefacts import joint_monitors, shared_products
 from fretc.traceability.lock import Lock, withdrawn_requirements
@@ -65,7 +64,7 @@ def report(inputs: Inputs) -> tuple[Report, Details, tuple[Diagnostic, ...]]:
     shared = shared_products(project.declarations) if inputs.proofs else ()
     [proof for proof in inputs.proofs if proof.requirement in SHARED]
     joint = joint_monitors(project.formalized, inputs.proofs)
-    exercised = situations(assessed, evidence)
+    exercised = situation_views(assessed, evidence)
     sections = tuple(
         section(each, inputs, runs_by_key, anchors, shared, joint, exercised.get(each.id))
         for each in assessed

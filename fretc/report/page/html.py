@@ -5,10 +5,11 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 from compiler.explanation.diagram import diagram
+from compiler.explanation.drawing import Drawing
 from compiler.explanation.drawing import drawing as diagram_drawing
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
@@ -183,9 +184,7 @@ def _rows(matrix: Picture) -> dict[str, str]:
     return {line.row.anchor: line.id for line in lines}
 
 
-def _diagrams(
-    page: Report, requirements: Sequence[FormalizedRequirement]
-) -> Mapping[str, dict[str, Any]]:
+def _diagrams(page: Report, requirements: Sequence[FormalizedRequirement]) -> Mapping[str, Drawing]:
     """Anchor of a requirement → diagram of its meaning, with escaped texts."""
     rules_by_key = {
         (requirement.id, requirement.fingerprint): requirement for requirement in requirements
@@ -194,9 +193,7 @@ def _diagrams(
     for view in page.requirements:
         requirement = rules_by_key.get((view.id, view.fingerprint))
         if view.diagram and requirement is not None:
-            diagrams[view.anchor] = asdict(
-                diagram_drawing(diagram(requirement), f"means-{view.anchor}")
-            )
+            diagrams[view.anchor] = diagram_drawing(diagram(requirement), f"means-{view.anchor}")
     return diagrams
 
 

@@ -14,6 +14,9 @@ from compiler.formalization.record import wording
 from compiler.logic import printing
 from compiler.project.project import Project
 from fretc.audit.evidence.probabilities import shown
+from fretc.audit.evidence.result_summaries import EvidenceSource
+from fretc.audit.evidence.verdicts import RETIRED
+from fretc.coverage.coverage import CoverageStatus, RequirementCoverage, of_requirements
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, Inputs
 from fretc.report.model.marks import verdict_mark
@@ -190,6 +193,49 @@ def _parent(id: str, project: Project, anchors: Mapping[str, str]) -> Parent:
         return Parent(id, f"{outside.title} ({phrases.place(outside.source)})", "")
     above = next((r for r in project.requirements if r.id == id), None)
     return Parent(id, above.title if above else "not declared", anchors.get(id, ""))
+
+
+# Situations ------------------------------------------------------------------------------------
+
+
+def situation_views(
+    assessed: Sequence[Assessment], evidence: EvidenceSource | None
+) -> Mapping[str, SituationsView]:
+    """Requirement id → view of its situations, for requirements in force with results.
+
+    Suspect results are not counted.
+
+    Args:
+        assessed: all requirements.
+        evidence: the evidence; None if there is none.
+    """
+    if evidence is None:
+        return {}
+    places = {
+        assessment.id: {
+            audit.place: run for run, audit in enumerate(assessment.audits) if not audit.is_stale
+        }
+        for assessment in assessed
+        if assessment.audits and assessment.verdict != RETIRED
+    }
+    found = (
+        of_requirement
+        for of_requirement in of_requirements(evidence, places)
+        if of_requirement.id in places
+    )
+    return {coverage_of_one.id: _situations(coverage_of_one) for coverage_of_one in found}
+
+
+def _situations(one: RequirementCoverage) -> SituationsView:
+    if not one.measured or not one.situations:
+        return SituationsView("", "situations not measured", (), ())
+    seen, every = len(one.of(CoverageStatus.SEEN)), len(one.situations)
+    return SituationsView(
+        f"{seen}/{every}",
+        f"{seen} of {every} situations seen",
+        tuple(situation.words for situation in one.of(CoverageStatus.PERHAPS)),
+        tuple(situation.words for situation in one.of(CoverageStatus.NEVER)),
+    )
 
 
 # Propositions ----------------------------------------------------------------------------------
