@@ -61,6 +61,11 @@ class RequirementEntry:
         return named(self.id, self.title)
 
     @property
+    def is_in_force(self) -> bool:
+        """Whether the requirement is not retired."""
+        return self.status != "retired"
+
+    @property
     def is_free_text(self) -> bool:
         """Whether the whole text is in double quotes: it is kept, and not formalized."""
         return _FREE_TEXT.fullmatch(self.wording.text) is not None

@@ -30,7 +30,7 @@ class Refused:
     @property
     def is_in_force(self) -> bool:
         """Whether the requirement is not retired."""
-        return self.requirement.status != "retired"
+        return self.requirement.is_in_force
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +85,11 @@ class Project:
             requirement for requirement in self.formalized if requirement.entry not in refused
         )
         return replace(self, formalized=requirements)
+
+    @property
+    def in_force(self) -> tuple[FormalizedRequirement, ...]:
+        """The formalized requirements that are not retired."""
+        return tuple(each for each in self.formalized if each.entry.is_in_force)
 
     @property
     def without_rule(self) -> tuple[RequirementEntry, ...]:

@@ -157,7 +157,8 @@ def text(
     outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], output_format: str
 ) -> str:
     """The results in a format for programs."""
-    from fretc.audit.outputs.junit import github, junit
+    from fretc.audit.outputs.github import github
+    from fretc.audit.outputs.junit import junit
     from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
 
     if output_format == "json":

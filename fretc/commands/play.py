@@ -116,22 +116,11 @@ def play(
 
 def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
     """One version of a project, and why some requirements without errors have no monitor."""
-    from compiler.targets.javascript.monitor import refuse
     from fretc.commands.analyze import active_requirements
-    from fretc.play.versions import Side
+    from fretc.play.versions import side
 
-    requirements = active_requirements(project, None)
-    refused = {
-        requirement.id: why
-        for requirement in requirements
-        if (why := refuse(requirement)) is not None
-    }
-    known = [requirement for requirement in requirements if requirement.id not in refused]
-    mistaken = {
-        refusal.requirement.id: refusal.why[0] for refusal in project.refused if refusal.is_in_force
-    }
-    reasons = {id: why.message for id, why in (mistaken | refused).items()}
-    return Side(known, reasons, project.declarations), [*refused.values()]
+    mistaken = (refusal for refusal in project.refused if refusal.is_in_force)
+    return side(active_requirements(project, None), mistaken, project.declarations)
 
 
 def _recorded(

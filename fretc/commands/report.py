@@ -195,21 +195,18 @@ def report(
 def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | None) -> Inset | None:
     """The embedded page of `fretc play`; None: no requirement can be on it."""
     from compiler.formalization.formalize import name_collisions
-    from compiler.targets.javascript.monitor import refuse
     from fretc.audit.plan import Plan, planned
     from fretc.commands.play import of_files
     from fretc.play.page import inset
     from fretc.play.recorded import Recorded, of_evidence
     from fretc.play.starts import of_examples
+    from fretc.play.versions import side
 
-    refused = {refusal.requirement.id: refusal.why[0].message for refusal in project.refused}
-    project = project.sound
-    refused |= {
-        requirement.id: said.message
-        for requirement in project.formalized
-        if (said := refuse(requirement))
-    }
-    known = [requirement for requirement in project.formalized if requirement.id not in refused]
+    refusals, project = project.refused, project.sound
+    mistaken = {refusal.requirement.id for refusal in refusals}
+    sound = [each for each in project.formalized if each.id not in mistaken]
+    shown, _ = side(sound, refusals, None)
+    known = shown.requirements
     if not known or [*name_collisions(known)]:
         return None
     plan = planned(project)
@@ -221,7 +218,7 @@ def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | No
         *of_examples(known),
         *of_files(project.formalized, known, None, analysis),
     ]
-    return inset(known, [*refused.items()], starts, notes=recorded.notes)
+    return inset(known, [*shown.refused.items()], starts, notes=recorded.notes)
 
 
 def _outputs(

@@ -247,7 +247,7 @@ def _evidence(audited: EvidenceSource, proofs: Proofs | None) -> Signable:
 
 def _summary_of_evidence(audited: EvidenceSource) -> Iterator[str]:
     from fretc.audit.measurements.confidence_intervals import REFUTED
-    from fretc.report.model.audits import SingleAudit
+    from fretc.report.model.assessments import SingleAudit
     from monitors import kernel
 
     audits = [SingleAudit(brief, ()) for _, brief in audited.briefs()]

@@ -36,11 +36,7 @@ def checks(project: Project, standings: Sequence[ReviewedRequirement]) -> tuple[
         project: with or without errors; requirements that an error affects are skipped.
         standings: requirements with their reviews.
     """
-    requirements = [
-        requirement
-        for requirement in project.sound.formalized
-        if requirement.entry.status != "retired"
-    ]
+    requirements = project.sound.in_force
     diagnostics = [
         d
         for requirement in requirements
@@ -149,7 +145,7 @@ def _misspelt(requirement: FormalizedRequirement, method: str) -> Iterator[Diagn
 
 def _links(project: Project) -> Iterator[Diagnostic]:
     """F522, F523 and F527: hazards without a requirement, requirements without a hazard."""
-    active = [r for r in project.requirements if r.status != "retired"]
+    active = [r for r in project.requirements if r.is_in_force]
     above = {parent for requirement in active for parent in requirement.parents}
     for hazard in project.hazards.values():
         if hazard.id not in above:
@@ -216,7 +212,7 @@ def unreviewed(project: Project, standings: Sequence[ReviewedRequirement]) -> It
     by_id = {requirement.id: requirement for requirement in project.requirements}
     for standing in standings:
         requirement = by_id[standing.chain.requirement]
-        if standing.review is None and requirement.status != "retired":
+        if standing.review is None and requirement.is_in_force:
             yield Diagnostic(
                 Code.NOT_REVIEWED,
                 f"{requirement.id} was never reviewed",
