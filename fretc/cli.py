@@ -165,9 +165,7 @@ Python's default of 700 the collector takes a tenth of the start-up time."""
 def _prepare() -> None:
     """Make streams and signals safe: closed pipes and SIGTERM keep exit status and files intact.
 
-        Nothing in the current folder is executed by accident.
-
-    Nor is anything executed that happens to lie in the current folder.
+    Nothing in the current folder is executed by accident.
     """
     isolate_imports()
     gc.set_threshold(_GARBAGE)

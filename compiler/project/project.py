@@ -87,6 +87,11 @@ class Project:
         return replace(self, formalized=requirements)
 
     @property
+    def in_force(self) -> tuple[FormalizedRequirement, ...]:
+        """The formalized requirements that are not retired."""
+        return tuple(each for each in self.formalized if each.entry.status != "retired")
+
+    @property
     def without_rule(self) -> tuple[RequirementEntry, ...]:
         """The requirements that have an error, or are free text."""
         return tuple(failure.requirement for failure in self.failed)

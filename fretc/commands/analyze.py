@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import project_of
+from fretc.commands.opening import input_files, project_of
 from fretc.terminal.options import (
     PATH,
     SECONDS,
@@ -103,7 +103,6 @@ def analyze(
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from compiler.project.paths import companions
     from fretc.analysis.analysis import Options
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.assumptions import assumptions
@@ -133,10 +132,7 @@ def analyze(
         left_out = [refusal.requirement.id for refusal in project.refused if refusal.is_in_force]
         click.echo(coloured([*lines(analysis, sentences, left_out)]), nl=False)
     if output != "-":
-        sources = [entry.wording.source.name for entry in project.requirements]
-        write_outputs(
-            {Path(output): evidence}, [*sources, *companions(sources), *filter(None, [bindings])]
-        )
+        write_outputs({Path(output): evidence}, input_files(project, bindings))
     if emitted is not None and not stopped:
         _emit(analysis, formalized, assumed, chosen, Options(seconds, as_fret), emitted, emit_to)
     raise SystemExit(EXIT_INTERRUPTED if stopped else _status(analysis))
@@ -222,9 +218,7 @@ def active_requirements(
     project: Project, component: str | None
 ) -> tuple[FormalizedRequirement, ...]:
     """The requirements to analyze: all that are in force."""
-    requirements = tuple(
-        requirement for requirement in project.formalized if requirement.entry.status != "retired"
-    )
+    requirements = project.in_force
     if component is not None:
         requirements = _of_component(requirements, component)
     if not requirements:

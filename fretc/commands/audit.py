@@ -36,6 +36,7 @@ from fretc.terminal.output import (
     EXIT_VIOLATION,
     fail,
     not_written,
+    or_fail,
     painted,
     print_diagnostics,
     print_diagnostics_below,
@@ -251,7 +252,7 @@ def audit(
         summarize(paths, query, output_format)
     began = time.perf_counter()
     from compiler.project.folder import load
-    from compiler.project.paths import companions, requirement_files, sibling_path
+    from compiler.project.paths import companions, requirement_files
     from fretc.audit.log_paths import files_of
     from fretc.audit.outputs.totals import VerdictWords
     from fretc.audit.plan import Plan, planned
@@ -260,21 +261,15 @@ def audit(
     from fretc.logs.signals.integrity import Integrity
 
     hook = None if command is None else words(command)
-    given_labels = given(labels)
-    if isinstance(given_labels, Diagnostic):
-        fail(given_labels)
+    given_labels = or_fail(given(labels))
     logs, selection = selected(paths, since, sample, seed)
     limits = time_limits(log_time, whole_time, logs, engine)
     target = outputs.target(output, selection.named if selection else len(logs))
     outputs.check(target, parquet)
-    files = requirement_files(requirements)
-    if isinstance(files, Diagnostic):
-        fail(files)
+    files = or_fail(requirement_files(requirements))
     inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
     protect([target.path, *([Path(parquet)] if parquet else [])], inputs)
-    project = load(
-        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
-    )
+    project = load(files, bindings, reads=AUDIT_TABLES)
     print_project_diagnostics(project.diagnostics, requirements)
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
@@ -405,7 +400,4 @@ def _engine(
         fail(_no_place_for_columns(why, "remove one of the two options"))
     from fretc.audit import dask_executor
 
-    engine = dask_executor.engine(name, jobs)
-    if isinstance(engine, Diagnostic):
-        fail(engine)
-    return engine
+    return or_fail(dask_executor.engine(name, jobs))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fretc.terminal.output import EXIT_INCONCLUSIVE, fail, print_status
+from fretc.terminal.output import EXIT_INCONCLUSIVE, fail, or_fail, print_status
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 if TYPE_CHECKING:
@@ -29,12 +29,8 @@ def selected(
     from fretc.audit.selection.choice import chosen, in_words
     from fretc.audit.selection.dates import since as time_of
 
-    than = None if since is None else time_of(since)
-    if isinstance(than, Diagnostic):
-        fail(than)
-    logs = logs_of(paths)
-    if isinstance(logs, Diagnostic):
-        fail(logs)
+    than = or_fail(None if since is None else time_of(since))
+    logs = or_fail(logs_of(paths))
     some, selection = chosen(logs, than, sample, seed)
     if selection is not None:
         print_status(in_words(selection))

@@ -23,7 +23,7 @@ from fretc.terminal.output import (
     EXIT_INCONCLUSIVE,
     EXIT_OK,
     EXIT_USAGE,
-    fail,
+    or_fail,
     print_diagnostic_groups,
     print_status,
     write_outputs,
@@ -99,9 +99,7 @@ def check(
 
     if fix:
         _fix(requirements)
-    project = load_folder(requirements, bindings, hazards)
-    if isinstance(project, Diagnostic):
-        fail(project)
+    project = or_fail(load_folder(requirements, bindings, hazards))
     units = first_unit(project.formalized)
     diagnostics = [*project.diagnostics, *([units] if units is not None else [])]
     audited = (required_source if is_given("evidence") else source)(evidence)
@@ -150,9 +148,7 @@ def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnosti
     from fretc.analysis.evidence import remarks, suspicions
     from fretc.commands.analyze import asked
 
-    requirements = tuple(
-        requirement for requirement in project.formalized if requirement.entry.status != "retired"
-    )
+    requirements = project.in_force
     assumed, said = assumptions(requirements, project.declarations)
     yield from said
     chosen = roles([*requirements, *assumed])

@@ -13,6 +13,7 @@ from fretc.terminal.output import (
     EXIT_USAGE,
     fail,
     fail_at_end,
+    or_fail,
     print_diagnostics_below,
     print_project_diagnostics,
     print_status,
@@ -46,9 +47,7 @@ def project_of(
     from compiler.project.paths import expanded_paths, requirement_files
 
     (first, *_) = places(files, requirements)
-    paths = expanded_paths(files) if files else requirement_files(requirements)
-    if isinstance(paths, Diagnostic):
-        fail(paths)
+    paths = or_fail(expanded_paths(files) if files else requirement_files(requirements))
     project = load(paths, bindings, reads=reads)
     print_project_diagnostics(project.diagnostics, first)
     return usable_part(project), first
@@ -71,6 +70,24 @@ def usable_part(project: Project, *, others: bool = False) -> Project:
         raise SystemExit(EXIT_USAGE)
     print_requirements_with_errors(project)
     return sound
+
+
+def planned_project(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
+    """The project, and the audit plan for its usable requirements."""
+    from compiler.project.folder import load
+    from compiler.project.paths import requirement_files
+
+    files = or_fail(requirement_files(requirements))
+    project = load(files, bindings, reads=AUDIT_TABLES)
+    return project, plan_of(project, requirements)
+
+
+def input_files(project: Project, *others: str | None) -> list[str]:
+    """The files of a project, and other inputs that are given: no output may replace them."""
+    from compiler.project.paths import companions
+
+    sources = [requirement.wording.source.name for requirement in project.requirements]
+    return [*sources, *companions(sources), *(name for name in others if name is not None)]
 
 
 def plan_of(project: Project, requirements: str) -> Plan:

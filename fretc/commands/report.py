@@ -30,10 +30,11 @@ from fretc.terminal.output import (
     EXIT_USAGE,
     EXIT_VIOLATION,
     fail,
+    or_fail,
     print_project_diagnostics,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
+from fretish.diagnostics.diagnostic import Severity, has_errors
 
 if TYPE_CHECKING:
     from compiler.project.project import Project
@@ -156,12 +157,8 @@ def report(
             fail(absent)
     if is_given("evidence") and not os.path.lexists(evidence):
         fail(replace(not_audited(evidence), severity=Severity.ERROR))
-    files = requirement_files(requirements)
-    if isinstance(files, Diagnostic):
-        fail(files)
-    project = load_folder(requirements, bindings, hazards)
-    if isinstance(project, Diagnostic):
-        fail(project)
+    files = or_fail(requirement_files(requirements))
+    project = or_fail(load_folder(requirements, bindings, hazards))
     lock = lock or sibling_path(requirements, "fretc.lock")
     waivers = waivers or sibling_path(requirements, "waivers.toml")
     signers = signers or sibling_path(requirements, SIGNERS)

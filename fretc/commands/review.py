@@ -26,6 +26,7 @@ from fretc.terminal.output import (
     EXIT_USAGE,
     fail,
     fail_at_end,
+    or_fail,
     print_project_diagnostics,
     print_status,
     write_outputs,
@@ -245,15 +246,9 @@ def _chains(
     from fretc.traceability.chain import chains
     from fretc.verification.reader import known
 
-    project = load_folder(requirements)
-    if isinstance(project, Diagnostic):
-        fail(project)
-    proofs = known(verification)
-    if isinstance(proofs, Diagnostic):
-        fail(proofs)
-    analyzed = known_analysis(analysis)
-    if isinstance(analyzed, Diagnostic):
-        fail(analyzed)
+    project = or_fail(load_folder(requirements))
+    proofs = or_fail(known(verification))
+    analyzed = or_fail(known_analysis(analysis))
     read = required_source if is_given("evidence") else source
     audited = read(evidence, in_full=accept)
     if isinstance(audited, Diagnostic):

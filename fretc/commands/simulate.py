@@ -151,9 +151,6 @@ def _known(scenario: Scenario) -> None:
 
     Raises:
         ScenarioError: one does not exist.
-
-    Raises:
-        ScenarioError: one is not there.
     """
     from fretc.campaigns.experiment import project
     from simulation.world.scenario import ScenarioError

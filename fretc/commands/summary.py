@@ -14,6 +14,7 @@ from fretc.terminal.output import (
     EXIT_OK,
     EXIT_VIOLATION,
     fail,
+    or_fail,
     print_diagnostics,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -30,13 +31,9 @@ def summarize(paths: Sequence[str], query: str | None, output_format: str) -> No
 
     if output_format not in ("text", "json"):
         fail(_no_form(output_format))
-    table = read(paths)
-    if isinstance(table, Diagnostic):
-        fail(table)
+    table = or_fail(read(paths))
     if query is not None:
-        answer = run_query(table, query)
-        if isinstance(answer, Diagnostic):
-            fail(answer)
+        answer = or_fail(run_query(table, query))
         click.echo(_json(answer.records) if output_format == "json" else _listed(answer), nl=False)
         raise SystemExit(EXIT_OK)
     summary = summarize(table)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import AUDIT_TABLES, project_of
+from fretc.commands.opening import AUDIT_TABLES, input_files, project_of
 from fretc.terminal.options import (
     PATH,
     SECONDS,
@@ -28,6 +28,7 @@ from fretc.terminal.output import (
     EXIT_USAGE,
     coloured,
     fail,
+    or_fail,
     print_project_diagnostics,
     print_status,
     write_outputs,
@@ -139,7 +140,6 @@ def test(
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from compiler.project.paths import companions
     from fretc.analysis.assumptions import assumptions
     from fretc.commands import test_against, test_staging
     from fretc.commands.analyze import active_requirements
@@ -152,8 +152,7 @@ def test(
     print_project_diagnostics(remarks, first)
     if has_errors(remarks):
         raise SystemExit(EXIT_USAGE)
-    sources = [entry.wording.source.name for entry in project.requirements]
-    protected = [*sources, *companions(sources), *filter(None, [bindings])]
+    protected = input_files(project, bindings, saved)
     if languages and emitted != "pytest":
         why = "`--language` needs `--emit pytest`"
         fail(Diagnostic(Code.BAD_USAGE, why, help="add `--emit pytest`, or remove `--language`"))
@@ -169,8 +168,6 @@ def test(
     on_stage = emitted if emitted in test_staging.FORMS else None
     if on_stage is not None:
         test_staging.check(on_stage, emit_to)
-    if saved is not None:
-        protected.append(saved)
     suite, stopped = (
         (_of(saved, formalized), False) if saved else _made(formalized, assumed, seconds)
     )
@@ -209,9 +206,7 @@ def _of(path: str, requirements: Sequence[FormalizedRequirement]) -> Suite:
     from fretc.testing.exports.saved import saved as checked
     from fretc.testing.reader import read
 
-    suite = read(path)
-    if isinstance(suite, Diagnostic):
-        fail(suite)
+    suite = or_fail(read(path))
     again = "generate it again: `fretc test`"
     try:
         found = checked(suite, requirements)

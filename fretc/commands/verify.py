@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from compiler.logic.claims import PROVERS, Layer
-from fretc.commands.opening import print_excluded, project_of
+from fretc.commands.opening import input_files, print_excluded, project_of
 from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import (
     PATH,
@@ -31,6 +31,7 @@ from fretc.terminal.output import (
     coloured,
     fail,
     fail_at_end,
+    or_fail,
     print_diagnostics,
     write_outputs,
 )
@@ -151,7 +152,6 @@ def verify(
     traces: str | None,
 ) -> None:
     """The command; its help is `_HELP`."""
-    from compiler.project.paths import companions
     from fretc.terminal.progress import print_activity
     from fretc.verification.ajpf_results import default_paths
     from fretc.verification.engines.sandbox import Limits
@@ -194,8 +194,7 @@ def verify(
     print_excluded({id: (why,) for id, why in refused.items()}, len(project.formalized))
     own = header.name if header else None
     options = (monitor_file, own, interceptor, agent, properties, bindings, *results)
-    sources = [requirement.wording.source.name for requirement in project.requirements]
-    inputs = [*sources, *companions(sources), *(name for name in options if name is not None)]
+    inputs = input_files(project, *options)
     texts = [*lines(proofs, every_claim=every_claim)] if output_format == "text" else None
     _print_and_write(proofs, texts, output, traces, inputs)
     raise SystemExit(_status(proofs))
@@ -252,10 +251,7 @@ def _read(path: str | None) -> Source | None:
 
     if path is None:
         return None
-    source = read(path)
-    if isinstance(source, Diagnostic):
-        fail(source)
-    return source
+    return or_fail(read(path))
 
 
 def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
@@ -370,9 +366,7 @@ def _trace_files(proofs: Sequence[Proof], folder: Path) -> dict[Path, str]:
 def _status(proofs: Sequence[Proof]) -> int:
     """The exit status, as stated in the help.
 
-        A stop that is never released violates no requirement: it gives 3, not 1.
-
-    That a stop is never released breaks no requirement: it is 3, and not 1.
+    A stop that is never released violates no requirement: it gives 3, not 1.
     """
     from compiler.logic.claims import Result
     from fretc.verification.loop.closed_loop import RELEASED

@@ -33,6 +33,7 @@ from fretc.terminal.output import (
     EXIT_VIOLATION,
     coloured,
     fail,
+    or_fail,
     print_diagnostics,
 )
 from fretish.diagnostics.diagnostic import (
@@ -150,9 +151,7 @@ def verify_evidence(
     from fretc.verification.reader import default_path
 
     file = evidence_path(file)
-    evidence = required(file)
-    if isinstance(evidence, Diagnostic):
-        fail(evidence)
+    evidence = or_fail(required(file))
     whole = evidence.document
     if signed_by is not None:
         others = {"report": report, "proofs": verification, "analysis": analysis}
@@ -199,12 +198,8 @@ def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tup
     from compiler.project.folder import load_folder
     from fretc.logs.labels import given
 
-    given_labels = given(labels)
-    if isinstance(given_labels, Diagnostic):
-        fail(given_labels)
-    project = load_folder(requirements, bindings)
-    if isinstance(project, Diagnostic):
-        fail(project)
+    given_labels = or_fail(given(labels))
+    project = or_fail(load_folder(requirements, bindings))
     return project, replace(plan_of(project, requirements), labels=given_labels)
 
 
@@ -264,10 +259,7 @@ def _lock(requirements: str) -> Lock | None:
     from fretc.traceability.lock import NAME, read
 
     path = sibling_path(requirements, NAME)
-    lock = read(path) if path is not None else None
-    if isinstance(lock, Diagnostic):
-        fail(lock)
-    return lock
+    return or_fail(read(path) if path is not None else None)
 
 
 def _manifest(path: str | None) -> Manifest | None:
@@ -284,19 +276,13 @@ def _manifest(path: str | None) -> Manifest | None:
 def _proofs(path: str | None) -> Proofs | None:
     from fretc.verification.reader import read
 
-    proofs = read(path) if path is not None else None
-    if isinstance(proofs, Diagnostic):
-        fail(proofs)
-    return proofs
+    return or_fail(read(path) if path is not None else None)
 
 
 def _analyzed(path: str | None) -> AnalyzedSet | None:
     from fretc.analysis.evidence import read
 
-    known = read(path) if path is not None else None
-    if isinstance(known, Diagnostic):
-        fail(known)
-    return known
+    return or_fail(read(path) if path is not None else None)
 
 
 def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
@@ -338,12 +324,8 @@ def _signatures(files: Sequence[str], signers: str | None) -> SignatureBook:
     from fretc.attestation.signatures import book
     from fretc.attestation.signers import trusted
 
-    known = trusted(signers) if signers is not None else None
-    if isinstance(known, Diagnostic):
-        fail(known)
-    signatures = book(files, known)
-    if isinstance(signatures, Diagnostic):
-        fail(signatures)
+    known = or_fail(trusted(signers) if signers is not None else None)
+    signatures = or_fail(book(files, known))
     broken = list(signatures.diagnostics())
     print_diagnostics(broken)
     if has_errors(broken):
@@ -365,10 +347,7 @@ def _rechecked(
     from fretc.audit.many_logs import local_executor
     from fretc.reproduction.results import recheck
 
-    results = recheck(whole, plan, places, local_executor(jobs), scope, manifest)
-    if isinstance(results, Diagnostic):
-        fail(results)
-    return results
+    return or_fail(recheck(whole, plan, places, local_executor(jobs), scope, manifest))
 
 
 def _reproved(
@@ -384,9 +363,9 @@ def _reproved(
         return missing
     if skip:
         return (unknown(PROOFS, "", "the proofs were not repeated: `--no-proofs`"), *missing)
-    results = prove_again(project, proofs, Limits(seconds=limit), scope.claimed, print_activity)
-    if isinstance(results, Diagnostic):
-        fail(results)
+    results = or_fail(
+        prove_again(project, proofs, Limits(seconds=limit), scope.claimed, print_activity)
+    )
     return (*results, *missing)
 
 
@@ -406,9 +385,7 @@ def _asked_again(
         why = f"the analysis was not repeated: `{'--no-analysis' if skip else '--only'}`"
         return (unknown(TOGETHER, "", why),)
     document = known.document
-    in_force = [
-        requirement for requirement in project.formalized if requirement.entry.status != "retired"
-    ]
+    in_force = project.in_force
     requirements = [
         requirement for requirement in in_force if requirement.id in document.requirements
     ]
@@ -443,9 +420,7 @@ def _report(
     from fretc.attestation.signatures import SIGNERS
     from fretc.report.make import make
 
-    source = read(path)
-    if isinstance(source, Diagnostic):
-        fail(source)
+    source = or_fail(read(path))
     names = [sibling_path(requirements, name) for name in ("fretc.lock", "waivers.toml", SIGNERS)]
     current = make(
         project,

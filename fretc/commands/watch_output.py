@@ -160,9 +160,6 @@ def watched(
 
     Raises:
         OSError: standard output was closed.
-
-    Raises:
-        OSError: nobody reads any more what is shown.
     """
     try:
         _watched(watch, source, output, reaction, publishing, stopped)
