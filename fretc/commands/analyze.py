@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import input_files, project_of
+from fretc.commands.opening import input_files, requirement_set
 from fretc.terminal.options import (
-    PATH,
     SECONDS,
+    component_option,
+    files_argument,
+    first_bindings_option,
     format_option,
     output_option,
     path_option,
@@ -23,29 +25,26 @@ from fretc.terminal.output import (
     EXIT_INCONCLUSIVE,
     EXIT_INTERRUPTED,
     EXIT_OK,
-    EXIT_USAGE,
     EXIT_VIOLATION,
     coloured,
     fail,
-    print_project_diagnostics,
     print_status,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from compiler.formalization.formalized import FormalizedRequirement
-    from compiler.project.project import Project
     from fretc.analysis.analysis import Options
     from fretc.analysis.arena.roles import Roles
     from fretc.analysis.findings import Analysis
 
 
 @click.command()
-@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
-@click.option("--component", metavar="NAME", help="Only requirements of this component.")
+@files_argument
+@component_option
 @click.option(
     "--time",
     "seconds",
@@ -70,7 +69,7 @@ if TYPE_CHECKING:
     help="Answer as FRET does: an `eventually` without a bound must hold at once.",
 )
 @requirements_option
-@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
+@first_bindings_option
 @format_option()
 @output_option(
     default="build/analysis.json", show_default=True, help="File for the analysis. `-` prints it."
@@ -105,17 +104,12 @@ def analyze(
     from compiler.files.templating import to_json
     from fretc.analysis.analysis import Options
     from fretc.analysis.arena.roles import roles
-    from fretc.analysis.assumptions import assumptions
     from fretc.analysis.evidence import document
     from fretc.analysis.text_output import lines
     from fretish.printer import sentence as printed
 
-    project, first = project_of(files, requirements, bindings, ("environment",))
-    formalized = active_requirements(project, component)
-    assumed, remarks = assumptions(formalized, project.declarations)
-    print_project_diagnostics(remarks, first)
-    if has_errors(remarks):
-        raise SystemExit(EXIT_USAGE)
+    known = requirement_set(files, component, requirements, bindings, ("environment",))
+    project, formalized, assumed = known.project, known.requirements, known.assumed
     chosen = roles([*formalized, *assumed])
     if isinstance(chosen, tuple):
         fail(*chosen)
@@ -145,17 +139,11 @@ def asked(
     options: Options,
 ) -> tuple[Analysis, bool]:
     """The analysis of the requirements, and whether Ctrl-C has stopped it."""
-    from fretc.analysis.analysis import Finding, assembled, jobs
-    from fretc.analysis.worker import Interrupted, findings
+    from fretc.analysis.analysis import assembled, jobs
+    from fretc.analysis.worker import finished
     from fretc.terminal.progress import print_activity
 
-    found: list[Finding] = []
-    stopped = False
-    try:
-        for finding in findings(jobs(requirements, chosen, assumed, options), print_activity):
-            found.append(finding)
-    except Interrupted:
-        stopped = True
+    found, stopped = finished(jobs(requirements, chosen, assumed, options), print_activity)
     return assembled(requirements, chosen, assumed, options, found), stopped
 
 
@@ -174,7 +162,7 @@ def _emit(
     from fretc.analysis.controllers.files import ControllerFormat, automata, controller
     from fretc.analysis.controllers.moves import Mealy
     from fretc.analysis.findings import OpenQuestion, Verdict
-    from fretc.analysis.worker import Interrupted, findings
+    from fretc.analysis.worker import finished
     from fretc.terminal.progress import print_activity
     from fretish.printer import sentence as printed
 
@@ -182,14 +170,10 @@ def _emit(
         print_status(f"no controller is written: {analysis.why}")
         return
     output_format = ControllerFormat(emitted)
-    try:
-        found = [
-            *findings(
-                controllers(requirements, chosen, assumed, options, output_format), print_activity
-            )
-        ]
-    except Interrupted:
-        raise SystemExit(EXIT_INTERRUPTED) from None
+    work = controllers(requirements, chosen, assumed, options, output_format)
+    found, stopped = finished(work, print_activity)
+    if stopped:
+        raise SystemExit(EXIT_INTERRUPTED)
     circuits = [each for each in found if isinstance(each, Circuit)]
     machines = [each for each in found if isinstance(each, Mealy)]
     for each in found:
@@ -212,37 +196,6 @@ def _smaller(output_format: str) -> str:
     if output_format == "python":
         return "select one component with `--component`, or allow more time with `--time`"
     return "try `--emit python`: it lists no states and can write much larger controllers"
-
-
-def active_requirements(
-    project: Project, component: str | None
-) -> tuple[FormalizedRequirement, ...]:
-    """The requirements to analyze: all that are in force."""
-    requirements = project.in_force
-    if component is not None:
-        requirements = _of_component(requirements, component)
-    if not requirements:
-        fail(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to analyze"))
-    return requirements
-
-
-def _of_component(
-    requirements: Sequence[FormalizedRequirement], component: str
-) -> tuple[FormalizedRequirement, ...]:
-    chosen = tuple(
-        requirement for requirement in requirements if requirement.sentence.component == component
-    )
-    if not chosen:
-        known = tuple(dict.fromkeys(requirement.sentence.component for requirement in requirements))
-        near = suggestion(component, known)
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"no requirement is about the component `{component}`",
-                help=f"did you mean `{near}`?" if near else f"there are {', '.join(known)}",
-            )
-        )
-    return chosen
 
 
 def _status(analysis: Analysis) -> int:

@@ -150,11 +150,10 @@ def _audited(
     No file is written.
     """
     from fretc.audit.many_logs import local_executor
-    from fretc.commands.audit_logs import selected
-    from fretc.commands.audit_progress import audit_in_memory
+    from fretc.commands.audit_logs import audit_in_memory, selected
 
     project, plan = planned_project(requirements, bindings)
-    logs, _ = selected(paths, None, None, 0)
+    logs, _ = selected(paths)
     audit = audit_in_memory(plan, logs, local_executor(jobs))
     diagnostics = project.answered(audit.diagnostics)
     print_diagnostics_below(diagnostics, project.diagnostics)

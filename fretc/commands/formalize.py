@@ -13,7 +13,7 @@ import click
 from compiler.emit import TARGETS
 from fretc.commands.opening import usable_part
 from fretc.terminal.group import DEFAULT, Compile
-from fretc.terminal.options import PATH, format_option, output_option, path_option
+from fretc.terminal.options import PATH, first_bindings_option, format_option, output_option
 from fretc.terminal.output import (
     EXIT_OK,
     EXIT_USAGE,
@@ -47,7 +47,7 @@ _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
     help="Kind of file to generate. Repeatable.",
 )
 @output_option(default="build", show_default=True, help="Folder for generated files. `-` prints.")
-@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
+@first_bindings_option
 @format_option(text="Output format of the formulas.")
 @click.option(
     "--notation",

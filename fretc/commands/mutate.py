@@ -73,15 +73,14 @@ def mutate(
 
     Example: fretc mutate --against runs/
     """
-    from fretc.commands.audit_logs import selected
-    from fretc.commands.audit_progress import shown
+    from fretc.commands.audit_logs import selected, shown
     from fretc.commands.coverage import suite_of
     from fretc.coverage import mutation_output, mutation_record
     from fretc.coverage.mutation import mutation_job, survey
 
     (place,) = places([folder] if folder else [], requirements)
     project, plan = planned_project(place, bindings)
-    logs, _ = selected(paths, None, None, 0)
+    logs, _ = selected(paths)
     asked = mutation_job(project, plan)
     try:
         with shown(logs) as show:

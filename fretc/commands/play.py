@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import input_files, project_of
+from fretc.commands.opening import active_requirements, input_files, project_of
 from fretc.terminal.options import (
-    PATH,
     analysis_option,
+    files_argument,
+    first_bindings_option,
     output_option,
     path_option,
     requirements_option,
@@ -40,9 +41,9 @@ _SECONDS = 20
 
 
 @click.command()
-@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
+@files_argument
 @requirements_option
-@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
+@first_bindings_option
 @path_option(
     "--against",
     metavar="OLD",
@@ -120,7 +121,6 @@ def play(
 def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
     """One version of a project, and why some requirements without errors have no monitor."""
     from compiler.targets.javascript.monitor import refuse
-    from fretc.commands.analyze import active_requirements
     from fretc.play.versions import Side
 
     requirements = active_requirements(project, None)

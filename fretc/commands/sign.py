@@ -82,12 +82,11 @@ def sign(files: tuple[str, ...], key: str, reviewer: str | None, verification: s
         for line in signable.lines:
             print_status(visible(line))
     mine = private(key)
-    write_outputs(_merged(signed(signable, mine) for signable in signables), [*files, key])
+    outputs: dict[Path, str] = {}
+    for signable in signables:
+        outputs |= signed(signable, mine)
+    write_outputs(outputs, [*files, key])
     print_status(f"signed with {mine.public.text}")
-
-
-def _merged(parts: Iterable[Mapping[Path, str]]) -> dict[Path, str]:
-    return {path: text for part in parts for path, text in part.items()}
 
 
 def installed() -> None:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import click
 
+from fretc.audit.evidence.verdicts import VERDICTS
+from fretc.audit.outputs.summary import COUNTED, MOST, Answer, Summary, run_query, summarize
+from fretc.audit.outputs.table import read
 from fretc.terminal.output import (
     EXIT_INCONCLUSIVE,
     EXIT_OK,
@@ -20,15 +23,9 @@ from fretc.terminal.output import (
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import visible
 
-if TYPE_CHECKING:
-    from fretc.audit.outputs.summary import Answer, Summary
 
-
-def summarize(paths: Sequence[str], query: str | None, output_format: str) -> NoReturn:
+def print_summary(paths: Sequence[str], query: str | None, output_format: str) -> NoReturn:
     """Print a summary of evidence, or the result of a query; exit with the status of the audit."""
-    from fretc.audit.outputs.summary import run_query, summarize
-    from fretc.audit.outputs.table import read
-
     if output_format not in ("text", "json"):
         fail(_no_form(output_format))
     table = or_fail(read(paths))
@@ -70,8 +67,6 @@ def _plain(value: object) -> object:
 
 
 def _text(summary: Summary) -> str:
-    from fretc.audit.outputs.summary import MOST
-
     whole = summary.whole
     damaged = f", {_many(whole['damaged'], 'damaged run')}" if whole["damaged"] else ""
     lines = [
@@ -90,9 +85,6 @@ def _text(summary: Summary) -> str:
 
 
 def _verdicts(summary: Summary) -> tuple[list[str], list[list[str]]]:
-    from fretc.audit.evidence.verdicts import VERDICTS
-    from fretc.audit.outputs.summary import COUNTED
-
     counted = (f"{VERDICTS[word].sign.glyph} {word}" for word in COUNTED.values())
     head = ["requirement", "runs", *counted, "violations"]
     rows = [

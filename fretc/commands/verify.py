@@ -15,8 +15,9 @@ from compiler.logic.claims import PROVERS, Layer
 from fretc.commands.opening import input_files, print_excluded, project_of
 from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import (
-    PATH,
     extras,
+    files_argument,
+    first_bindings_option,
     format_option,
     limit_option,
     output_option,
@@ -81,7 +82,7 @@ Example: fretc verify requirements/r1.fret --monitor
     help=_HELP,
     epilog=extras({"crosshair": "--with crosshair"}),
 )
-@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
+@files_argument
 @click.option(
     "--layer",
     "layers",
@@ -117,7 +118,7 @@ Example: fretc verify requirements/r1.fret --monitor
     help="Result of AJPF. Repeatable.  [default: every build/*_ajpf/result.json]",
 )
 @requirements_option
-@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
+@first_bindings_option
 @limit_option
 @format_option()
 @output_option(

@@ -147,8 +147,10 @@ def verify_evidence(
     Example: fretc verify-evidence --manifest logs.sha256 --report build/report.html
     """
     from fretc.analysis.evidence import default_path as analyzed
+    from fretc.analysis.evidence import read as read_analysis
     from fretc.audit.store.anywhere import required
     from fretc.verification.reader import default_path
+    from fretc.verification.reader import read as read_proofs
 
     file = evidence_path(file)
     evidence = or_fail(required(file))
@@ -159,11 +161,12 @@ def verify_evidence(
     project, plan = _plan(requirements, bindings, labels)
     scope = _scope(plan, only, requirements)
     verification = verification or default_path()
-    proofs = _proofs(verification)
+    proofs = or_fail(read_proofs(verification)) if verification is not None else None
     analysis = analysis or analyzed()
-    known = _analyzed(analysis)
+    known = or_fail(read_analysis(analysis)) if analysis is not None else None
     log_hashes = _manifest(manifest)
-    places = _places(_runs(whole), places_named, offline=offline)
+    runs = list(dict.fromkeys(result.run for result in whole.results))
+    places = _places(runs, places_named, offline=offline)
     results = [*_rechecked(whole, plan, places, scope, log_hashes, jobs)]
     results += _reproved(project.sound, proofs, scope, limit, skip=no_proofs)
     if known is not None:
@@ -188,10 +191,6 @@ def _status(results: Sequence[Recheck], same: bool | None, scope: Scope) -> int:
     if Finding.DIFFERS in kinds or same is False:
         return EXIT_VIOLATION
     return EXIT_INCONCLUSIVE if Finding.UNKNOWN in kinds or scope.part else EXIT_OK
-
-
-def _runs(whole: Document) -> list[str]:
-    return list(dict.fromkeys(result.run for result in whole.results))
 
 
 def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tuple[Project, Plan]:
@@ -271,18 +270,6 @@ def _manifest(path: str | None) -> Manifest | None:
     if not isinstance(manifest, Manifest):
         fail(*manifest)
     return manifest
-
-
-def _proofs(path: str | None) -> Proofs | None:
-    from fretc.verification.reader import read
-
-    return or_fail(read(path) if path is not None else None)
-
-
-def _analyzed(path: str | None) -> AnalyzedSet | None:
-    from fretc.analysis.evidence import read
-
-    return or_fail(read(path) if path is not None else None)
 
 
 def _against(scope: Scope, requirements: str, manifest: str | None) -> str:

@@ -172,7 +172,7 @@ def _audited(
 ) -> int:
     """Audit the recordings and write the evidence."""
     from fretc.audit.many_logs import local_executor
-    from fretc.commands.audit_progress import audit_in_memory
+    from fretc.commands.audit_logs import audit_in_memory
 
     if not logs:
         fail(Diagnostic(Code.NOTHING_TO_DO, "nothing was recorded: there is no evidence"))

@@ -73,11 +73,7 @@ def _suite_of_all(
         name = valid(titled.get(one.requirement, one.requirement))
         names = {"name": name, "classname": "all runs", "time": "0.000"}
         node = ElementTree.SubElement(suite, "testcase", names)
-        kind = verdicts.junit(one.answer)
-        if kind:
-            message = valid(f"{one.answer}: {one.reason}")
-            element = ElementTree.SubElement(node, kind, message=message)
-            element.text = valid("\n".join(one.lines))
+        _add_failure(node, one.answer, one.reason, one.lines)
 
 
 def _case(suite: ElementTree.Element, run: str, case: Result, titled: Mapping[str, str]) -> None:
@@ -88,11 +84,17 @@ def _case(suite: ElementTree.Element, run: str, case: Result, titled: Mapping[st
         classname=valid(run),
         time=f"{audited_s(case) or 0.0:.3f}",
     )
-    kind = verdicts.junit(case.verdict)
+    _add_failure(node, case.verdict, case.reason, _lines(case))
+
+
+def _add_failure(
+    node: ElementTree.Element, verdict: str, reason: str, lines: Iterable[str]
+) -> None:
+    """Say why a test case has not passed, if it has not."""
+    kind = verdicts.junit(verdict)
     if kind:
-        message = valid(f"{case.verdict}: {case.reason}")
-        element = ElementTree.SubElement(node, kind, message=message)
-        element.text = valid("\n".join(_lines(case)))
+        element = ElementTree.SubElement(node, kind, message=valid(f"{verdict}: {reason}"))
+        element.text = valid("\n".join(lines))
 
 
 def _lines(case: Result) -> Iterator[str]:
