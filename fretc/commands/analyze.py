@@ -31,6 +31,7 @@ from fretc.terminal.output import (
     print_status,
     write_outputs,
 )
+from fretc.terminal.progress import print_activity
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 if TYPE_CHECKING:
@@ -141,7 +142,6 @@ def asked(
     """The analysis of the requirements, and whether Ctrl-C has stopped it."""
     from fretc.analysis.analysis import assembled, jobs
     from fretc.analysis.worker import finished
-    from fretc.terminal.progress import print_activity
 
     found, stopped = finished(jobs(requirements, chosen, assumed, options), print_activity)
     return assembled(requirements, chosen, assumed, options, found), stopped
@@ -163,7 +163,6 @@ def _emit(
     from fretc.analysis.controllers.moves import Mealy
     from fretc.analysis.findings import OpenQuestion, Verdict
     from fretc.analysis.worker import finished
-    from fretc.terminal.progress import print_activity
     from fretish.printer import sentence as printed
 
     if analysis.verdict is not Verdict.REALIZABLE:

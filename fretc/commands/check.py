@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, TypeVar
 
 import click
 
+from compiler.files.dates import today
 from fretc.terminal.options import (
     analysis_option,
     bindings_option,
     evidence_option,
+    evidence_path,
     extras,
     format_option,
     hazards_option,
@@ -65,7 +67,7 @@ def check(
     requirements: str,
     bindings: str | None,
     hazards: str | None,
-    evidence: str,
+    evidence: str | None,
     verification: str | None,
     analysis: str | None,
     analyze: bool,
@@ -89,7 +91,7 @@ def check(
     if fix:
         _fix(requirements)
     project = or_fail(load_folder(requirements, bindings, hazards))
-    files = _Files(requirements, evidence, verification, analysis)
+    files = _Files(requirements, evidence_path(evidence), verification, analysis)
     diagnostics = [*project.diagnostics, *_found(project, files, analyze=analyze)]
     _finish(tuple(dict.fromkeys(diagnostics)), len(project.requirements), output_format)
 
@@ -106,7 +108,6 @@ class _Files:
 
 def _found(project: Project, files: _Files, *, analyze: bool) -> list[Diagnostic]:
     """Diagnostics of all files together, in the order of the checks."""
-    from compiler.files.dates import today
     from compiler.project.paths import sibling_path
     from compiler.project.stated_numbers import first_unit
     from fretc.analysis.evidence import known as known_analysis

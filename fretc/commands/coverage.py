@@ -16,6 +16,7 @@ from fretc.terminal.options import (
     PATH,
     bindings_option,
     evidence_option,
+    evidence_path,
     extras,
     format_option,
     is_given,
@@ -62,7 +63,7 @@ def coverage(
     paths: tuple[str, ...],
     requirements: str,
     bindings: str | None,
-    evidence: str,
+    evidence: str | None,
     output_format: str,
     verbose: bool,
     tests: str | None,
@@ -96,7 +97,7 @@ def coverage(
     if paths:
         source, titles, is_bad = _audited(paths, requirements, bindings, jobs)
     else:
-        source, titles, is_bad = or_fail(required_source(evidence)), {}, False
+        source, titles, is_bad = or_fail(required_source(evidence_path(evidence))), {}, False
     covered = found_in(source)
     known = _directions(covered, tests)
     if output_format == "json":

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from compiler.emit import TARGETS
+from compiler.emit import TARGETS, renamed_propositions
 from fretc.commands.opening import usable_part
 from fretc.terminal.group import DEFAULT, Compile
 from fretc.terminal.options import PATH, first_bindings_option, format_option, output_option
@@ -153,7 +153,6 @@ def _check_weaken(kinds: Sequence[str]) -> None:
 
 def _deliver_formulas(project: Project, output: str) -> None:
     """Write the JSON array of `--emit ltl --format json`, in the order of the files."""
-    from compiler.emit import renamed_propositions
     from compiler.files.templating import to_json
     from compiler.formalization.record import failed, formulas
 

@@ -6,12 +6,13 @@ import os
 import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from compiler.files.dates import today
 from fretc.terminal.options import PATH, extras, path_option
 from fretc.terminal.output import (
     EXIT_VIOLATION,
@@ -223,7 +224,6 @@ def _schema(source: Source) -> object:
 
 
 def _as_error(wrong: Diagnostic) -> Diagnostic:
-    from dataclasses import replace
 
     return replace(wrong, severity=Severity.ERROR)
 
@@ -358,7 +358,6 @@ def of_reviews(path: str, mine: Iterable[Review], all_: Iterable[Review]) -> Sig
 
 
 def _waivers(path: str, key: str, reviewer: str | None) -> Signable:
-    from compiler.files.dates import today
     from fretc.attestation import statement as attestation
     from fretc.traceability.waivers import read
 

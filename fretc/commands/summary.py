@@ -20,6 +20,7 @@ from fretc.terminal.output import (
     or_fail,
     print_diagnostics,
 )
+from fretish.bindings.amounts import count_of
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import visible
 
@@ -68,9 +69,9 @@ def _plain(value: object) -> object:
 
 def _text(summary: Summary) -> str:
     whole = summary.whole
-    damaged = f", {_many(whole['damaged'], 'damaged run')}" if whole["damaged"] else ""
+    damaged = f", {count_of(whole['damaged'], 'damaged run')}" if whole["damaged"] else ""
     lines = [
-        f"{_many(whole['runs'], 'run')}, {_many(whole['requirements'], 'requirement')}, "
+        f"{count_of(whole['runs'], 'run')}, {count_of(whole['requirements'], 'requirement')}, "
         f"{whole['seconds'] / 3600:.1f} h{damaged}",
         "",
         *_aligned(*_verdicts(summary)),
@@ -143,7 +144,3 @@ def _aligned(head: list[str], rows: list[list[str]]) -> Iterator[str]:
 
 def _is_number(cell: str) -> bool:
     return not cell.strip("0123456789.,-+e s")
-
-
-def _many(count: Any, thing: str) -> str:
-    return f"{count:,} {thing}{'' if count == 1 else 's'}"

@@ -48,7 +48,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
     type=click.Choice(("pytest", "csv", "fret", "c", "mcap", "scenario")),
     help="Write the tests: `pytest` files, `csv` tables for monitors, traces for FRET's "
     "simulator, a self-test in `c`, `mcap` logs for audits, or `scenario` files for the "
-    "simulated robot. Repeatable.",
+    "simulated robot.",
 )
 @click.option(
     "--language",

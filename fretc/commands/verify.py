@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from compiler.logic.claims import PROVERS, Layer
+from compiler.files.build_id import __version__
+from compiler.files.records import plain
+from compiler.logic.claims import PROVERS, SCHEMA, Document, Layer, Result
 from fretc.commands.opening import input_files, print_excluded, project_of
 from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import (
@@ -36,6 +38,7 @@ from fretc.terminal.output import (
     print_diagnostics,
     write_outputs,
 )
+from fretc.terminal.progress import print_activity
 from fretc.verification.layers.languages import language_of
 from fretc.verification.layers.table import OF_MONITOR, in_words
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
@@ -153,7 +156,6 @@ def verify(
     traces: str | None,
 ) -> None:
     """The command; its help is `_HELP`."""
-    from fretc.terminal.progress import print_activity
     from fretc.verification.ajpf_results import default_paths
     from fretc.verification.engines.sandbox import Limits
     from fretc.verification.layers.request import Request
@@ -325,10 +327,7 @@ def _print_and_write(
         traces: folder for the tables; None: none are written.
         inputs: files that no output may replace.
     """
-    from compiler.files.build_id import __version__
-    from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from compiler.logic.claims import SCHEMA, Document
 
     document = f"{to_json(plain(Document(SCHEMA, __version__, tuple(proofs))))}\n"
     files: dict[Path, str | bytes] = {}
@@ -369,7 +368,6 @@ def _status(proofs: Sequence[Proof]) -> int:
 
     A stop that is never released violates no requirement: it gives 3, not 1.
     """
-    from compiler.logic.claims import Result
     from fretc.verification.loop.closed_loop import RELEASED
 
     refuted = (proof.claim for proof in proofs if proof.result is Result.COUNTEREXAMPLE)

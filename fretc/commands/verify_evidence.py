@@ -36,6 +36,7 @@ from fretc.terminal.output import (
     or_fail,
     print_diagnostics,
 )
+from fretc.terminal.progress import print_activity
 from fretish.diagnostics.diagnostic import (
     Code,
     Diagnostic,
@@ -342,7 +343,6 @@ def _reproved(
 ) -> Sequence[Recheck]:
     from fretc.reproduction.outcome import PROOFS, unknown
     from fretc.reproduction.proofs import prove_again, unproved_plans
-    from fretc.terminal.progress import print_activity
     from fretc.verification.engines.sandbox import Limits
 
     missing = tuple(unproved_plans(project, proofs.proofs if proofs else (), scope.claimed))

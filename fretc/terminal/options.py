@@ -131,7 +131,6 @@ def evidence_path(named: str | None) -> str:
 
 evidence_option = path_option(
     "--evidence",
-    callback=lambda _context, _option, named: evidence_path(named),
     help=f"Evidence, as `fretc audit` writes it.  [default: {EVIDENCE} or {STORE}]",
 )
 verification_option = path_option(
