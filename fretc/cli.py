@@ -19,7 +19,7 @@ from compiler.emit import TARGETS
 from compiler.files.build_id import __version__
 from compiler.files.processes import isolate_imports
 from fretc.api.refusal import too_deep
-from fretc.terminal.completion import answer_query
+from fretc.commands.completion import answer_query
 from fretc.terminal.group import DEFAULT, Commands, Registry
 from fretc.terminal.output import (
     EXIT_INTERRUPTED,
