@@ -21,7 +21,7 @@ from lark.visitors import Transformer_NonRecursive
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import check_depth, check_names, check_response_kinds, check_value
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError
 from fretish.diagnostics.fixes import FixedText
 from fretish.diagnostics.source import Span
 from fretish.error_rules.operators import unknown_character
@@ -177,12 +177,8 @@ def _as_unsafe(error: Diagnostic) -> Diagnostic:
     return replace(error, fix=fix, help=fix.help if error.help == error.fix.help else error.help)
 
 
-class _ParseError(Exception):
+class _ParseError(DiagnosticError):
     """Carries a diagnostic out of the parser's callbacks."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 _text: ContextVar[Span] = ContextVar("_text")

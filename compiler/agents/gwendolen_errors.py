@@ -6,7 +6,7 @@ import re
 
 from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError, suggestion
 from fretish.diagnostics.source import Source, Span
 
 HEADINGS = (":Initial Beliefs:", ":Initial Goals:", ":Plans:")
@@ -14,12 +14,8 @@ HEADINGS = (":Initial Beliefs:", ":Initial Goals:", ":Plans:")
 _ALL_HEADINGS = (":name:", ":Reasoning Rules:", *HEADINGS)
 
 
-class TrapError(Exception):
+class TrapError(DiagnosticError):
     """The text contains something invalid; the exception carries the diagnostic."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 def misread(message: str, span: Span, fix: str) -> TrapError:

@@ -23,7 +23,7 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 
 from compiler.logic import formula as f
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError
 from fretish.diagnostics.source import Source, Span
 
 KEY_WORDS = frozenset("A E U R B G F I D P T ItD".split())
@@ -72,12 +72,8 @@ _DROPPED = {
 }
 
 
-class AjpfDivergenceError(Exception):
+class AjpfDivergenceError(DiagnosticError):
     """AJPF would misread the text."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 def misread(message: str, span: Span, fix: str) -> AjpfDivergenceError:

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from compiler.project.project import Project
 from fretc.audit.evidence.basis import Basis, basis
-from fretc.audit.refusals import active_requirements, refusals
+from fretc.audit.refusals import refusals
 from fretish.documents import RequirementEntry
 
 
@@ -17,13 +17,11 @@ def audited_topics(project: Project) -> frozenset[str]:
     if declarations is None:
         return frozenset()
     refused = {entry for entry, _ in refusals(project)}
-    auditable = [
-        requirement
-        for requirement in active_requirements(project)
-        if requirement.entry not in refused
-    ]
     used = declarations.restricted_to(
-        name for requirement in auditable for name in requirement.watched
+        name
+        for requirement in project.in_force
+        if requirement.entry not in refused
+        for name in requirement.watched
     )
     return frozenset(signal.path.topic for signal in used.signals.values())
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from fretc.audit.evidence.schema import Result
-from fretc.audit.measurements.tallies import Tally
+from fretc.audit.measurements.tallies import NOTHING, Tally
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
@@ -29,16 +29,7 @@ def totals(runs: Iterable[Mapping[str, Tally]]) -> dict[str, Total]:
     for tallies in runs:
         for name, tally in tallies.items():
             of_name.setdefault(name, []).append(tally)
-    return {name: Total(_sum(some), len(some)) for name, some in of_name.items()}
-
-
-def _sum(tallies: Sequence[Tally]) -> Tally:
-    return Tally(
-        sum(tally.true for tally in tallies),
-        sum(tally.false for tally in tallies),
-        sum(tally.unknown for tally in tallies),
-        sum(tally.changes for tally in tallies),
-    )
+    return {name: Total(sum(some, NOTHING), len(some)) for name, some in of_name.items()}
 
 
 def tallies_of(results: Iterable[Result]) -> dict[str, Tally]:

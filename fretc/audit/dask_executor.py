@@ -27,7 +27,7 @@ from fretc.audit.many_logs import (
     results_of_killed_process,
 )
 from fretc.audit.plan import Plan, packed, unpacked
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError
 from fretish.diagnostics.extras import unless_installed
 
 if TYPE_CHECKING:
@@ -74,12 +74,8 @@ def _audit(connected: Any, plan: Plan, logs: Sequence[str]) -> LogAudits:
         yield error.diagnostic
 
 
-class _FleetError(Exception):
+class _FleetError(DiagnosticError):
     """The Dask cluster cannot audit."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 # Clusters -------------------------------------------------------------------------------------

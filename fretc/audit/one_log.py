@@ -177,7 +177,7 @@ def _evidence(
     monitor = requirement.monitor
     columns = {name: truths.columns[name] for name in requirement.propositions}
     ticks = len(truths.timeline.times)
-    judgement = judge(
+    (judgement,) = judge(
         monitor,
         columns,
         truths.cut,

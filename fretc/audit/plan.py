@@ -24,7 +24,7 @@ from fretc.audit.expected_response import demand
 from fretc.audit.measurements import confidence_intervals as intervals
 from fretc.audit.measurements.count_trials import chance, trials
 from fretc.audit.one_log import MonitoredRequirement
-from fretc.audit.refusals import RefusedRequirement, active_requirements, refusals
+from fretc.audit.refusals import RefusedRequirement, refusals
 from fretc.logs.signals.integrity import Integrity
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -89,9 +89,7 @@ def planned(
     unauditable = refusals(project)
     left_out = {entry for entry, _ in unauditable}
     requirements = [
-        requirement
-        for requirement in active_requirements(project)
-        if requirement.entry not in left_out
+        requirement for requirement in project.in_force if requirement.entry not in left_out
     ]
     errors = tuple(dict.fromkeys(reason for _, why in unauditable for reason in why))
     if declarations is None or not requirements:

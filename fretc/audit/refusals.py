@@ -32,7 +32,7 @@ def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic
     The reasons are errors of the project, and what a log needs in addition: a binding of each
     proposition, a clock, and a monitor.
     """
-    requirements = active_requirements(project)
+    requirements = project.in_force
     own = {requirement.entry: requirement for requirement in requirements}
     refused = {each.requirement: each.why for each in project.refused}
     unusable = (
@@ -51,13 +51,6 @@ def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic
         if why and entry.status != "retired":
             refused_requirements.append((entry, tuple(dict.fromkeys(why))))
     return tuple(refused_requirements)
-
-
-def active_requirements(project: Project) -> list[FormalizedRequirement]:
-    """The requirements that are not retired."""
-    return [
-        requirement for requirement in project.formalized if requirement.entry.status != "retired"
-    ]
 
 
 def _unusable(project: Project, first: FormalizedRequirement) -> Diagnostic | None:

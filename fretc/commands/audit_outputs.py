@@ -6,16 +6,17 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
+from compiler.files.records import plain
+from compiler.files.templating import to_json
+from compiler.project.project import Project
+from fretc.audit.evidence.declared_units import without_samples
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.result_summaries import EvidenceSource
+from fretc.audit.evidence.schema import SCHEMA, Result
 from fretc.terminal.output import EVIDENCE, STORE, fail, not_written, print_status
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-
-if TYPE_CHECKING:
-    from compiler.project.project import Project
-    from fretc.audit.evidence.probabilities import Estimated
-    from fretc.audit.evidence.result_summaries import EvidenceSource
-    from fretc.audit.evidence.schema import Result
 
 _BATCH = 256
 """Number of results that are read at once."""
@@ -117,8 +118,6 @@ def remove_other(target: Target) -> None:
 
 
 def _is_evidence(path: Path) -> bool:
-    from fretc.audit.evidence.schema import SCHEMA
-
     with path.open("rb") as file:
         return f'"schema": "{SCHEMA}"'.encode() in file.read(200)
 
@@ -135,8 +134,6 @@ def results(source: EvidenceSource) -> Iterator[Result]:
 
 def bare(source: EvidenceSource, project: Project) -> Iterator[Result]:
     """All results in declared units, without samples."""
-    from fretc.audit.evidence.declared_units import without_samples
-
     for result in results(source):
         yield from without_samples([result], project.declarations)
 
@@ -177,9 +174,6 @@ def text(
 
 def _json(outcome: Outcome) -> str:
     """JSON array with an object for each run and requirement; an object with probabilities."""
-    from compiler.files.records import plain
-    from compiler.files.templating import to_json
-
     found = [plain(each) for each in results(outcome.source)]
     if not outcome.estimates:
         return f"{to_json(found)}\n"

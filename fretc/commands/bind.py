@@ -28,6 +28,7 @@ from fretc.terminal.output import (
     coloured,
     fail,
     fail_at_end,
+    or_fail,
     print_diagnostics,
     print_project_diagnostics,
     write_outputs,
@@ -114,9 +115,8 @@ def _project(requirements: str, bindings: str | None, replaced: str | None = Non
         if is_given("requirements"):
             fail(files)
         files = []
-    project = load(
-        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
-    )
+    place = bindings or sibling_path(requirements, "bindings.toml")
+    project = load(files, place, reads=AUDIT_TABLES)
     relevant = [d for d in project.diagnostics if replaced is None or not _is_in(d, replaced)]
     if has_errors(relevant):
         fail_at_end()
@@ -145,9 +145,7 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
 
     if output != "-" and not force and os.path.lexists(output):
         fail(_exists(output))
-    contents = look(log, words=True)
-    if isinstance(contents, Diagnostic):
-        fail(contents)
+    contents = or_fail(look(log, words=True))
     print_diagnostics(contents.recording.findings)
     text = draft(
         contents, missing_propositions(project), durations(project), missing_signals(project)
@@ -193,14 +191,11 @@ def _check(
     from fretc.audit.log_paths import logs as logs_of
     from fretc.audit.plan import Plan, planned
 
-    logs = logs_of(paths)
-    if isinstance(logs, Diagnostic):
-        fail(logs)
+    logs = or_fail(logs_of(paths))
     if project.declarations is None:
         fail(_no_bindings())
-    plan = planned(
-        project
-    )  # Not an audit plan: bindings can be checked even if no requirement can be audited.
+    # Bindings can be checked even if no requirement can be audited.
+    plan = planned(project)
     result = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
     if isinstance(result, Diagnostic):
         fail(
@@ -219,19 +214,14 @@ def _check(
 def _unbound(project: Project) -> list[Diagnostic]:
     """A diagnostic for each proposition that a requirement names and the bindings do not define.
 
-        Retired requirements are skipped, because no audit evaluates them.
-
-    Retired requirements do not count: no audit judges them.
+    Retired requirements are skipped, because no audit evaluates them.
     """
     from compiler.formalization.binding_agreement import unbound_propositions
 
     assert project.declarations is not None
-    requirements = [
-        requirement for requirement in project.formalized if requirement.entry.status != "retired"
-    ]
     return [
         missing
-        for requirement in requirements
+        for requirement in project.in_force
         for missing in unbound_propositions(requirement, project.declarations)
     ]
 

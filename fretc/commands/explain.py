@@ -28,6 +28,7 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+from fretish.diagnostics.source import Source
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -137,7 +138,6 @@ def _typed(sentence: str, folder: str, bindings: str | None) -> list[FormalizedR
     from compiler.formalization.formalize import formalize
     from compiler.project.folder import load
     from compiler.project.paths import BINDINGS, sibling_path
-    from fretish.diagnostics.source import Source
     from fretish.documents import RequirementEntry
 
     project = load([], bindings or sibling_path(folder, BINDINGS), reads=())

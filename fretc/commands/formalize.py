@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from compiler.emit import TARGETS
+from compiler.emit import TARGETS, renamed_propositions
 from fretc.commands.opening import usable_part
 from fretc.terminal.group import DEFAULT, Compile
-from fretc.terminal.options import PATH, format_option, output_option, path_option
+from fretc.terminal.options import PATH, first_bindings_option, format_option, output_option
 from fretc.terminal.output import (
     EXIT_OK,
     EXIT_USAGE,
@@ -21,6 +21,7 @@ from fretc.terminal.output import (
     REQUIREMENTS_FOLDER,
     fail,
     fail_at_end,
+    or_fail,
     print_diagnostics,
     print_status,
     write_outputs,
@@ -46,7 +47,7 @@ _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
     help="Kind of file to generate. Repeatable.",
 )
 @output_option(default="build", show_default=True, help="Folder for generated files. `-` prints.")
-@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
+@first_bindings_option
 @format_option(text="Output format of the formulas.")
 @click.option(
     "--notation",
@@ -96,9 +97,7 @@ def compile_(
         )
     if weaken:
         _check_weaken(kinds)
-    paths = expanded_paths(files)
-    if isinstance(paths, Diagnostic):
-        fail(paths)
+    paths = or_fail(expanded_paths(files))
     of_loop = any(TARGETS[kind].of_loop for kind in kinds)
     project = load(paths, bindings, reads=("interceptor", "assume") if of_loop else ())
     undecided = _undecided(project.sound.formalized)
@@ -154,7 +153,6 @@ def _check_weaken(kinds: Sequence[str]) -> None:
 
 def _deliver_formulas(project: Project, output: str) -> None:
     """Write the JSON array of `--emit ltl --format json`, in the order of the files."""
-    from compiler.emit import renamed_propositions
     from compiler.files.templating import to_json
     from compiler.formalization.record import failed, formulas
 
@@ -241,9 +239,7 @@ def _emitted(
 ) -> tuple[list[FormalizedRequirement] | None, list[Diagnostic]]:
     """The requirements that the target accepts, or None for no file; and the refusals.
 
-        A file that combines all requirements is written for all of them or not at all.
-
-    A file of all requirements is made of all of them or not at all.
+    A file that combines all requirements is written for all of them or not at all.
     """
     from compiler.formalization.formalize import name_collisions
 
@@ -295,9 +291,7 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
     from compiler.project.formatting import formatted_files
     from compiler.project.paths import expanded_paths
 
-    paths = expanded_paths(files)
-    if isinstance(paths, Diagnostic):
-        fail(paths)
+    paths = or_fail(expanded_paths(files))
     texts, wrong = formatted_files(paths)
     if wrong:
         fail(*wrong)
@@ -340,9 +334,7 @@ def import_(
     from compiler.files.text_files import read
     from compiler.project.fret_import import read_export
 
-    source = read(file)
-    if isinstance(source, Diagnostic):
-        fail(source)
+    source = or_fail(read(file))
     columns = {"id": id_column, "text": text_column, "project": project_column}
     result = read_export(source, {part: name for part, name in columns.items() if name})
     print_diagnostics(result.diagnostics)

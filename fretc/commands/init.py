@@ -12,6 +12,7 @@ from fretc.terminal.options import LOG_EXTRAS, PATH, extras, path_option
 from fretc.terminal.output import (
     REQUIREMENTS_FOLDER,
     fail,
+    or_fail,
     print_diagnostics,
     print_status,
     write_outputs,
@@ -45,9 +46,7 @@ def init(folder: str, log: str | None) -> None:
         fail(_exists(str(requirements)))
     if log == "-":
         fail(_standard_input())
-    beginning = without_log() if log is None else from_log(log)
-    if isinstance(beginning, Diagnostic):
-        fail(beginning)
+    beginning = or_fail(without_log() if log is None else from_log(log))
     print_diagnostics(beginning.findings)
     files = {requirements / name: text for name, text in beginning.files.items()}
     if not _has_settings(Path(folder)):

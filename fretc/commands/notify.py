@@ -6,9 +6,12 @@ The command gets one JSON object on standard input; its `text` suits chat hooks.
 from __future__ import annotations
 
 import shlex
+import subprocess
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from compiler.files.processes import isolate_imports
+from compiler.files.templating import to_json
 from fretc.terminal.output import fail, print_diagnostics, print_status
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import visible
@@ -38,11 +41,6 @@ def words(command: str, option: str = "--notify") -> list[str]:
 
 def notify(command: Sequence[str], summary: Mapping[str, Any]) -> None:
     """Run the command with the summary, and report whether it failed; verdicts are not affected."""
-    import subprocess
-
-    from compiler.files.processes import isolate_imports
-    from compiler.files.templating import to_json
-
     isolate_imports()
     try:
         done = subprocess.run(

@@ -16,6 +16,7 @@ from fretc.terminal.options import (
     analysis_option,
     bindings_option,
     evidence_option,
+    evidence_path,
     extras,
     hazards_option,
     is_given,
@@ -30,10 +31,12 @@ from fretc.terminal.output import (
     EXIT_USAGE,
     EXIT_VIOLATION,
     fail,
+    not_written,
+    or_fail,
     print_project_diagnostics,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
+from fretish.diagnostics.diagnostic import Severity, has_errors
 
 if TYPE_CHECKING:
     from compiler.project.project import Project
@@ -120,7 +123,7 @@ def report(
     requirements: str,
     bindings: str | None,
     hazards: str | None,
-    evidence: str,
+    evidence: str | None,
     verification: str | None,
     analysis: str | None,
     ajpf: tuple[str, ...],
@@ -154,14 +157,11 @@ def report(
         absent = kind.missing()
         if absent is not None:
             fail(absent)
+    evidence = evidence_path(evidence)
     if is_given("evidence") and not os.path.lexists(evidence):
         fail(replace(not_audited(evidence), severity=Severity.ERROR))
-    files = requirement_files(requirements)
-    if isinstance(files, Diagnostic):
-        fail(files)
-    project = load_folder(requirements, bindings, hazards)
-    if isinstance(project, Diagnostic):
-        fail(project)
+    files = or_fail(requirement_files(requirements))
+    project = or_fail(load_folder(requirements, bindings, hazards))
     lock = lock or sibling_path(requirements, "fretc.lock")
     waivers = waivers or sibling_path(requirements, "waivers.toml")
     signers = signers or sibling_path(requirements, SIGNERS)
@@ -234,8 +234,6 @@ def _outputs(
 
 def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequence[str]) -> None:
     """Write each format to its path."""
-    from fretc.terminal.output import not_written
-
     paths: dict[Path, str | Iterable[str]] = {}
     for report_format, path in outputs:
         if Path(path) in paths:

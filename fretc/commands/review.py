@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+from compiler.files.dates import is_date, is_in_future, today
 from fretc.commands.opening import print_excluded
 from fretc.terminal.options import (
     PATH,
     analysis_option,
     evidence_option,
+    evidence_path,
     extras,
     format_option,
     is_given,
@@ -26,6 +28,7 @@ from fretc.terminal.output import (
     EXIT_USAGE,
     fail,
     fail_at_end,
+    or_fail,
     print_project_diagnostics,
     print_status,
     write_outputs,
@@ -76,7 +79,7 @@ def lock(
     comment: str,
     day: str | None,
     requirements: str,
-    evidence: str,
+    evidence: str | None,
     verification: str | None,
     analysis: str | None,
     path: str | None,
@@ -97,7 +100,6 @@ def lock(
 
     Example: fretc lock --reviewer "A. Meier" --role "safety engineer" --comment "first review"
     """
-    from compiler.files.dates import is_date, is_in_future, today
     from compiler.files.templating import to_json
     from fretc.traceability.lock import (
         Acceptance,
@@ -172,7 +174,7 @@ def _signatures(
 def diff(
     baseline: str | None,
     requirements: str,
-    evidence: str,
+    evidence: str | None,
     verification: str | None,
     analysis: str | None,
     output_format: str,
@@ -222,7 +224,7 @@ def _refused(project: Project) -> Mapping[str, Sequence[Diagnostic]]:
 
 def _chains(
     requirements: str,
-    evidence: str,
+    evidence: str | None,
     verification: str | None,
     analysis: str | None,
     *,
@@ -232,7 +234,7 @@ def _chains(
 
     Args:
         requirements: folder or file of the requirements.
-        evidence: path of the evidence.
+        evidence: path of the evidence; None: the default path.
         verification: path of the proofs.
         analysis: path of the analysis.
         accept: whether the results will be accepted, so that a store is checked in full.
@@ -245,17 +247,11 @@ def _chains(
     from fretc.traceability.chain import chains
     from fretc.verification.reader import known
 
-    project = load_folder(requirements)
-    if isinstance(project, Diagnostic):
-        fail(project)
-    proofs = known(verification)
-    if isinstance(proofs, Diagnostic):
-        fail(proofs)
-    analyzed = known_analysis(analysis)
-    if isinstance(analyzed, Diagnostic):
-        fail(analyzed)
+    project = or_fail(load_folder(requirements))
+    proofs = or_fail(known(verification))
+    analyzed = or_fail(known_analysis(analysis))
     read = required_source if is_given("evidence") else source
-    audited = read(evidence, in_full=accept)
+    audited = read(evidence_path(evidence), in_full=accept)
     if isinstance(audited, Diagnostic):
         print_project_diagnostics([*project.diagnostics, audited], requirements)
         if audited.is_error:

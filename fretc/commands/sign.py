@@ -6,16 +6,18 @@ import os
 import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from compiler.files.dates import today
 from fretc.terminal.options import PATH, extras, path_option
 from fretc.terminal.output import (
     EXIT_VIOLATION,
     fail,
+    or_fail,
     print_diagnostics,
     print_status,
     write_outputs,
@@ -81,12 +83,11 @@ def sign(files: tuple[str, ...], key: str, reviewer: str | None, verification: s
         for line in signable.lines:
             print_status(visible(line))
     mine = private(key)
-    write_outputs(_merged(signed(signable, mine) for signable in signables), [*files, key])
+    outputs: dict[Path, str] = {}
+    for signable in signables:
+        outputs |= signed(signable, mine)
+    write_outputs(outputs, [*files, key])
     print_status(f"signed with {mine.public.text}")
-
-
-def _merged(parts: Iterable[Mapping[Path, str]]) -> dict[Path, str]:
-    return {path: text for part in parts for path, text in part.items()}
 
 
 def installed() -> None:
@@ -137,9 +138,7 @@ def signed(what: Signable, key: PrivateKey) -> dict[Path, str]:
     from fretc.attestation.signatures import appended, beside, envelope, kept, read
     from fretc.attestation.statement import text
 
-    envelopes = read(what.path)
-    if isinstance(envelopes, Diagnostic):
-        fail(envelopes)
+    envelopes = or_fail(read(what.path))
     new = envelope(signed_envelope(text(what.statement), key))
     omissions = len(envelopes) - len(kept(envelopes, new, what.current))
     if omissions:
@@ -191,9 +190,7 @@ def _json(path: str, verification: str | None) -> Signable:
     from fretc.verification.reader import default_path
 
     if not os.path.isdir(path):
-        source = read_text(path)
-        if isinstance(source, Diagnostic):
-            fail(source)
+        source = or_fail(read_text(path))
         schema = _schema(source)
         if schema == proved.SCHEMA:
             return _proved(path)
@@ -227,7 +224,6 @@ def _schema(source: Source) -> object:
 
 
 def _as_error(wrong: Diagnostic) -> Diagnostic:
-    from dataclasses import replace
 
     return replace(wrong, severity=Severity.ERROR)
 
@@ -268,9 +264,7 @@ def _summary_of_evidence(audited: EvidenceSource) -> Iterator[str]:
 def _proofs(path: str) -> Proofs:
     from fretc.verification.reader import read
 
-    proofs = read(path)
-    if isinstance(proofs, Diagnostic):
-        fail(proofs)
+    proofs = or_fail(read(path))
     _same_bytes(path, proofs.sha256)
     return proofs
 
@@ -287,9 +281,7 @@ def _analyzed(path: str) -> Signable:
     from fretc.analysis.evidence import read
     from fretc.attestation import statement as attestation
 
-    known = read(path)
-    if isinstance(known, Diagnostic):
-        fail(known)
+    known = or_fail(read(path))
     _same_bytes(path, known.sha256)
     found = known.document.analysis
     lines = (
@@ -366,7 +358,6 @@ def of_reviews(path: str, mine: Iterable[Review], all_: Iterable[Review]) -> Sig
 
 
 def _waivers(path: str, key: str, reviewer: str | None) -> Signable:
-    from compiler.files.dates import today
     from fretc.attestation import statement as attestation
     from fretc.traceability.waivers import read
 
@@ -425,9 +416,7 @@ def _public(path: str) -> str:
     """Fingerprint of a public key."""
     from fretc.attestation.signers import trusted
 
-    found = trusted(path)
-    if isinstance(found, Diagnostic):
-        fail(found)
+    found = or_fail(trusted(path))
     return next((signer.key.fingerprint for signer in found.signers), "")
 
 
@@ -449,13 +438,9 @@ def require(evidence: EvidenceSource, by: str, others: Mapping[str, str | None])
     installed()
     from fretc.attestation.signers import trusted
 
-    keys = trusted(by)
-    if isinstance(keys, Diagnostic):
-        fail(keys)
+    keys = or_fail(trusted(by))
     companions = {kind: path for kind, path in others.items() if path is not None}
-    signatures = book([evidence.file, *companions.values()], keys)
-    if isinstance(signatures, Diagnostic):
-        fail(signatures)
+    signatures = or_fail(book([evidence.file, *companions.values()], keys))
     mistakes = list(signatures.diagnostics())
     signature = signatures.agreed(evidence)
     if not signature.is_good:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from compiler.files.build_id import __version__
 from fretc.terminal.options import (
     PATH,
     extras,
@@ -151,9 +152,6 @@ def _known(scenario: Scenario) -> None:
 
     Raises:
         ScenarioError: one does not exist.
-
-    Raises:
-        ScenarioError: one is not there.
     """
     from fretc.campaigns.experiment import project
     from simulation.world.scenario import ScenarioError
@@ -223,7 +221,6 @@ def _record(
     encoding: str,
     pictures: Mapping[str, str | None],
 ) -> None:
-    from compiler.files.build_id import __version__
     from fretc.campaigns.campaign import intercepted
     from fretc.campaigns.experiment import safety_function
     from simulation.mission import record

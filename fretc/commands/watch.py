@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import AUDIT_TABLES, plan_of
+from fretc.commands.opening import input_files, planned_project
 from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import PATH, bindings_option, extras, path_option, requirements_option
 from fretc.terminal.output import (
@@ -17,6 +17,7 @@ from fretc.terminal.output import (
     EXIT_VIOLATION,
     fail,
     not_written,
+    or_fail,
     print_diagnostics_below,
     print_status,
     protect,
@@ -112,9 +113,7 @@ def watch(
     if evidence is not None and record is None:
         fail(_needs_recording())
     reaction = None if command is None else Reaction(notify.words(command, "--on-violation"))
-    source = chosen(words, follow=follow)
-    if isinstance(source, Diagnostic):
-        fail(source)
+    source = or_fail(chosen(words, follow=follow))
     project, plan, inputs = _planned(requirements, bindings)
     outputs = [Path(name) for name in (record, evidence) if name is not None and name != "-"]
     protect(outputs, [*inputs, *words])
@@ -147,9 +146,7 @@ def _opened(words: Sequence[str], source: Source) -> Sequence[Publisher]:
         return ()
     from fretc.watch.publishing.choice import addresses, chosen
 
-    publishers = chosen(words, source)
-    if isinstance(publishers, Diagnostic):
-        fail(publishers)
+    publishers = or_fail(chosen(words, source))
     for address in addresses(publishers):
         print_status(f"publishes at {address}: open it in Foxglove")
     return publishers
@@ -157,19 +154,10 @@ def _opened(words: Sequence[str], source: Source) -> Sequence[Publisher]:
 
 def _planned(requirements: str, bindings: str | None) -> tuple[Project, Plan, Sequence[str]]:
     """The audit plan, and its input files."""
-    from compiler.project.folder import load
-    from compiler.project.paths import companions, requirement_files, sibling_path
-
-    files = requirement_files(requirements)
-    if isinstance(files, Diagnostic):
-        fail(files)
-    project = load(
-        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
-    )
-    plan = plan_of(project, requirements)
+    project, plan = planned_project(requirements, bindings)
     if plan.declarations.clock.effective_lateness is None:
         fail(_needs_lateness(plan))
-    return project, plan, (*files, *companions(files), *([bindings] if bindings else []))
+    return project, plan, input_files(project, bindings)
 
 
 def _status(runs: Sequence[RunEnded]) -> int:
@@ -184,7 +172,7 @@ def _audited(
 ) -> int:
     """Audit the recordings and write the evidence."""
     from fretc.audit.many_logs import local_executor
-    from fretc.commands.audit_progress import audit_in_memory
+    from fretc.commands.audit_logs import audit_in_memory
 
     if not logs:
         fail(Diagnostic(Code.NOTHING_TO_DO, "nothing was recorded: there is no evidence"))

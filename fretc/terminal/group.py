@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, MutableMapping, Sequence
+from collections import UserDict
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from shlex import quote
@@ -21,34 +22,15 @@ DEFAULT = "compile"
 """The command that `fretc FILE...` stands for."""
 
 
-class Registry(MutableMapping[str, click.Command]):
-    """Commands by name; a command's module is imported when it is looked up."""
-
-    def __init__(self, places: Mapping[str, str]) -> None:
-        """The registry of `module:attribute` paths; nothing is imported."""
-        self._places = places
-        self._commands: dict[str, click.Command] = {}
+class Registry(UserDict[str, Any]):
+    """Commands by name, given as `module:attribute`; a module is imported for the first look-up."""
 
     def __getitem__(self, name: str) -> click.Command:
-        if name not in self._commands:
-            module, _, attribute = self._places[name].partition(":")
-            self._commands[name] = getattr(import_module(module), attribute)
-        return self._commands[name]
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._places
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._places)
-
-    def __len__(self) -> int:
-        return len(self._places)
-
-    def __setitem__(self, name: str, command: click.Command) -> None:
-        raise TypeError("a command is added to the places")
-
-    def __delitem__(self, name: str) -> None:
-        raise TypeError("a command is removed from the places")
+        if isinstance(self.data[name], str):
+            module, _, attribute = self.data[name].partition(":")
+            self.data[name] = getattr(import_module(module), attribute)
+        command: click.Command = self.data[name]
+        return command
 
 
 class Commands(click.Group):

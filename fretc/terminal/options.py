@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 from click.shell_completion import CompletionItem
@@ -13,6 +13,7 @@ from click.shell_completion import CompletionItem
 from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE, fail
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
+T = TypeVar("T")
 Command = Callable[..., Any]
 LOG_EXTRAS = {
     "bags": "bags (.bag, .db3) and messages defined in IDL",
@@ -100,6 +101,13 @@ requirements_option = path_option(
 bindings_option = path_option(
     "--bindings", help="Bindings file.  [default: bindings.toml beside the requirements]"
 )
+first_bindings_option = path_option(
+    "--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]"
+)
+files_argument = click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
+component_option = click.option(
+    "--component", metavar="NAME", help="Only requirements of this component."
+)
 hazards_option = path_option(
     "--hazards", help="Hazards file.  [default: hazards.toml beside the requirements]"
 )
@@ -123,7 +131,6 @@ def evidence_path(named: str | None) -> str:
 
 evidence_option = path_option(
     "--evidence",
-    callback=lambda _context, _option, named: evidence_path(named),
     help=f"Evidence, as `fretc audit` writes it.  [default: {EVIDENCE} or {STORE}]",
 )
 verification_option = path_option(
@@ -160,6 +167,11 @@ limit_option = click.option(
     show_default=True,
     help="CPU time limit for each proof, in seconds.",
 )
+
+
+def grouped(kind: type[T], options: Mapping[str, Any]) -> T:
+    """A dataclass of options; each field has the value of the parameter with its name."""
+    return kind(**{name: options[name] for name in kind.__annotations__})
 
 
 def is_given(name: str) -> bool:

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from shlex import quote
-from typing import Any, NoReturn, TextIO
+from typing import Any, NoReturn, TextIO, TypeVar
 
 import click
 
@@ -31,6 +31,16 @@ def fail(*diagnostics: Diagnostic) -> NoReturn:
     """Print the diagnostics and exit with 2."""
     print_diagnostics(diagnostics)
     raise SystemExit(EXIT_USAGE)
+
+
+T = TypeVar("T")
+
+
+def or_fail(value: T | Diagnostic) -> T:
+    """The value; a diagnostic is printed instead, and the command exits with 2."""
+    if isinstance(value, Diagnostic):
+        fail(value)
+    return value
 
 
 _FAILED = "fretc.failed"

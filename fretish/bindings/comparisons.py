@@ -14,7 +14,7 @@ from fretish import expressions as e
 from fretish.bindings import expressions as binding
 from fretish.bindings.declarations import Signal
 from fretish.bindings.expressions import MOST_TICKS_BACK, is_base, ticks_back
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError
 from fretish.diagnostics.source import Span
 from fretish.units import (
     DIMENSIONLESS,
@@ -37,12 +37,8 @@ FUNCTIONS = {
 """Function in a sentence → the same function in bindings."""
 
 
-class _ComparisonError(Exception):
+class _ComparisonError(DiagnosticError):
     """Carries a diagnostic out of the recursion."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedInput, VisitError
 from lark.visitors import Transformer_NonRecursive
 
 from fretish import expressions as e
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError, Severity, suggestion
 from fretish.diagnostics.source import Span
 from fretish.reading.caching import cache_by_identity
 from fretish.reading.grammars import Grammar
@@ -47,10 +47,8 @@ def parse(text: Span) -> e.Expression | Diagnostic:
         raise
 
 
-class _ExpressionError(Exception):
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
+class _ExpressionError(DiagnosticError):
+    """Carries a diagnostic out of the callbacks of the parser."""
 
 
 @cache

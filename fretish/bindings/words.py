@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fretish import expressions as e
 from fretish.bindings.declarations import Signal
 from fretish.bindings.expressions import FUNCTIONS
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError, suggestion
 from fretish.diagnostics.source import Span
 from fretish.reading.recursion import with_recursion_limit
 
@@ -44,10 +44,8 @@ def resolve_words(
         return error.diagnostic
 
 
-class _WordError(Exception):
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
+class _WordError(DiagnosticError):
+    """Carries a diagnostic out of the recursion."""
 
 
 @dataclass(frozen=True, slots=True)

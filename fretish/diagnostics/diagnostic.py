@@ -300,6 +300,14 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
     return any(diagnostic.is_error for diagnostic in diagnostics)
 
 
+class DiagnosticError(Exception):
+    """Carries a diagnostic to a caller further up."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
 def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
     """The known word that is most similar to a misspelt one, or None.
 

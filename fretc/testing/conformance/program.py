@@ -18,7 +18,7 @@ from types import TracebackType
 from typing import IO, Self
 
 from fretc.testing.exports.tables import Cell, cell_text, csv_text
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError
 from fretish.diagnostics.rendering import visible
 from monitors.kernel.tables import InputError
 from monitors.kernel.variable_tables import read_variables
@@ -32,12 +32,8 @@ _FAREWELL = 1.0
 """Seconds in which it must end after its input has ended."""
 
 
-class ProgramError(Exception):
+class ProgramError(DiagnosticError):
     """The program violates the protocol."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 class Program:

@@ -28,8 +28,7 @@ class ClockTable(Fields):
         if table is None and not self.tables.data.keys() & {"signal", "proposition"}:
             return Clock(None)
         if not isinstance(table, dict):
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "the bindings declare no clock",
                 self.tables.text.part(0, 0),
                 'add `[clock]` with `tick = "100 ms"`',
@@ -57,8 +56,7 @@ class ClockTable(Fields):
             return None, tick
         period = units.nanoseconds(tick) if isinstance(tick, str) else None
         if not period:
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "`tick` must be a duration above 0, or a topic",
                 self.tables.value("clock", "tick"),
                 'write `tick = "100 ms"`, or `tick = "/scan"` for one tick per message',

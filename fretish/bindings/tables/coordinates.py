@@ -9,7 +9,6 @@ from typing import Any
 from fretish import units
 from fretish.bindings.declarations import MapCoordinates, Signal, path
 from fretish.bindings.tables.fields import Fields, Notes
-from fretish.diagnostics.diagnostic import Code
 from fretish.reading.toml_text import Tables
 
 _MAP = ("x", "y")
@@ -29,8 +28,7 @@ class MapTable(Fields):
         if table is None:
             return None
         if not isinstance(table, dict):
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "`map` must be a table",
                 self.tables.place("map"),
                 'write `[map]`, and below it `x = "/odom.pose.pose.position.x"`',
@@ -45,8 +43,7 @@ class MapTable(Fields):
         text = table.get(key)
         where = path(text) if isinstance(text, str) else None
         if where is None or where.each:
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 f"`{key}` of the map must be a topic and one number of its messages",
                 self.tables.value("map", key) if key in table else self.tables.place("map"),
                 f'write `{key} = "/odom.pose.pose.position.{key}"`',
@@ -55,8 +52,7 @@ class MapTable(Fields):
         same = next((signal for signal in self._signals.values() if signal.path == where), None)
         own = same or Signal("", where, units.METRE, "m")
         if own.unit.dimension != units.METRE.dimension:
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 f"`{key}` of the map must be a length, and `{own.name}` is in "
                 f"{own.unit_name or 'plain numbers'}",
                 self.tables.value("map", key),

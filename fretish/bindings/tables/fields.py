@@ -48,6 +48,10 @@ class Fields:
     def _say(self, code: Code, message: str, span: Span, fix: str | None = None) -> None:
         self.notes.diagnostics.append(Diagnostic(code, message, span, fix))
 
+    def _bad_field(self, message: str, span: Span, fix: str | None = None) -> None:
+        """Report F303 for a field that has another form."""
+        self._say(Code.BAD_BINDING_FIELD, message, span, fix)
+
     def _check_keys(
         self, table: Mapping[str, Any], keys: tuple[str, ...], where: str, *at: str
     ) -> None:
@@ -68,7 +72,7 @@ class Fields:
         ):
             return value
         place = self.tables.value(*at)
-        self._say(Code.BAD_BINDING_FIELD, f"`{at[-1]}` must be {form}", place, f"write {form}")
+        self._bad_field(f"`{at[-1]}` must be {form}", place, f"write {form}")
         return None
 
     def _choice(
@@ -80,8 +84,7 @@ class Fields:
         values = [str(choice) for choice in kind]
         if value in values:
             return kind(value)
-        self._say(
-            Code.BAD_BINDING_FIELD,
+        self._bad_field(
             f"`{at[-1]}` cannot be `{value}`",
             self.tables.value(*at),
             f"write one of {', '.join(values)}",
@@ -94,11 +97,8 @@ class Fields:
             if kind in self.notes.malformed:
                 return {}
             self.notes.malformed.add(kind)
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                f"`{kind}` must hold tables",
-                self.tables.place(kind),
-                f"write `[{kind}.NAME]`",
+            self._bad_field(
+                f"`{kind}` must hold tables", self.tables.place(kind), f"write `[{kind}.NAME]`"
             )
             return {}
         return tables
@@ -137,8 +137,7 @@ class Fields:
         action = table.get("action", "")
         if action == "" or (isinstance(action, str) and _ACTION.fullmatch(action)):
             return str(action)
-        self._say(
-            Code.BAD_BINDING_FIELD,
+        self._bad_field(
             "`action` must be a name of Gwendolen: a lower-case letter, then letters, digits and "
             "`_`",
             self.tables.value(*at, "action"),

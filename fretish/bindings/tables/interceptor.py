@@ -112,8 +112,7 @@ class InterceptorTables(Fields):
         table = self.tables.data.get(name)
         if table is None or isinstance(table, dict):
             return table
-        self._say(
-            Code.BAD_BINDING_FIELD,
+        self._bad_field(
             f"`{name}` must be a table",
             self.tables.place(name),
             f"write `[{name}]`, and its fields below it",
@@ -121,11 +120,8 @@ class InterceptorTables(Fields):
         return None
 
     def _absent(self, table: str, key: str, fix: str) -> None:
-        self._say(
-            Code.BAD_BINDING_FIELD,
-            f"`[{table}]` has no `{key}`",
-            self.tables.place(table),
-            f"add `{key} = {fix}`",
+        self._bad_field(
+            f"`[{table}]` has no `{key}`", self.tables.place(table), f"add `{key} = {fix}`"
         )
 
     def _duration(
@@ -140,8 +136,7 @@ class InterceptorTables(Fields):
         if duration is not None and duration >= least:
             return duration
         limit = " above 0" if least else ""
-        self._say(
-            Code.BAD_BINDING_FIELD,
+        self._bad_field(
             f"`{key}` must be a duration{limit}",
             self.tables.value(*at),
             f'write `{key} = "100 ms"`' + ("; remove it for none" if key in _OPTIONAL else ""),
@@ -158,8 +153,7 @@ class InterceptorTables(Fields):
             return None
         if isinstance(value, str) and _TOPIC.fullmatch(value):
             return value
-        self._say(
-            Code.BAD_BINDING_FIELD,
+        self._bad_field(
             f"`{key}` must be a topic",
             self.tables.value("interceptor", key),
             f'write `{key} = "/name"`: letters, digits, `_` and `/`',
@@ -217,7 +211,7 @@ class InterceptorTables(Fields):
         value = self._field(table, ("interceptor", "ros"), int, "1 or 2")
         if value is not None and value not in (1, 2):
             place = self.tables.value("interceptor", "ros")
-            self._say(Code.BAD_BINDING_FIELD, f"`ros` cannot be {value}", place, "write 1 or 2")
+            self._bad_field(f"`ros` cannot be {value}", place, "write 1 or 2")
         return 2 if value is None else value
 
     # [assume]
@@ -245,8 +239,7 @@ class InterceptorTables(Fields):
         """The heartbeat in nanoseconds; 0: none."""
         heartbeat = self._duration(table, ("assume", "heartbeat")) or 0
         if heartbeat and requests is Requests.LEVEL and table.get("requests", "level") == "level":
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 '`heartbeat` has no effect with `requests = "level"`, which repeats at every tick',
                 self.tables.value("assume", "heartbeat"),
                 'write `requests = "edge"` if the safety function speaks on change and after a '
@@ -258,7 +251,7 @@ class InterceptorTables(Fields):
         value = self._field(table, ("assume", "lost"), int, "a whole number of messages")
         if value is not None and value < 0:
             place = self.tables.value("assume", "lost")
-            self._say(Code.BAD_BINDING_FIELD, "`lost` cannot be below 0", place, "write `lost = 0`")
+            self._bad_field("`lost` cannot be below 0", place, "write `lost = 0`")
         return value or 0
 
     # [[assume.requirement]]
@@ -268,8 +261,7 @@ class InterceptorTables(Fields):
         table = self.tables.data.get("assume")
         tables = table.get(_SENTENCES, []) if isinstance(table, dict) else []
         if not isinstance(tables, list) or not all(isinstance(entry, dict) for entry in tables):
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 f"`assume.{_SENTENCES}` must be tables",
                 self.tables.place("assume", _SENTENCES),
                 f"write `[[assume.{_SENTENCES}]]`, and `id` and `sentence` below it",
@@ -305,8 +297,7 @@ class InterceptorTables(Fields):
         }
         id, sentence = texts["id"], texts["sentence"]
         if not sentence or IDENTIFIER.fullmatch(id) is None:
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 f"`{where}` needs an `id` and a `sentence`",
                 self.tables.text.part(0, 0),
                 'write `id = "A1"` and `sentence = "the operator shall never satisfy a & b"`',

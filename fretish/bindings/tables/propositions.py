@@ -31,8 +31,7 @@ class PropositionTables(Fields):
         at = ("proposition", name)
         self._check_keys(table, _PROPOSITION, f"[proposition.{name}]", *at)
         if "expr" not in table:
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 f"the proposition `{name}` has no `expr`",
                 self.tables.place(*at),
                 'add `expr = "min_range < 5 cm"`',
@@ -102,8 +101,7 @@ class PropositionTables(Fields):
             return True
         place = self.tables.value(*at, "expr")
         if table.get("agg", Aggregate.LAST) != Aggregate.LAST:
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "`pre` reads the value at each tick: `agg` can only be `last`",
                 self.tables.value(*at, "agg"),
                 "take it out",
@@ -125,8 +123,7 @@ class PropositionTables(Fields):
     def _kind(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
         kind = table.get("kind", "")
         if kind not in (*_KINDS, ""):
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 f"`kind` cannot be `{kind}`",
                 self.tables.value(*at, "kind"),
                 f"write one of {', '.join(_KINDS)}",
@@ -144,9 +141,7 @@ class PropositionTables(Fields):
             )
             self.notes.defaults.append(Default((at[0], at[1]), text))
             return value
-        self._say(
-            Code.BAD_BINDING_FIELD,
-            "`on_unknown` must be true, false or `unknown`",
-            self.tables.value(*at, "on_unknown"),
+        self._bad_field(
+            "`on_unknown` must be true, false or `unknown`", self.tables.value(*at, "on_unknown")
         )
         return None

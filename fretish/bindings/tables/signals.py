@@ -94,15 +94,13 @@ class SignalTables(Fields):
         at = ("signal", name)
         for key in _OF_NUMBERS:
             if key in table:
-                self._say(
-                    Code.BAD_BINDING_FIELD,
+                self._bad_field(
                     f"a signal with `values` cannot have `{key}`: it is a word, not a number",
                     self.tables.place(*at, key),
                     "take it out",
                 )
         if where is not None and where.each:
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "a signal with `values` is one word, and `[:]` selects many",
                 self.tables.value(*at, "path"),
                 "name one element: `[0]`",
@@ -167,8 +165,7 @@ class SignalTables(Fields):
         text = table.get("path")
         read = path(text) if isinstance(text, str) else None
         if read is None:
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "`path` must name a topic and a field" if text else "the signal has no `path`",
                 self.tables.value(*at),
                 'write `path = "/scan.ranges[:]"` or `path = "/odom.twist.twist.linear.x"`',
@@ -180,14 +177,11 @@ class SignalTables(Fields):
     ) -> Reduce | None:
         each = where is not None and where.each
         if "reduce" in table and not each and where is not None:
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "`reduce` needs a path that ends with `[:]`",
-                self.tables.value(*at, "reduce"),
+            self._bad_field(
+                "`reduce` needs a path that ends with `[:]`", self.tables.value(*at, "reduce")
             )
         if "reduce" not in table and each:
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "a path that ends with `[:]` needs `reduce`",
                 self.tables.value(*at, "path"),
                 'add `reduce = "min"`',
@@ -210,8 +204,7 @@ class SignalTables(Fields):
         self._check_keys(fields, (*_INVALID, "empty"), "`invalid`", *at, "invalid")
         place = (*at, "invalid")
         if fields.get("empty", "unknown") != "unknown":
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "`empty` can only be `unknown`: no reading is no evidence",
                 self.tables.value(*place, "empty"),
             )
@@ -231,8 +224,7 @@ class SignalTables(Fields):
             self.notes.defaults.append(Default((at[0], at[1]), old))
         age = units.nanoseconds(text) if text is not None else None
         if text is not None and not age:
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "`max_age` must be a duration above 0",
                 self.tables.value(*at, "max_age"),
                 'write `max_age = "300 ms"`',
@@ -245,8 +237,7 @@ class SignalTables(Fields):
         corners = table.get("footprint", [])
         good = isinstance(corners, list) and all(_is_numbers(c, 2) for c in corners)
         if reduce is Reduce.OUTLINE and (not good or len(corners) < 3):
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 '`reduce = "outline"` needs `footprint`: three corners or more, in metres',
                 self.tables.value(*at, "footprint"),
                 "write `footprint = [[0.3, 0.3], [-0.3, 0.3], [-0.3, -0.3], [0.3, -0.3]]`",
@@ -257,8 +248,7 @@ class SignalTables(Fields):
     def _sensor(self, table: Mapping[str, Any], at: tuple[str, ...]) -> tuple[float, float, float]:
         pose = table.get("sensor", [0.0, 0.0, 0.0])
         if not _is_numbers(pose, 3):
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "`sensor` must be the sensor's pose: x and y in metres, yaw in radians",
                 self.tables.value(*at, "sensor"),
                 "write `sensor = [0.0, 0.0, 0.0]`",

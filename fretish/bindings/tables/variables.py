@@ -44,8 +44,7 @@ class VariableTables(Fields):
         self._check_keys(table, _FRET, "[fret]", "fret")
         records = self._field(table, ("fret", "variable"), list, "tables of FRET's fields") or []
         if not all(isinstance(record, dict) for record in records):
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "`variable` must hold tables",
                 self.tables.value("fret", "variable"),
                 "write `[[fret.variable]]`",
@@ -64,8 +63,7 @@ class VariableTables(Fields):
             elif isinstance(part, list):
                 waiting.extend(part)
             elif not (isinstance(part, str | int) or (isinstance(part, float) and isfinite(part))):
-                self._say(
-                    Code.BAD_BINDING_FIELD,
+                self._bad_field(
                     f"FRET cannot store `{part}`",
                     self.tables.value(*at),
                     "put it in quotes: FRET stores texts, numbers, truth values, lists and tables",
@@ -77,8 +75,7 @@ class VariableTables(Fields):
         self._check_keys(table, _VARIABLE, f"[variable.{name}]", *at)
         of = self._field(table, (*at, "of"), dict, "tables of components") or {}
         if not all(isinstance(own_table, dict) for own_table in of.values()):
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "`of` must hold tables",
                 self.tables.value(*at, "of"),
                 f"write `[variable.{as_key(name)}.of.COMPONENT]`",
@@ -109,8 +106,7 @@ class VariableTables(Fields):
         self._check_fret(fret, (*at, "fret"))
         value, place = self._value(table, (*at, "value"))
         if value is not None and texts["role"] not in ("", Role.INTERNAL, Role.MODE):
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 f"`{name}` has a `value`: its role cannot be `{texts['role']}`",
                 self.tables.value(*at, "role"),
                 "write `internal` or `mode`",

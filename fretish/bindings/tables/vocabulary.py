@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from fretish.bindings.tables.fields import Fields
-from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Span
 from fretish.reading.toml_text import as_key
 
@@ -29,15 +28,13 @@ class ValuesField(Fields):
         else:
             values, numbers = written if isinstance(written, list) else [], []
         if not values:
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 "`values` must be a list of words, or a table of their numbers",
                 self.tables.value(*at),
                 'write `values = ["drive", "docking"]` or `values = { drive = 0, docking = 4 }`',
             )
         if len(values) > _MOST_WORDS:
-            self._say(
-                Code.BAD_BINDING_FIELD,
+            self._bad_field(
                 f"`values` has {len(values)} words; {_MOST_WORDS} is the most",
                 self.tables.value(*at),
             )
@@ -63,22 +60,20 @@ class ValuesField(Fields):
             message, fix = f"`{word}` is twice in `values`", "remove one"
         else:
             return
-        self._say(Code.BAD_BINDING_FIELD, message, self._last_in(at, word), fix)
+        self._bad_field(message, self._last_in(at, word), fix)
 
     def _check_numbers(self, written: Mapping[str, Any], at: tuple[str, ...]) -> None:
         words: dict[int, str] = {}
         for word, number in written.items():
             place = self.tables.value(*at, word)
             if not isinstance(number, int) or isinstance(number, bool) or abs(number) >= _EXACT:
-                self._say(
-                    Code.BAD_BINDING_FIELD,
+                self._bad_field(
                     f"the number of `{word}` must be a whole number below 2^53",
                     place,
                     f"write the number that the messages use for it: `{as_key(word)} = 4`",
                 )
             elif number in words:
-                self._say(
-                    Code.BAD_BINDING_FIELD,
+                self._bad_field(
                     f"`{words[number]}` and `{word}` are both {number}",
                     place,
                     "give each word a different number",
