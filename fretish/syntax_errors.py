@@ -13,6 +13,7 @@ from fractions import Fraction
 from fretish.checking import key_word_as_name
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from fretish.diagnostics.fixes import Fix, removal
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.error_rules.operators import (
     COMPARISONS,
@@ -88,12 +89,7 @@ def explain(unexpected: Unexpected) -> Diagnostic:
 
 def no_sentence(text: Span) -> Diagnostic:
     """F106 for an empty text."""
-    return Diagnostic(
-        Code.NO_SENTENCE,
-        "there is no sentence here",
-        text.part(0, 0),
-        help="write `the COMPONENT shall eventually satisfy RESPONSE`",
-    )
+    return diagnostic("no_sentence", text.part(0, 0))
 
 
 def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
@@ -105,25 +101,15 @@ def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
         whole: the span of the number and its unit.
     """
     if span.text.startswith("-"):
-        return Diagnostic(
-            Code.BAD_DURATION,
-            "a duration cannot be negative",
-            span,
-            help="count from the trigger: 0 is the trigger itself",
-        )
+        return diagnostic("negative_duration", span)
     if span.text.isdigit():
-        return Diagnostic(
-            Code.BAD_DURATION,
-            "a duration has at most 15 digits",
-            span,
-            help="use a larger unit",
-        )
+        return diagnostic("duration_too_long", span)
     fix = _whole(span.text, unit, whole)
     words = "use a smaller unit, so that the number is whole: 500 milliseconds, not 0.5 seconds"
-    return Diagnostic(
-        Code.BAD_DURATION,
-        f"a duration must be a whole number, and `{span.text}` is not",
+    return diagnostic(
+        "duration_not_whole",
         span,
+        span=span.text,
         help=fix.help if fix is not None else words,
         fix=fix,
     )
@@ -145,12 +131,7 @@ def _whole(digits: str, unit: str, whole: Span) -> Fix | None:
 
 def bad_probability(span: Span) -> Diagnostic:
     """F110 for a probability out of range."""
-    return Diagnostic(
-        Code.BAD_PROBABILITY,
-        f"no run can have the probability `{span.text}`",
-        span,
-        help="a probability lies between 0 and 1; `> 1` and `< 0` can never hold",
-    )
+    return diagnostic("impossible_probability", span, span=span.text)
 
 
 # Rules, the most specific first ----------------------------------------------------------------
@@ -161,12 +142,12 @@ def _unit(u: Unexpected) -> Diagnostic | None:
         return None
     words = "write ticks, microseconds, milliseconds, seconds, minutes or hours: `within 3 seconds`"
     if u.lexeme.kind != "ID":
-        return Diagnostic(Code.BAD_DURATION, "a duration needs a unit", u.lexeme.span, help=words)
+        return diagnostic("duration_without_unit", u.lexeme.span, help=words)
     fix = _unit_fix(u.lexeme.span)
-    return Diagnostic(
-        Code.BAD_DURATION,
-        f"a duration needs a unit, and `{u.lexeme.word}` is not one",
+    return diagnostic(
+        "duration_of_unknown_unit",
         u.lexeme.span,
+        lexeme=u.lexeme.word,
         help=fix.help if fix is not None else words,
         fix=fix,
     )
@@ -196,12 +177,7 @@ def _number(u: Unexpected) -> Diagnostic | None:
         return None
     if not u.accepts <= {"NUMBER", "MINUS"}:
         return None
-    return Diagnostic(
-        Code.BAD_DURATION,
-        "a duration must begin with a number in digits",
-        u.lexeme.span,
-        help=f"write, for example, `{u.previous.word} N seconds`",
-    )
+    return diagnostic("duration_without_number", u.lexeme.span, previous=u.previous.word)
 
 
 def _superfluous(u: Unexpected) -> Diagnostic | None:
@@ -257,13 +233,7 @@ def _shall(u: Unexpected) -> Diagnostic | None:
     if not u.expects("SHALL") or word not in (*_SHALL, *_WEAKER):
         return None
     fix = Fix(u.lexeme.span, "shall", is_safe=word in _SHALL)
-    return Diagnostic(
-        Code.MISSPELT,
-        f"a requirement uses `shall`, not `{u.lexeme.word}`",
-        u.lexeme.span,
-        help=fix.help,
-        fix=fix,
-    )
+    return diagnostic("misspelt_shall", u.lexeme.span, lexeme=u.lexeme.word, help=fix.help, fix=fix)
 
 
 def _missing_shall(u: Unexpected) -> Diagnostic | None:
@@ -273,13 +243,7 @@ def _missing_shall(u: Unexpected) -> Diagnostic | None:
     if u.lexeme.kind not in ("SATISFY", *TIMINGS) or re.search(r"\bshall\b", u.rest.text, re.I):
         return None
     fix = Fix(u.lexeme.span.part(0, 0), "shall ", is_safe=u.lexeme.kind == "SATISFY")
-    return Diagnostic(
-        Code.NOT_FRETISH,
-        f"`shall` is missing before `{u.lexeme.word}`",
-        u.lexeme.span,
-        help=f"write `shall {u.lexeme.word}`",
-        fix=fix,
-    )
+    return diagnostic("missing_shall", u.lexeme.span, lexeme=u.lexeme.word, fix=fix)
 
 
 def _component(u: Unexpected) -> Diagnostic | None:
@@ -302,12 +266,8 @@ def _misspelt(u: Unexpected) -> Diagnostic | None:
         near = suggestion(suspect.word, KEYWORDS, cutoff=0.72)
         if suspect.kind == "ID" and near is not None:
             fix = Fix(suspect.span, near)
-            return Diagnostic(
-                Code.MISSPELT,
-                f"FRETish does not allow the word `{suspect.word}` here",
-                suspect.span,
-                help=fix.help,
-                fix=fix,
+            return diagnostic(
+                "misspelt_word", suspect.span, suspect=suspect.word, help=fix.help, fix=fix
             )
     return None
 
@@ -317,11 +277,10 @@ def _missing_satisfy(u: Unexpected) -> Diagnostic | None:
         return None
     response = u.rest
     two_words = _TWO_WORDS.match(response.text) is not None
-    return Diagnostic(
-        Code.MISSING_SATISFY,
-        f"missing `satisfy` before `{response.text}`",
+    return diagnostic(
+        "missing_satisfy",
         response,
-        help=f"write `satisfy {response.text}`",
+        response=response.text,
         fix=Fix(response.part(0, 0), "satisfy ", is_safe=not two_words),
     )
 
@@ -333,11 +292,8 @@ def _missing_component(u: Unexpected) -> Diagnostic | None:
     ends = u.follows("SHALL") and u.expects("ID")
     if not starts and not (ends and u.lexeme.word.lower() in KEYWORDS):
         return None
-    return Diagnostic(
-        Code.MISSING_COMPONENT,
-        "there is no component before `shall`",
-        u.lexeme.span if starts or u.previous is None else u.previous.span,
-        help="name what must satisfy the requirement: `the rover shall ...`",
+    return diagnostic(
+        "missing_component", u.lexeme.span if starts or u.previous is None else u.previous.span
     )
 
 

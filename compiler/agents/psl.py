@@ -15,7 +15,8 @@ from dataclasses import dataclass, field
 
 from compiler.agents.psl_grammar import AjpfDivergenceError, JoinedText, formula, misread
 from compiler.logic.formula import Formula
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import with_budget
 from fretish.reading.recursion import with_recursion_limit
@@ -69,14 +70,7 @@ def _read(source: Source) -> tuple[Property, ...] | Diagnostic:
 def _property(key: Span, text: JoinedText) -> Property:
     tree, strings = formula(text)
     remarks = tuple(
-        Diagnostic(
-            Code.BAD_PROPERTY,
-            f"the string {string.text} matches no belief, not even one with the same string",
-            string,
-            help="use a name that begins with a small letter",
-            severity=Severity.WARNING,
-        )
-        for string in strings
+        diagnostic("string_matches_no_belief", string, string=string.text) for string in strings
     )
     return Property(key.text, tree, key.to(text.span(0, len(text.text))), remarks)
 

@@ -14,6 +14,7 @@ from compiler.files.settings import Settings
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.diagnostics.explanations import ACCEPTANCES, explanation
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.documents import RequirementEntry
 
@@ -168,13 +169,7 @@ def unused_acceptances(
             acceptance.subject, declarations, recorded
         )
         if not (retired or open_yet or id(acceptance) in used):
-            yield Diagnostic(
-                Code.IDLE_ACCEPTANCE,
-                f"{acceptance.code.number} is accepted, but there is no such warning",
-                acceptance.span,
-                help="remove the acceptance: it would hide a later warning",
-                severity=Severity.WARNING,
-            )
+            yield diagnostic("unused_acceptance", acceptance.span, number=acceptance.code.number)
 
 
 def _may_come(

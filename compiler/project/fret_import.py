@@ -26,6 +26,7 @@ from fretish import expressions as e
 from fretish.bindings.declarations import Role
 from fretish.bindings.definitions import find_cycle
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.parser import parse, parse_value
 from fretish.printer import expression
@@ -545,10 +546,11 @@ def _failed(why: str, source: Source, at: int = 0) -> ImportResult:
 
 
 def _bad(why: str, source: Source, fix: str, at: int = 0) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EXPORT,
-        f"`{source.name}` cannot be imported: {why}",
+    return diagnostic(
+        "export_not_imported",
         source.span(at, min(at + 1, len(source.text))),
+        source=source.name,
+        why=why,
         help=fix,
     )
 
@@ -558,9 +560,4 @@ def _warning(code: Code, message: str, source: Source, fix: str) -> Diagnostic:
 
 
 def _skipped(why: str, source: Source) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EXPORT,
-        f"{why}: it is left out",
-        Source(source.name, "").span(),
-        severity=Severity.WARNING,
-    )
+    return diagnostic("left_out_of_import", Source(source.name, "").span(), why=why)

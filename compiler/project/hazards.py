@@ -8,6 +8,7 @@ from typing import Any
 
 from compiler.files.text_files import read
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
+from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry
 from fretish.reading.natural_order import natural
 from fretish.reading.toml_text import Tables
@@ -118,11 +119,11 @@ def cycles(requirements: Sequence[RequirementEntry]) -> Iterator[Diagnostic]:
         circle = _circle(requirement.id, by_id)
         if circle and frozenset(circle) not in earlier:
             earlier.add(frozenset(circle))
-            yield Diagnostic(
-                Code.PARENTS_IN_A_CIRCLE,
-                f"{requirement.id} is its own ancestor: {' → '.join(circle)}",
+            yield diagnostic(
+                "circular_parents",
                 requirement.place("parents"),
-                help="remove one of these links from `parents`",
+                requirement=requirement.id,
+                path=" → ".join(circle),
             )
 
 

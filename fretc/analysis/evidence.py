@@ -21,7 +21,8 @@ from fretc.analysis.arena.roles import role
 from fretc.analysis.findings import Analysis, Verdict
 from fretc.analysis.reasons import listed
 from fretish.bindings import canonical
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.printer import sentence as printed
 
@@ -158,27 +159,17 @@ def remarks(
         what = (
             "cannot be satisfied by any system" if len(ids) == 1 else "cannot be satisfied together"
         )
-        yield Diagnostic(
-            Code.UNREALIZABLE,
-            f"{listed(ids)} {what}: {each.because}",
+        yield diagnostic(
+            "unrealizable_requirements",
             places.get(ids[0]),
-            help="`fretc analyze` shows the run",
-            severity=Severity.WARNING,
+            requirements=listed(ids),
+            what=what,
+            because=each.because,
         )
     if analysis.verdict is Verdict.UNREALIZABLE and not analysis.conflicts:
-        yield Diagnostic(
-            Code.UNREALIZABLE,
-            f"requirements {analysis.why}",
-            help="`fretc analyze` shows them",
-            severity=Severity.WARNING,
-        )
+        yield diagnostic("unrealizable_set", why=analysis.why)
     if analysis.verdict is Verdict.NOT_CHECKED:
-        yield Diagnostic(
-            Code.NOT_ANALYZED,
-            f"it is unknown whether all requirements can be satisfied together: {analysis.why}",
-            help="`fretc analyze` shows the open questions",
-            severity=Severity.WARNING,
-        )
+        yield diagnostic("not_analyzed", why=analysis.why)
 
 
 # Files ----------------------------------------------------------------------------------------
@@ -251,9 +242,4 @@ def _contradiction(found: Document) -> str:
 
 
 def _wrong(source: Source, what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EVIDENCE,
-        f"`{source.name}` {what}",
-        Source(source.name, "").span(),
-        help="analyze again: `fretc analyze FILE...`",
-    )
+    return diagnostic("bad_analysis", Source(source.name, "").span(), source=source.name, what=what)

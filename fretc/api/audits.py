@@ -17,6 +17,7 @@ from fretc.audit.outputs.totals import VerdictWords
 from fretc.audit.plan import Plan, planned
 from fretc.logs.signals.integrity import Integrity
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 Path = str | os.PathLike[str]
 
@@ -107,4 +108,4 @@ def _bad(what: str, fix: str) -> Diagnostic:
 
 
 def _nothing() -> Diagnostic:
-    return Diagnostic(Code.NOTHING_TO_DO, "no log is given", help="name one log or more")
+    return diagnostic("no_log_given")

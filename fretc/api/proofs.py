@@ -13,6 +13,7 @@ from fretc.verification.engines.sandbox import Limits
 from fretc.verification.layers.request import Request
 from fretc.verification.verify import missing_prover, prove, refusals
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 
 Path = str | os.PathLike[str]
 
@@ -51,7 +52,7 @@ def verify(
     chosen_layers = demanded if layers is not None else every
     chosen_provers = _named("prover", provers, PROVERS)
     if not project.formalized or not chosen_layers:
-        raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is nothing to verify"),))
+        raise Refusal((diagnostic("nothing_to_verify"),))
     if limit < 1:
         raise Refusal(
             (_bad(f"the time limit must be 1 second or more, and it is {limit}", "give 1 or more"),)

@@ -6,7 +6,8 @@ import functools
 from collections.abc import Callable, Iterable
 from typing import ParamSpec, TypeVar
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import render_all
 from fretish.reading.limits import ExceededError, exceeded
 from fretish.reading.natural_order import by_place
@@ -58,8 +59,4 @@ def bounded(function: Callable[P, R]) -> Callable[P, R]:
 
 def too_deep() -> Diagnostic:
     """The refusal of an expression with more levels than Python's recursion limit allows."""
-    return Diagnostic(
-        Code.TOO_DEEP,
-        "an expression has too many nested operators",
-        help="define parts of the expression under separate names",
-    )
+    return diagnostic("api_expression_too_deep")

@@ -30,6 +30,7 @@ from fretc.audit.many_logs import (
 from fretc.audit.plan import Plan, packed, unpacked
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import unless_installed
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from distributed import Client, Future, WorkerPlugin
@@ -283,9 +284,9 @@ def _in(folder: str) -> Iterator[None]:
 
 
 def _bad_engine(name: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`{name}` is no engine",
+    return diagnostic(
+        "unknown_engine",
+        name=name,
         help=f"write `--evaluation {name}`"
         if name in EVALUATIONS
         else "write `local`, `dask` or `dask://HOST:PORT`",
@@ -293,12 +294,7 @@ def _bad_engine(name: str) -> Diagnostic:
 
 
 def _unreachable(address: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NO_FLEET,
-        f"the Dask cluster at `{address.replace('tcp', SCHEME, 1)}` cannot be reached: {why}",
-        help="start `dask scheduler` there, and `dask worker HOST:PORT --nthreads 1` on each "
-        "machine; `--engine dask` needs neither",
-    )
+    return diagnostic("cluster_unreachable", address=address.replace("tcp", SCHEME, 1), why=why)
 
 
 def _other_edition(what: str) -> Diagnostic:

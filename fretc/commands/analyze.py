@@ -32,6 +32,7 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -228,7 +229,7 @@ def active_requirements(
     if component is not None:
         requirements = _of_component(requirements, component)
     if not requirements:
-        fail(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to analyze"))
+        fail(diagnostic("nothing_to_analyze"))
     return requirements
 
 
@@ -242,9 +243,9 @@ def _of_component(
         known = tuple(dict.fromkeys(requirement.sentence.component for requirement in requirements))
         near = suggestion(component, known)
         fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"no requirement is about the component `{component}`",
+            diagnostic(
+                "unknown_component",
+                component=component,
                 help=f"did you mean `{near}`?" if near else f"there are {', '.join(known)}",
             )
         )

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fretc.terminal.output import EXIT_INCONCLUSIVE, fail, print_status
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,13 +60,7 @@ def time_limits(log: str | None, whole: str | None, logs: Sequence[str], engine:
     limits = Limits(_seconds("--log-time", log), _seconds("--time", whole))
     if limits != ENDLESS and (STDIN in logs or engine != "local"):
         what = "standard input" if STDIN in logs else f"`--engine {engine}`"
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"{what} does not support time limits",
-                help="remove `--time` and `--log-time`, or audit files on this machine",
-            )
-        )
+        fail(diagnostic("no_time_limits", what=what))
     return limits
 
 
@@ -74,11 +69,5 @@ def _seconds(option: str, text: str | None) -> float | None:
 
     length = None if text is None else nanoseconds(text)
     if text is not None and length is None:
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"`{option} {text}` is not a duration",
-                help=f"write `{option} 90s`, `{option} 30min` or `{option} 6h`",
-            )
-        )
+        fail(diagnostic("bad_duration_option", option=option, text=text))
     return None if length is None else length / 1e9

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from fretc.terminal.output import EVIDENCE, STORE, fail, not_written, print_status
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from compiler.project.project import Project
@@ -186,16 +187,8 @@ def _json(outcome: Outcome) -> str:
 
 
 def _no_folder(path: Path) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` cannot be written: an evidence store is a folder, and this is a file",
-        help=f"for evidence in one file, use a name that ends with `.json`: `-o {path}.json`",
-    )
+    return diagnostic("store_is_file", path=path)
 
 
 def _no_store(path: Path) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` cannot be written: the folder contains other files",
-        help="name a new folder, an empty one, or a store that `fretc audit` has written",
-    )
+    return diagnostic("store_folder_in_use", path=path)

@@ -26,6 +26,7 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
@@ -89,11 +90,7 @@ def compile_(
     if one_file and not any(TARGETS[kind].joins for kind in kinds):
         *most, last = (f"`--emit {name}`" for name, each in TARGETS.items() if each.joins)
         joining = f"{', '.join(most)} and {last}"
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE, f"`--one-file` applies only to {joining}", help="add one of them"
-            )
-        )
+        fail(diagnostic("one_file_not_joining", joining=joining))
     if weaken:
         _check_weaken(kinds)
     paths = expanded_paths(files)
@@ -249,8 +246,8 @@ def _emitted(
 
     requirements = project.formalized
     answers = [(requirement, target.refuse(requirement)) for requirement in requirements]
-    wrong = [diagnostic for _, diagnostic in answers if diagnostic is not None]
-    whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
+    wrong = [refusal for _, refusal in answers if refusal is not None]
+    whole = [refusal] if (refusal := target.refuse_project(options)) else []
     one_file = target.together or (options.one_file and target.joins)
     if one_file:
         whole += name_collisions(requirements)
@@ -262,18 +259,14 @@ def _emitted(
         whole.append(_not_of_all(target, project.refused))
     if whole or (wrong and (one_file or not target.per_rule)):
         return None, [*wrong, *whole]
-    expressible = [requirement for requirement, diagnostic in answers if diagnostic is None]
+    expressible = [requirement for requirement, refusal in answers if refusal is None]
     return (expressible or None) if wrong else expressible, wrong
 
 
 def _not_of_all(target: Target, refused: Sequence[Refused]) -> Diagnostic:
     """F618: a file that combines all requirements would lack some."""
     ids = ", ".join(refusal.requirement.id for refusal in refused)
-    return Diagnostic(
-        Code.NOT_OF_ALL,
-        f"`--emit {target.name}` combines all requirements, but some have errors: {ids}",
-        help="fix them, or name only the files of the other requirements",
-    )
+    return diagnostic("not_of_all", target=target.name, ids=ids)
 
 
 @click.command()
@@ -366,8 +359,4 @@ def _deliver_all(files: Mapping[str, str], output: str) -> None:
 
 
 def _exists(path: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` already exists",
-        help="name another folder with `-o`, or overwrite it with `--force`",
-    )
+    return diagnostic("output_exists", path=path)

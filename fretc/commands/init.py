@@ -16,7 +16,8 @@ from fretc.terminal.output import (
     print_status,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 
@@ -90,17 +91,9 @@ def _is_empty_folder(path: Path) -> bool:
 
 def _exists(path: str) -> Diagnostic:
     """F905: the requirements folder exists already."""
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` already exists",
-        help="name another folder; `fretc bind --from LOG` drafts bindings alone",
-    )
+    return diagnostic("project_exists", path=path)
 
 
 def _standard_input() -> Diagnostic:
     """F907: `--from -`."""
-    return Diagnostic(
-        Code.BAD_USAGE,
-        "standard input can be read only once, but drafting a project reads the log twice",
-        help="save the log to a file, and name that file",
-    )
+    return diagnostic("log_read_twice")

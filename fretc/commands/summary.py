@@ -16,7 +16,8 @@ from fretc.terminal.output import (
     fail,
     print_diagnostics,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
@@ -48,11 +49,7 @@ def summarize(paths: Sequence[str], query: str | None, output_format: str) -> No
 
 
 def _no_form(output_format: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"a summary has no output format `{output_format}`",
-        help="use `text` or `json`",
-    )
+    return diagnostic("unknown_summary_format", output_format=output_format)
 
 
 def _json(value: object) -> str:

@@ -33,6 +33,7 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
@@ -200,7 +201,7 @@ def _check_shown(id: str, known: Sequence[str]) -> None:
     if id not in known:
         near = suggestion(id, known)
         hint = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
-        fail(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=hint))
+        fail(diagnostic("unknown_requirement", id=id, help=hint))
 
 
 def _of(path: str, requirements: Sequence[FormalizedRequirement]) -> Suite:
@@ -216,7 +217,7 @@ def _of(path: str, requirements: Sequence[FormalizedRequirement]) -> Suite:
     try:
         found = checked(suite, requirements)
     except WrongError as error:
-        fail(Diagnostic(Code.BAD_EVIDENCE, f"`{path}`: {error}", help=again))
+        fail(diagnostic("bad_test_evidence", path=path, error=error, help=again))
     if found.others:
         others = ", ".join(found.others)
         print_status(visible(f"left out, because the requirements have changed: {others}"))

@@ -23,7 +23,8 @@ from fretc.terminal.output import (
     print_diagnostics,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from compiler.formalization.formalized import FormalizedRequirement
@@ -80,11 +81,7 @@ def against(
         except KeyboardInterrupt:
             stopped = True
     except (UnsupportedError, OutOfTimeError) as error:
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE, f"no program can be tested against these requirements: {error}"
-            )
-        )
+        fail(diagnostic("no_conformance_test", error=error))
     found = campaign.findings(words)
     evidence = f"{to_json(plain(found))}\n"
     if output == "-" or output_format == "json":
@@ -113,12 +110,7 @@ def _words(command: str) -> list[str]:
 
 def _no_command(command: str, why: str) -> Diagnostic:
     """F907."""
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`--against {shlex.quote(command)}` names no program: {why}",
-        help='put the program and its arguments into one pair of quotes: `--against "python3 '
-        'program.py"`',
-    )
+    return diagnostic("no_program_named", command=shlex.quote(command), why=why)
 
 
 def _status(found: Conformance, wrong: Diagnostic | None) -> int:

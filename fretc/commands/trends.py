@@ -17,7 +17,8 @@ from fretc.terminal.output import (
     protect,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 
 @click.command()
@@ -91,10 +92,4 @@ def trends(
 
 
 def _nothing_to_compare() -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_COMPARABLE,
-        "nothing can be compared: no requirement was evaluated in the same scenario in two rounds",
-        help="also name earlier evidence; label runs with `scenario`, or name all logs of a "
-        "scenario alike",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("nothing_to_compare")

@@ -10,7 +10,8 @@ from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.sections.matrix import unknown_ids
 from fretc.traceability.waivers import idle_waiver
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 
 
@@ -26,25 +27,20 @@ def stale_evidence(
     for assessment in assessments:
         suspicions.setdefault(_suspicions(assessment), []).append(assessment)
     suspect = [
-        Diagnostic(
-            Code.STALE_EVIDENCE,
-            f"the evidence of {phrases.joined([each.id for each in some])} is suspect in "
-            f"{phrases.times(count, 'run')}{' each' if len(some) > 1 else ''}: {why}",
+        diagnostic(
+            "suspect_evidence",
             some[0].entry.wording,
+            requirements=phrases.joined([each.id for each in some]),
+            runs=phrases.times(count, "run"),
+            each=" each" if len(some) > 1 else "",
+            why=why,
             help=again,
-            severity=Severity.WARNING,
         )
         for (count, why), some in suspicions.items()
         if count
     ]
     strange = [
-        Diagnostic(
-            Code.STALE_EVIDENCE,
-            f"there is evidence for {id}, which is not among the requirements",
-            Source(path, "").span(),
-            help=again,
-            severity=Severity.WARNING,
-        )
+        diagnostic("evidence_of_unknown_requirement", Source(path, "").span(), id=id, help=again)
         for id in unknown_ids(assessments, briefs)
     ]
     return (*suspect, *strange)

@@ -11,7 +11,8 @@ from compiler.files.checked_json import SchemaError, parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from fretc.testing.suite import Suite
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 
 DEFAULT = "build/tests/suite.json"
@@ -34,9 +35,6 @@ def read(path: str) -> Suite | Diagnostic:
 
 
 def _wrong(source: Source, what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EVIDENCE,
-        f"`{source.name}` {what}",
-        Source(source.name, "").span(),
-        help=f"generate it again: `fretc test -o {source.name}`",
+    return diagnostic(
+        "bad_test_result", Source(source.name, "").span(), source=source.name, what=what
     )

@@ -14,7 +14,8 @@ from compiler.files.dates import is_date
 from compiler.files.text_files import read as read_text
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretish.bindings.canonical import digest
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.toml_text import Tables, unknown_key
 from fretish.reading.toml_text import read as read_tables
@@ -133,13 +134,12 @@ def _no_verdict(tables: Tables, id: str, value: object) -> Diagnostic:
 
 def idle_waiver(waiver: Waiver, verdict: str) -> Diagnostic:
     """F543: the verdict of the requirement is not the waived one."""
-    return Diagnostic(
-        Code.IDLE_WAIVER,
-        f"the waiver of {waiver.requirement} is for `{waiver.verdict}`, but the verdict is "
-        f"`{verdict}`: the waiver has no effect",
+    return diagnostic(
+        "idle_waiver",
         waiver.span,
-        help="remove the waiver, or have one granted for the present verdict",
-        severity=Severity.WARNING,
+        requirement=waiver.requirement,
+        waived=waiver.verdict,
+        verdict=verdict,
     )
 
 
@@ -148,11 +148,10 @@ def _wrong(tables: Tables, what: str, fix: str, *path: str) -> Diagnostic:
 
 
 def _ended(tables: Tables, waiver: Waiver) -> Diagnostic:
-    return Diagnostic(
-        Code.EXPIRED_WAIVER,
-        f"the waiver of {waiver.requirement} is valid only from {waiver.granted} to "
-        f"{waiver.expires}",
+    return diagnostic(
+        "expired_waiver",
         tables.value(waiver.requirement, "expires"),
-        help="show that the requirement holds, or have the waiver granted again",
-        severity=Severity.WARNING,
+        requirement=waiver.requirement,
+        granted=waiver.granted,
+        expires=waiver.expires,
     )

@@ -14,7 +14,8 @@ from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
 from compiler.logic.claims import Document, Proof, Result
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 
 
@@ -75,9 +76,4 @@ def default_path() -> str | None:
 
 
 def _wrong(source: Source, what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EVIDENCE,
-        f"`{source.name}` {what}",
-        Source(source.name, "").span(),
-        help="verify again: `fretc verify FILE...`",
-    )
+    return diagnostic("bad_proof", Source(source.name, "").span(), source=source.name, what=what)

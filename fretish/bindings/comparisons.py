@@ -14,7 +14,8 @@ from fretish import expressions as e
 from fretish.bindings import expressions as binding
 from fretish.bindings.declarations import Signal
 from fretish.bindings.expressions import MOST_TICKS_BACK, is_base, ticks_back
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.units import (
     DIMENSIONLESS,
@@ -388,19 +389,13 @@ def _describe(measure: _Measure) -> str:
 
 
 def _mismatch(left: _Measure, right: _Measure, place: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.UNIT_MISMATCH,
-        f"{_describe(left)} cannot be compared with or added to {_describe(right)}",
-        place,
-        help="a bare number is in the unit of the signal beside it",
-    )
+    return diagnostic("quantities_differ", place, left=_describe(left), right=_describe(right))
 
 
 def _ambiguous_unit(place: Span, target: _Measure) -> Diagnostic:
     plain = target.unit.dimension == DIMENSIONLESS
-    return Diagnostic(
-        Code.WHICH_UNIT,
-        "this number has no unit, and its unit is ambiguous",
+    return diagnostic(
+        "ambiguous_number",
         place,
         help="write it in percent: 2 is `200 %`" if plain else "write its unit: `5 m/s`",
     )

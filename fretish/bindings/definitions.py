@@ -13,7 +13,8 @@ from functools import partial
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import conditions, too_deep
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.recursion import MOST, with_recursion_limit
 from fretish.syntax import Sentence
@@ -147,9 +148,4 @@ def _with_span(tree: e.Expression, span: Span | None, values: Definitions) -> e.
 
 
 def _too_large(place: Span | None) -> Diagnostic:
-    return Diagnostic(
-        Code.TOO_LARGE,
-        f"with the values of its variables the sentence has more than {MOST_PARTS} parts",
-        place,
-        help="shorten the values of variables, or bind some of them as propositions",
-    )
+    return diagnostic("sentence_too_large", place, most_parts=MOST_PARTS)

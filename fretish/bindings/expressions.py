@@ -17,7 +17,8 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedInput, VisitError
 from lark.visitors import Transformer_NonRecursive
 
 from fretish import expressions as e
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.caching import cache_by_identity
 from fretish.reading.grammars import Grammar
@@ -362,63 +363,40 @@ def plain_percents(
         if not measured or not measured <= {*percents} or not isinstance(limit, e.Number):
             continue
         if Fraction(limit.digits) > 1:
-            yield Diagnostic(
-                Code.PLAIN_PERCENT,
-                f"`{', '.join(sorted(measured))}` is in %, and {limit.digits} is not a "
-                "percentage: it "
-                f"is {limit.digits} times 100 %",
+            yield diagnostic(
+                "plain_percent",
                 limit.span or place,
-                help=f"write `{limit.digits} %`",
-                severity=Severity.WARNING,
+                signals=", ".join(sorted(measured)),
+                digits=limit.digits,
             )
 
 
 def _bad_duration(text: str, span: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.UNKNOWN_UNIT,
-        f"`{text}` is not a duration",
-        span,
-        help="write `for 200 ms`; units are ns, us, ms, s, min, h",
-    )
+    return diagnostic("not_a_duration", span, text=text)
 
 
 def _unknown_name(id: str, kinds: Mapping[str, Kind], span: Span) -> Diagnostic:
     near = suggestion(id, kinds)
     declared = ", ".join(sorted(kinds)) or "nothing"
-    return Diagnostic(
-        Code.UNKNOWN_NAME,
-        f"`{id}` is not declared",
+    return diagnostic(
+        "undeclared_name",
         span,
+        id=id,
         help=f"did you mean `{near}`?" if near else f"declared here: {declared}",
     )
 
 
 def _ambiguous(name: str, part: str, span: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.AMBIGUOUS_UNIT,
-        f"`{part}` in `{name}` is ambiguous: a unit, or the declared `{part}`",
-        span,
-        help=f"rename `{part}`; to divide by it, write `(2 m) / {part}`",
-    )
+    return diagnostic("ambiguous_unit", span, part=part, name=name)
 
 
 def _unknown_function(name: str, span: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.UNKNOWN_NAME,
-        f"unknown function `{name}`",
-        span,
-        help=f"bindings have the functions {', '.join(FUNCTIONS)}",
-    )
+    return diagnostic("unknown_function", span, name=name, functions=", ".join(FUNCTIONS))
 
 
 def _unexpected(error: UnexpectedInput, text: Span) -> Diagnostic:
     if text.text.startswith("TODO"):
-        return Diagnostic(
-            Code.BAD_EXPRESSION,
-            "the expression is not written yet",
-            text,
-            help="write when the proposition is true, such as `min_range < 5 cm`",
-        )
+        return diagnostic("empty_expression", text)
     at = error.pos_in_stream
     length = 1
     if not isinstance(error, UnexpectedCharacters):

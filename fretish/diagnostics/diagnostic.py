@@ -1,7 +1,7 @@
 """Diagnostics: code, message, span and help; and the table of all codes.
 
-A user's mistake is returned as a `Diagnostic`. The function that makes it is beside the check that
-needs it. The numbers of codes are permanent: never moved, never reused.
+A user's mistake is returned as a `Diagnostic`. Its text is in a table, by name
+(`messages.py`). The numbers of codes are permanent: never moved, never reused.
 """
 
 from __future__ import annotations

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.fixes import Fix, removal
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.error_rules.operators import JOIN
 from fretish.error_rules.unexpected import Unexpected, not_fretish
@@ -40,12 +41,7 @@ def further_sentence(u: Unexpected) -> Diagnostic | None:
 
 
 def _sentence_error(u: Unexpected) -> Diagnostic:
-    return Diagnostic(
-        Code.SEVERAL_SENTENCES,
-        "a second sentence begins here",
-        u.lexeme.span,
-        help="give each sentence a header with an `id` between two lines `+++`, or its own file",
-    )
+    return diagnostic("second_sentence", u.lexeme.span)
 
 
 def _space_before(u: Unexpected) -> str:

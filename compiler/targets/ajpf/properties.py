@@ -39,6 +39,7 @@ from fretish.bindings.comparisons import FUNCTIONS
 from fretish.bindings.declarations import Modality
 from fretish.checking import LOOK_AHEAD, LOOK_BACK, NUMBERS_BACK, calls, conditions
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.messages import diagnostic
 from fretish.expressions import Comparison
 from fretish.expressions import names as names_of
 from fretish.printer import timing as printing_of
@@ -192,11 +193,11 @@ def _refused_form(
     requirement: FormalizedRequirement, formula: f.Formula | None
 ) -> Diagnostic | None:
     if formula is None:
-        return Diagnostic(
-            Code.NOT_PROVED,
-            f"the AJPF property of {requirement.id} is not proved equivalent to the requirement",
+        return diagnostic(
+            "ajpf_property_not_proved",
             requirement.entry.wording,
-            help=f"this is a fault of fretc: report it, and {_MONITOR}",
+            requirement=requirement.id,
+            monitor=_MONITOR,
         )
     if isinstance(formula, f.Const):
         return _not(requirement, "a formula that is constant", "it says nothing")

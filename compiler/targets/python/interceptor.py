@@ -20,6 +20,7 @@ from compiler.targets.target import DEFAULT, Options, Target
 from fretish.bindings.declarations import Declarations, Interception, InterceptorForm
 from fretish.bindings.tables.interceptor import TABLE
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from monitors.source_text import interceptor as core
 
@@ -35,12 +36,8 @@ def refuse(options: Options) -> Diagnostic | None:
         return None
     source = Source("bindings.toml", "") if declared is None else declared.source
     subject = "there are no bindings, and so" if declared is None else "the bindings declare"
-    return Diagnostic(
-        Code.NO_INTERCEPTOR,
-        f"{subject} no interceptor",
-        source.span().part(0, 0),
-        help=f"add this table to {source.name}, with the topics of your robot:",
-        paste=TABLE,
+    return diagnostic(
+        "no_interceptor", source.span().part(0, 0), who=subject, source=source.name, paste=TABLE
     )
 
 

@@ -12,6 +12,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Role
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.reading.toml_text import as_key
 
 Roles = Mapping[str, Role]
@@ -45,12 +46,13 @@ def _two_roles(
 ) -> Diagnostic:
     """F907."""
     component = requirement.sentence.component
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`{name}` is an {first}, and an {second} of `{component}`: these are two different "
-        "systems",
+    return diagnostic(
+        "two_roles",
         first_use(requirement, name),
-        help=f"analyze one of them: `--component {component}`",
+        name=name,
+        first=first,
+        second=second,
+        component=component,
     )
 
 

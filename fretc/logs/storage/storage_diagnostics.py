@@ -8,6 +8,7 @@ from collections.abc import Collection
 from fretish.bindings.declarations import short_type
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.extras import missing_extra
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 
 # Standard input and URLs
@@ -15,12 +16,7 @@ from fretish.diagnostics.source import Source, Span
 
 def no_stdin(why: str) -> Diagnostic:
     """Standard input cannot be read."""
-    return Diagnostic(
-        Code.UNREADABLE,
-        f"standard input cannot be read: {why}",
-        Source("<stdin>", "").span(),
-        "send a log: `fretc audit - < run.mcap`",
-    )
+    return diagnostic("no_stdin", Source("<stdin>", "").span(), why=why)
 
 
 def no_package(url: str, error: ImportError, place: Span) -> Diagnostic:
@@ -32,12 +28,7 @@ def no_package(url: str, error: ImportError, place: Span) -> Diagnostic:
 
 def unlisted(error: OSError, place: Span) -> Diagnostic:
     """An object store cannot be listed."""
-    return Diagnostic(
-        Code.UNREADABLE,
-        f"the folder cannot be listed: {error.strerror or error}",
-        place,
-        "check the address, the network, and whether your credentials may list it",
-    )
+    return diagnostic("folder_not_listed", place, reason=error.strerror or error)
 
 
 def no_fsspec(place: Span) -> Diagnostic:
@@ -55,11 +46,12 @@ def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
         return missing_extra(
             f"`{protocol}://` addresses cannot be read: that needs", ["aiohttp"], "remote", place
         )
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"`{protocol}://` addresses cannot be read: {reason}",
+    return diagnostic(
+        "no_protocol_package",
         place,
-        f"install its package: pip install {package}"
+        protocol=protocol,
+        reason=reason,
+        help=f"install its package: pip install {package}"
         if package
         else "fsspec's documentation lists the package for each protocol",
     )
@@ -75,23 +67,12 @@ def no_rosbags(place: Span) -> Diagnostic:
 
 def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
     """A bag cannot be read by rosbags."""
-    return Diagnostic(
-        Code.UNREADABLE_LOG,
-        f"the bag cannot be read: {why}",
-        place,
-        "fix it first: `rosbag reindex`, which loses the chunk that was being written (keep the "
-        "`.orig` file beside it, so that audits report the loss); or copy it again from where "
-        "it was recorded"
-        if indexed
-        else "copy it again from where it was recorded",
-    )
+    return diagnostic("bag_to_reindex" if indexed else "bad_bag", place, why=why)
 
 
 def bag_of_no_file(place: Span) -> Diagnostic:
     """A bag from standard input or a URL."""
-    return Diagnostic(
-        Code.NOT_A_LOG, "a bag can only be read from a file", place, "save it as a file first"
-    )
+    return diagnostic("bag_of_no_file", place)
 
 
 def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
@@ -116,73 +97,42 @@ def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
 
 def without_crc(place: Span) -> Diagnostic:
     """The limits of an MCAP file without CRCs of its messages."""
-    return Diagnostic(
-        Code.BAG_FORMAT,
-        "no CRC covers its messages: a changed byte within a message is not detected",
-        place,
-        "record with `noChunkCRC: false` in rosbag2's `--storage-config-file`",
-        Severity.NOTE,
-    )
+    return diagnostic("without_crc", place)
 
 
 def bad_metadata(place: Span) -> Diagnostic:
     """The `metadata.yaml` of a run is invalid."""
-    return Diagnostic(
-        Code.SPLIT_LOG,
-        "it does not list the files of the run",
-        place,
-        "write it again: `ros2 bag reindex FOLDER`",
-    )
+    return diagnostic("bad_run_metadata", place)
 
 
 def part_of_a_run(i: int, count: int, run: str, place: Span) -> Diagnostic:
     """One file of several is read as a run of its own; `run` is the name of the whole run."""
-    return Diagnostic(
-        Code.SPLIT_LOG,
-        f"it is file {i + 1} of {count} of one run, but judged alone",
-        place,
-        f"name {run}: its files are one log",
-        Severity.NOTE,
-    )
+    return diagnostic("part_of_a_run", place, number=i + 1, count=count, run=run)
 
 
 def compressed_folder(mode: str, place: Span) -> Diagnostic:
     """The files or messages of a run are compressed by rosbag2."""
-    return Diagnostic(
-        Code.NOT_A_LOG,
-        f"rosbag2 has compressed each {mode} of the run",
-        place,
-        "unpack it: `ros2 bag convert`, with `compression_mode: none`; MCAP has a compression of "
-        "its own: `--storage-preset-profile zstd_fast`",
-    )
+    return diagnostic("compressed_run", place, mode=mode)
 
 
 def no_such_file(place: Span) -> Diagnostic:
     """There is nothing at the path."""
-    return Diagnostic(Code.NO_SUCH_FILE, "there is no such file", place, "check the path")
+    return diagnostic("no_such_log", place)
 
 
 def is_a_directory(place: Span) -> Diagnostic:
     """The path names a directory."""
-    return Diagnostic(Code.IS_A_DIRECTORY, "it is a directory", place, "name the logs in it")
+    return diagnostic("log_is_directory", place)
 
 
 def grown(size: int, place: Span) -> Diagnostic:
     """F431: the log grew while it was read; only its first bytes are used."""
-    return Diagnostic(
-        Code.GROWN,
-        f"the log grew while it was read: the audit covers the first {size:,} bytes",
-        place,
-        "audit it again when its recording, or its copy, is complete",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("grown_log", place, size=f"{size:,}")
 
 
 def not_a_file(place: Span) -> Diagnostic:
     """The path names a device, a pipe or the like."""
-    return Diagnostic(
-        Code.UNREADABLE, "it is not a regular file", place, "name a file; `-` is standard input"
-    )
+    return diagnostic("not_a_regular_file", place)
 
 
 def unreadable(error: OSError, place: Span) -> Diagnostic:
@@ -193,4 +143,4 @@ def unreadable(error: OSError, place: Span) -> Diagnostic:
         fix = "check the address, the network, and whether your credentials reach it"
     elif error.errno == errno.ENOSPC:
         fix = "free space in the folder for temporary files, or set `TMPDIR` to another folder"
-    return Diagnostic(Code.UNREADABLE, f"it cannot be read: {reason}", place, fix)
+    return diagnostic("unreadable_log", place, reason=reason, help=fix)

@@ -19,6 +19,7 @@ from typing import IO, Self
 
 from fretc.testing.exports.tables import Cell, cell_text, csv_text
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 from monitors.kernel.tables import InputError
 from monitors.kernel.variable_tables import read_variables
@@ -180,12 +181,7 @@ class Program:
 
     def _late(self) -> Diagnostic:
         """F942."""
-        return Diagnostic(
-            Code.PROGRAM_SILENT,
-            f"at tick {max(self._tick, 0)} the program under test printed no line within "
-            f"{self._seconds:g} s",
-            help="it must flush each line; `--line-time` gives it more time",
-        )
+        return diagnostic("program_silent", tick=max(self._tick, 0), seconds=f"{self._seconds:g}")
 
     def _ended(self) -> Diagnostic:
         """F943."""

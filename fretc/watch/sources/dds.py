@@ -18,7 +18,8 @@ from fretc.watch.sources.dds_types import Offer, UnreadableError
 from fretc.watch.sources.mailbox import WAIT, Mailbox
 from fretc.watch.sources.middleware import Middleware, several_publishers, simulated_time
 from fretc.watch.sources.source import Channel, Problem, Reconnected
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from monitors.guard import Status
 
 MOST_KINDS = 20
@@ -283,33 +284,16 @@ def _no_definition(topic: str, offer: Offer) -> Diagnostic:
         why = "differs between releases of ROS 2, and its publisher sends no type hash"
     else:
         why = "is defined differently by its publisher: the type hash differs"
-    return Diagnostic(
-        Code.NO_DEFINITION,
-        f"messages of `{topic}` cannot be decoded: `{offer.type}` {why}",
-        help="watch through foxglove_bridge, which sends definitions, or follow a log of rosbag2",
-    )
+    return diagnostic("no_message_definition", topic=topic, type=offer.type, why=why)
 
 
 def _not_read(topic: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.PUBLISHER_NOT_READ,
-        f"a publisher of `{topic}` is not read: {why}",
-        help="its messages count as unknown; `fretc explain` lists what a publisher must offer",
-    )
+    return diagnostic("publisher_not_read", topic=topic, why=why)
 
 
 def _no_publisher(topic: str) -> Diagnostic:
-    return Diagnostic(
-        Code.PUBLISHER_GONE,
-        f"`{topic}` has no publisher any more",
-        help="`max_age` says for how long its last message counts",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("publisher_gone", topic=topic)
 
 
 def _broken(error: Exception) -> Diagnostic:
-    return Diagnostic(
-        Code.ROBOT_NOT_REACHED,
-        f"Cyclone DDS fails: {type(error).__name__}: {error}",
-        help="fretc joins the domain again",
-    )
+    return diagnostic("dds_fails", name__=type(error).__name__, error=error)

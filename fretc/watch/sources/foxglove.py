@@ -34,8 +34,9 @@ from fretc.watch.sources.foxglove_protocol import (
 )
 from fretc.watch.sources.middleware import Middleware, simulated_time
 from fretc.watch.sources.source import Channel
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import install_help
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
@@ -334,72 +335,40 @@ def _reason(error: Exception) -> tuple[str, str | None]:
 
 
 def _no_websockets(why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"watching a Foxglove server needs `websockets`, which cannot be imported: {why}",
-        help=install_help("live"),
-    )
+    return diagnostic("no_websockets", why=why, help=install_help("live"))
 
 
 def _server_not_reached(name: str, why: str, fix: str | None) -> Diagnostic:
-    return Diagnostic(
-        Code.ROBOT_NOT_REACHED,
-        f"{name} cannot be watched: {why}",
+    return diagnostic(
+        "server_not_reached",
+        name=name,
+        why=why,
         help=fix or "start the server on the robot (`ros2 run foxglove_bridge foxglove_bridge`)",
     )
 
 
 def _several_channels(topic: str) -> Diagnostic:
-    return Diagnostic(
-        Code.SEVERAL_PUBLISHERS,
-        f"the server has several channels of `{topic}`",
-        help="messages of all channels count; stop the nodes that should not publish",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("several_channels", topic=topic)
 
 
 def _too_many_channels(most: int) -> Diagnostic:
     """The server keeps creating channels."""
-    return Diagnostic(
-        Code.CHANNEL_REFUSED,
-        f"the server has had {most} different channels of the bound topics: no further ones are "
-        "watched",
-        help="check whether the server keeps changing the types of its topics",
-    )
+    return diagnostic("too_many_channels", most=most)
 
 
 def _unreadable_channel(topic: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.CHANNEL_REFUSED,
-        f"a channel of `{topic}` cannot be watched: {why}",
-        help="propositions that read the topic are unknown; check what the server advertises",
-    )
+    return diagnostic("unreadable_channel", topic=topic, why=why)
 
 
 def _withdrawn(topic: str) -> Diagnostic:
     """A warning, because the topic has no messages any more."""
-    return Diagnostic(
-        Code.CHANNEL_REFUSED,
-        f"the server no longer offers `{topic}`",
-        help="it is watched again when the server offers it again; check that its node runs",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("channel_withdrawn", topic=topic)
 
 
 def _status(text: str) -> Diagnostic:
-    return Diagnostic(
-        Code.SERVER_STATUS,
-        f"the server reports: {text}",
-        help="see the log of the server",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("server_status", text=text)
 
 
 def _more_statuses(most: int) -> Diagnostic:
     """Further status messages are not shown."""
-    return Diagnostic(
-        Code.SERVER_STATUS,
-        f"the server has reported more than {most} different texts; further ones are not shown",
-        help="see the log of the server",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("more_statuses", most=most)

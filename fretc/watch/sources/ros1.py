@@ -17,7 +17,8 @@ from typing import IO, Any
 from fretc.watch.sources import ros1_bridge
 from fretc.watch.sources.middleware import Middleware, several_publishers, simulated_time
 from fretc.watch.sources.source import Channel
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from monitors.guard import Status
 
 PYTHON = "/usr/bin/python3"
@@ -155,32 +156,16 @@ def _frames(stream: IO[bytes]) -> Iterator[tuple[dict[str, Any], bytes]]:
 
 
 def _no_rospy(python: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"watching ROS 1 needs rospy, which `{python}` does not have: {why}",
-        help="apt install python3-rospy",
-    )
+    return diagnostic("no_rospy", python=python, why=why)
 
 
 def _no_diagnostics(python: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_PUBLISHED,
-        f"nothing is published on `/diagnostics`: `{python}` does not have its type: {why}",
-        help="apt install python3-diagnostic-msgs",
-    )
+    return diagnostic("no_diagnostics_type", python=python, why=why)
 
 
 def _no_master(uri: str) -> Diagnostic:
-    return Diagnostic(
-        Code.ROBOT_NOT_REACHED,
-        f"no ROS 1 master answers at {uri}",
-        help="start roscore, or set ROS_MASTER_URI to the robot's",
-    )
+    return diagnostic("no_master", uri=uri)
 
 
 def _node_ended() -> Diagnostic:
-    return Diagnostic(
-        Code.ROBOT_NOT_REACHED,
-        "the node that forwards messages has exited",
-        help="check that /etc/hosts has a name for this machine",
-    )
+    return diagnostic("node_ended")
