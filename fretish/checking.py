@@ -40,11 +40,7 @@ def check_depth(sentence: Sentence) -> Diagnostic | None:
 
 def too_deep(sentence: Sentence) -> Diagnostic:
     """F115 for the whole sentence."""
-    return _too_deep(sentence.span)
-
-
-def _too_deep(place: Span | None) -> Diagnostic:
-    return diagnostic("expression_too_deep", place)
+    return diagnostic("expression_too_deep", sentence.span)
 
 
 def calls(expression: e.Expression) -> Iterator[str]:
@@ -62,18 +58,13 @@ def check_names(sentence: Sentence) -> Iterator[Diagnostic]:
     names = [name for expression in conditions(sentence) for name in _names(expression)]
     for _, span in [(sentence.component, sentence.component_span), *names]:
         if span is not None and span.text.lower() in UNUSED:
-            yield key_word_as_name(span)
-
-
-def key_word_as_name(word: Span) -> Diagnostic:
-    """F109 for a key word that is used as a name."""
-    return diagnostic("key_word_as_name", word, word=word.text)
+            yield diagnostic("key_word_as_name", span, word=span.text)
 
 
 def check_value(expression: e.Expression, place: Span) -> Iterator[Diagnostic]:
     """Check the value of a variable: F112 and F115."""
     if depth(expression) > MOST:
-        yield _too_deep(place)
+        yield diagnostic("expression_too_deep", place)
         return
     is_truth = _is_boolean(expression, expected=True)
     yield from _check_kinds(expression, place, boolean=is_truth)

@@ -129,7 +129,7 @@ def in_ticks(sentence: Sentence, clock: Clock | None) -> int | Diagnostic | None
     if bound is None or clock is None or bound.unit == "tick":
         return bound.amount if bound else None
     if clock.period is None:
-        return _no_time(bound, clock)
+        return diagnostic("messages_cannot_count_time", bound.span, clock=clock, unit=bound.unit)
     exact = Fraction(bound.amount * NANOSECONDS[bound.unit], clock.period)
     if exact.denominator == 1:
         return int(exact)
@@ -226,7 +226,3 @@ def _no_stricter_side(
     return replace(
         inexact, message=f"{inexact.message}, and `{part}` has no stricter side to round to"
     )
-
-
-def _no_time(bound: Duration, clock: Clock) -> Diagnostic:
-    return diagnostic("messages_cannot_count_time", bound.span, clock=clock, unit=bound.unit)

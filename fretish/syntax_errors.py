@@ -10,7 +10,6 @@ import re
 from collections.abc import Callable
 from fractions import Fraction
 
-from fretish.checking import key_word_as_name
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from fretish.diagnostics.fixes import Fix, removal
 from fretish.diagnostics.messages import diagnostic
@@ -34,7 +33,7 @@ from fretish.error_rules.order import (
 )
 from fretish.error_rules.unexpected import STARTS_EXPRESSION, Unexpected, not_fretish
 from fretish.keywords import KEYWORDS
-from fretish.units import number, too_long, unit, unknown_unit
+from fretish.units import number, unit, unknown_unit
 
 _GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
     ("a scope (`in m`, `before m`, ...)", frozenset({"DURING", "EXCEPT", "ONLY", "WHILE"})),
@@ -85,11 +84,6 @@ def explain(unexpected: Unexpected) -> Diagnostic:
         if diagnostic is not None:
             return diagnostic
     return _does_not_fit(unexpected)
-
-
-def no_sentence(text: Span) -> Diagnostic:
-    """F106 for an empty text."""
-    return diagnostic("no_sentence", text.part(0, 0))
 
 
 def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
@@ -158,7 +152,7 @@ def _measured(u: Unexpected) -> Diagnostic | None:
     if u.previous is None or u.previous.kind != "NUMBER" or u.lexeme.kind != "ID":
         return None
     if unit(u.lexeme.word) is not None:
-        return too_long(u.previous.span)
+        return diagnostic("number_too_long", u.previous.span)
     return unknown_unit(u.lexeme.word, u.lexeme.span)
 
 
@@ -300,7 +294,7 @@ def _missing_component(u: Unexpected) -> Diagnostic | None:
 def _key_word_as_name(u: Unexpected) -> Diagnostic | None:
     if not u.expects("ID") or u.lexeme.word.lower() not in KEYWORDS:
         return None
-    return key_word_as_name(u.lexeme.span)
+    return diagnostic("key_word_as_name", u.lexeme.span, word=u.lexeme.span.text)
 
 
 def _does_not_fit(u: Unexpected) -> Diagnostic:

@@ -237,8 +237,3 @@ def unknown_unit(name: str, span: Span) -> Diagnostic:
         name=name,
         help=f"did you mean `{near}`?" if near else f"write a unit such as {examples}",
     )
-
-
-def too_long(span: Span) -> Diagnostic:
-    """F308 for a number with too many digits."""
-    return diagnostic("number_too_long", span)

@@ -6,7 +6,7 @@ import re
 
 from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 
@@ -30,11 +30,7 @@ def misread(message: str, span: Span, fix: str) -> TrapError:
 
 def beyond(feature: str, span: Span) -> TrapError:
     """The exception for F611."""
-    return TrapError(_beyond(feature, span))
-
-
-def _beyond(feature: str, span: Span) -> Diagnostic:
-    return diagnostic("beyond_model", span, feature=feature)
+    return TrapError(diagnostic("beyond_model", span, feature=feature))
 
 
 _COMMENTS = "comments are `// ...` and `/* ... */` only"
@@ -50,7 +46,7 @@ def unexpected(error: UnexpectedInput, source: Source) -> Diagnostic:
     at = error.pos_in_stream or 0
     place = source.span(at, at + (len(token) if token is not None else 1))
     if isinstance(error, UnexpectedToken) and _follows_rules(error):
-        return _beyond("a reasoning rule", place)
+        return diagnostic("beyond_model", place, feature="a reasoning rule")
     return (
         _sign_of_more(source, at)
         or _mistake(source, at)
@@ -72,7 +68,7 @@ def _sign_of_more(source: Source, at: int) -> Diagnostic | None:
     if match is None:
         return None
     feature = str(match.lastgroup).replace("_", " ")
-    return _beyond(feature, source.span(at, match.end()))
+    return diagnostic("beyond_model", source.span(at, match.end()), feature=feature)
 
 
 _NAME_SECTION = re.compile(r":name:\s*\w+\Z")
@@ -93,12 +89,11 @@ def _mistake(source: Source, at: int) -> Diagnostic | None:
     heading = _HEADING.match(rest)
     if heading is None or heading[0] in _ALL_HEADINGS:
         return None
-    near = suggestion(heading[0], _ALL_HEADINGS)
     return diagnostic(
         "unknown_heading",
         source.span(at, at + heading.end()),
         heading=heading[0],
-        help=f"did you mean `{near}`?" if near else f"headings are {', '.join(HEADINGS)}",
+        help=did_you_mean(heading[0], _ALL_HEADINGS, f"headings are {', '.join(HEADINGS)}"),
     )
 
 

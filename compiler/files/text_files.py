@@ -38,7 +38,7 @@ def read(path: str, errors: Literal["strict", "surrogateescape"] = "strict") -> 
                 return Source("<stdin>", stdin.read().decode("utf-8-sig", errors))
         return Source(path, content(path).decode("utf-8-sig", errors))
     except UnicodeDecodeError as error:
-        return not_text(path, error.start)
+        return diagnostic("not_text", Source(path, "").span(), path=path, at=error.start)
     except OSError as error:
         return unreadable(path, error)
 
@@ -75,11 +75,6 @@ def open_regular(path: str | Path) -> BinaryIO:
     if stat.S_ISDIR(mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
     raise OSError(None, "it is not a regular file")
-
-
-def not_text(path: str, at: int) -> Diagnostic:
-    """F904 for a file that is not UTF-8."""
-    return diagnostic("not_text", Source(path, "").span(), path=path, at=at)
 
 
 def unreadable(path: str, error: OSError) -> Diagnostic:

@@ -55,7 +55,7 @@ def _formalized(
     entry: RequirementEntry, declarations: Declarations | None
 ) -> tuple[FormalizedRequirement | None, tuple[Diagnostic, ...]]:
     if entry.is_free_text:
-        return None, (_free_text(entry),)
+        return None, (diagnostic("free_text", entry.wording, requirement=entry.id),)
     written = parse(entry.wording)
     if isinstance(written, Diagnostic):
         return None, find_errors(entry.wording)
@@ -216,10 +216,6 @@ def _with_bound(variable: Variable, bound: Variable) -> Variable:
     modality = bound.modality if variable.modality is Modality.BELIEF else variable.modality
     action, role = variable.action or bound.action, variable.role or bound.role
     return replace(variable, modality=modality, action=action, role=role)
-
-
-def _free_text(requirement: RequirementEntry) -> Diagnostic:
-    return diagnostic("free_text", requirement.wording, requirement=requirement.id)
 
 
 def _clock(declarations: Declarations | None) -> Clock | None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 from compiler.files.settings import Settings
 from fretish.bindings.declarations import Declarations
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, did_you_mean
 from fretish.diagnostics.explanations import ACCEPTANCES, explanation
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
@@ -81,8 +81,7 @@ def _acceptance(
 ) -> Acceptance | Diagnostic:
     code = _CODES.get(number)
     if code is None:
-        near = suggestion(number, _CODES)
-        fix = f"did you mean `{near}`?" if near else "write the number that the warning begins with"
+        fix = did_you_mean(number, _CODES, "write the number that the warning begins with")
         return _bad(f"`{number}` is not a code of fretc", place, fix)
     about = explanation(code).accept
     if not about:

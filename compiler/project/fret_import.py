@@ -25,7 +25,7 @@ from compiler.project.lustre import fretish, lustre
 from fretish import expressions as e
 from fretish.bindings.declarations import Role
 from fretish.bindings.definitions import find_cycle
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.parser import parse, parse_value
@@ -500,11 +500,10 @@ def _columns(
     for part, guesses in _GUESSES.items():
         wanted = options.get(part)
         if wanted is not None and wanted not in names:
-            near = suggestion(wanted, names)
             return _bad(
                 f"there is no column `{wanted}`",
                 source,
-                f"did you mean `{near}`?" if near else f"there are {', '.join(names)}",
+                did_you_mean(wanted, names, f"there are {', '.join(names)}"),
             )
         by_name = {name.strip().lower(): name for name in reversed(names) if name}
         guess = next((by_name[g] for g in guesses if g in by_name), None)

@@ -7,7 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from compiler.files.text_files import read
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
+from fretish.diagnostics.diagnostic import (
+    Code,
+    Diagnostic,
+    Severity,
+    did_you_mean,
+    has_errors,
+)
 from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry
 from fretish.reading.natural_order import natural
@@ -98,11 +104,10 @@ def unknown_parents(
         )
         return
     for requirement, parent in unknown:
-        near = suggestion(parent, declared)
         yield _unknown(
             requirement,
             f"{requirement.id} names the parent `{parent}`, which is not declared",
-            f"did you mean `{near}`?" if near else "declare it in hazards.toml",
+            did_you_mean(parent, declared, "declare it in hazards.toml"),
         )
 
 

@@ -68,7 +68,7 @@ def audit_logs(
         raise Refusal((error,))
     named = accepted(logs_of([os.fspath(log) for log in logs]))
     if not named:
-        raise Refusal((_nothing(),))
+        raise Refusal((diagnostic("no_log_given"),))
     plan = planned(project, integrity=Integrity(integrity), confidence=confidence)
     if not isinstance(plan, Plan):
         raise Refusal(plan)
@@ -105,7 +105,3 @@ def _bad_choice(integrity: str, confidence: float, jobs: int) -> Diagnostic | No
 
 def _bad(what: str, fix: str) -> Diagnostic:
     return Diagnostic(Code.BAD_USAGE, what, help=fix)
-
-
-def _nothing() -> Diagnostic:
-    return diagnostic("no_log_given")

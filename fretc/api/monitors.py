@@ -66,7 +66,7 @@ def monitor_text(*requirements: FormalizedRequirement) -> str:
         Refusal: a monitor cannot express a requirement, or they do not fit into one file.
     """
     if not requirements:
-        raise Refusal((_nothing(),))
+        raise Refusal((diagnostic("no_requirement_for_monitor"),))
     requirements = tuple({id(requirement): requirement for requirement in requirements}.values())
     same_id = duplicate_ids([requirement.entry for requirement in requirements]).values()
     errors = [
@@ -98,7 +98,3 @@ def _several_clocks(requirements: tuple[FormalizedRequirement, ...]) -> Iterable
                 requirement=requirement.id,
                 first=first.id,
             )
-
-
-def _nothing() -> Diagnostic:
-    return diagnostic("no_requirement_for_monitor")

@@ -52,11 +52,6 @@ def bounded(function: Callable[P, R]) -> Callable[P, R]:
         except ExceededError as error:
             raise Refusal((exceeded(error),)) from None
         except RecursionError:
-            raise Refusal((too_deep(),)) from None
+            raise Refusal((diagnostic("api_expression_too_deep"),)) from None
 
     return refusing
-
-
-def too_deep() -> Diagnostic:
-    """The refusal of an expression with more levels than Python's recursion limit allows."""
-    return diagnostic("api_expression_too_deep")

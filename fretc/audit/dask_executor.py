@@ -50,7 +50,13 @@ def engine(name: str, jobs: int) -> Engine | Diagnostic:
     """
     place = urlsplit(name)
     if name != SCHEME and not (place.scheme == SCHEME and _is_address(place.netloc)):
-        return _bad_engine(name)
+        return diagnostic(
+            "unknown_engine",
+            name=name,
+            help=f"write `--evaluation {name}`"
+            if name in EVALUATIONS
+            else "write `local`, `dask` or `dask://HOST:PORT`",
+        )
     encrypts = ["cryptography"] if name == SCHEME else []
     missing = unless_installed("the engine `dask` needs", ["distributed", *encrypts], "fleet")
     if missing is not None:
@@ -281,16 +287,6 @@ def _in(folder: str) -> Iterator[None]:
 
 
 # Diagnostics ----------------------------------------------------------------------------------
-
-
-def _bad_engine(name: str) -> Diagnostic:
-    return diagnostic(
-        "unknown_engine",
-        name=name,
-        help=f"write `--evaluation {name}`"
-        if name in EVALUATIONS
-        else "write `local`, `dask` or `dask://HOST:PORT`",
-    )
 
 
 def _unreachable(address: str, why: str) -> Diagnostic:

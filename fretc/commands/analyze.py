@@ -31,7 +31,7 @@ from fretc.terminal.output import (
     print_status,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean, has_errors
 from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
@@ -241,12 +241,11 @@ def _of_component(
     )
     if not chosen:
         known = tuple(dict.fromkeys(requirement.sentence.component for requirement in requirements))
-        near = suggestion(component, known)
         fail(
             diagnostic(
                 "unknown_component",
                 component=component,
-                help=f"did you mean `{near}`?" if near else f"there are {', '.join(known)}",
+                help=did_you_mean(component, known, f"there are {', '.join(known)}"),
             )
         )
     return chosen

@@ -78,11 +78,11 @@ def check(target: Target, parquet: str | None) -> None:
             fail(not_written(str(path), "it is not a regular file"))
         return
     if not path.is_dir():
-        fail(_no_folder(path))
+        fail(diagnostic("store_is_file", path=path))
     from fretc.audit.store.writer import is_store
 
     if any(path.iterdir()) and not is_store(path):
-        fail(_no_store(path))
+        fail(diagnostic("store_folder_in_use", path=path))
 
 
 def _check_table(parquet: str, evidence: Path) -> None:
@@ -184,11 +184,3 @@ def _json(outcome: Outcome) -> str:
     if not outcome.estimates:
         return f"{to_json(found)}\n"
     return f"{to_json({'results': found, 'probabilities': plain(tuple(outcome.estimates))})}\n"
-
-
-def _no_folder(path: Path) -> Diagnostic:
-    return diagnostic("store_is_file", path=path)
-
-
-def _no_store(path: Path) -> Diagnostic:
-    return diagnostic("store_folder_in_use", path=path)

@@ -83,9 +83,9 @@ def bind(
         project = _project(requirements, bindings, replaced=output)
         print_diagnostics(
             [
-                diagnostic
-                for diagnostic in project.diagnostics
-                if diagnostic.is_error and not _is_in(diagnostic, output)
+                finding
+                for finding in project.diagnostics
+                if finding.is_error and not _is_in(finding, output)
             ]
         )
         _draft(source, project, output, force=force)
@@ -145,7 +145,7 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
-        fail(_exists(output))
+        fail(diagnostic("bindings_exist", path=output))
     contents = look(log, words=True)
     if isinstance(contents, Diagnostic):
         fail(contents)
@@ -155,11 +155,6 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
     )
     write_outputs({Path(output): text}, (log,))
     raise SystemExit(EXIT_OK)
-
-
-def _exists(path: str) -> Diagnostic:
-    """F905: a file exists, and `--force` is not given."""
-    return diagnostic("bindings_exist", path=path)
 
 
 def _not_one_mode() -> Diagnostic:

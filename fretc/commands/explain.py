@@ -27,7 +27,7 @@ from fretc.terminal.output import (
     print_diagnostics,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean, has_errors
 from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
@@ -227,11 +227,10 @@ def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Di
         return unknown_code
     if any(character.isspace() for character in what):
         return diagnostic("no_such_id", what=what)
-    near = suggestion(what, ids)
     listing = f"there are {', '.join(ids[:8])}{', ...' if len(ids) > 8 else ''}"
     return diagnostic(
         "no_such_id_in_folder",
         folder=folder,
         what=what,
-        help=f"did you mean `{near}`?" if near else listing if ids else "name a `.fret` file",
+        help=did_you_mean(what, ids, listing if ids else "name a `.fret` file"),
     )

@@ -344,7 +344,7 @@ def import_(
     files = {str(artifact.path): artifact.text for artifact in result.artifacts}
     clashes = [path for path in files if (Path(output) / path).exists()]
     if clashes and output != "-" and not force:
-        fail(_exists(str(Path(output) / clashes[0])))
+        fail(diagnostic("output_exists", path=str(Path(output) / clashes[0])))
     _deliver_all(files, output)
     counts = f"{result.requirements} requirements, {result.variables} variables"
     print_status(f"imported {counts}")
@@ -356,7 +356,3 @@ def _deliver_all(files: Mapping[str, str], output: str) -> None:
         write_outputs({Path("-"): "".join(files.values())})
     else:
         write_outputs({Path(output) / path: text for path, text in files.items()})
-
-
-def _exists(path: str) -> Diagnostic:
-    return diagnostic("output_exists", path=path)

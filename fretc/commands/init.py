@@ -43,9 +43,9 @@ def init(folder: str, log: str | None) -> None:
 
     requirements = Path(folder) / REQUIREMENTS_FOLDER
     if os.path.lexists(requirements) and not _is_empty_folder(requirements):
-        fail(_exists(str(requirements)))
+        fail(diagnostic("project_exists", path=str(requirements)))
     if log == "-":
-        fail(_standard_input())
+        fail(diagnostic("log_read_twice"))
     beginning = without_log() if log is None else from_log(log)
     if isinstance(beginning, Diagnostic):
         fail(beginning)
@@ -87,13 +87,3 @@ def _settings_to_fill_in() -> str:
 
 def _is_empty_folder(path: Path) -> bool:
     return path.is_dir() and not any(path.iterdir())
-
-
-def _exists(path: str) -> Diagnostic:
-    """F905: the requirements folder exists already."""
-    return diagnostic("project_exists", path=path)
-
-
-def _standard_input() -> Diagnostic:
-    """F907: `--from -`."""
-    return diagnostic("log_read_twice")

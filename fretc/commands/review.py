@@ -34,8 +34,8 @@ from fretish.diagnostics.diagnostic import (
     Code,
     Diagnostic,
     Severity,
+    did_you_mean,
     has_errors,
-    suggestion,
 )
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
@@ -275,8 +275,7 @@ def _chosen(
     known = [*(chain.requirement for chain in chains), *orphans]
     for id in ids:
         if id not in known:
-            near = suggestion(id, known)
-            fix = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
+            fix = did_you_mean(id, known, f"there are {', '.join(known)}")
             fail(diagnostic("unknown_requirement", id=id, help=fix))
     return [chain for chain in chains if not ids or chain.requirement in ids]
 

@@ -30,7 +30,7 @@ def summarize(paths: Sequence[str], query: str | None, output_format: str) -> No
     from fretc.audit.outputs.table import read
 
     if output_format not in ("text", "json"):
-        fail(_no_form(output_format))
+        fail(diagnostic("unknown_summary_format", output_format=output_format))
     table = read(paths)
     if isinstance(table, Diagnostic):
         fail(table)
@@ -46,10 +46,6 @@ def summarize(paths: Sequence[str], query: str | None, output_format: str) -> No
     raise SystemExit(
         EXIT_VIOLATION if summary.violated else EXIT_OK if summary.shown else EXIT_INCONCLUSIVE
     )
-
-
-def _no_form(output_format: str) -> Diagnostic:
-    return diagnostic("unknown_summary_format", output_format=output_format)
 
 
 def _json(value: object) -> str:

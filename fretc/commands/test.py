@@ -32,7 +32,7 @@ from fretc.terminal.output import (
     print_status,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean, has_errors
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
@@ -199,8 +199,7 @@ def test(
 
 def _check_shown(id: str, known: Sequence[str]) -> None:
     if id not in known:
-        near = suggestion(id, known)
-        hint = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
+        hint = did_you_mean(id, known, f"there are {', '.join(known)}")
         fail(diagnostic("unknown_requirement", id=id, help=hint))
 
 

@@ -86,10 +86,6 @@ def trends(
 
         click.echo(painted(lines(known, screen())), nl=False)
     if not known.has_pairs:
-        print_diagnostics([_nothing_to_compare()])
+        print_diagnostics([diagnostic("nothing_to_compare")])
     worse = EXIT_VIOLATION if known.is_worse else None
     raise SystemExit(worse or (EXIT_OK if known.is_comparable else EXIT_INCONCLUSIVE))
-
-
-def _nothing_to_compare() -> Diagnostic:
-    return diagnostic("nothing_to_compare")

@@ -37,8 +37,8 @@ from fretc.terminal.output import (
 )
 from fretish.diagnostics.diagnostic import (
     Diagnostic,
+    did_you_mean,
     has_errors,
-    suggestion,
 )
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
@@ -247,8 +247,7 @@ def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
     ids = tuple(dict.fromkeys(name.strip() for name in only.split(",")))
     for name in ids:
         if name not in claims:
-            near = suggestion(name, claims)
-            fix = f"did you mean `{near}`?" if near else f"there are {', '.join(claims)}"
+            fix = did_you_mean(name, claims, f"there are {', '.join(claims)}")
             fail(diagnostic("requirement_not_in_force", name=name, help=fix))
     return Scope(ids, _lock(requirements), part=True)
 

@@ -111,7 +111,7 @@ def watch(
     from fretc.watch.watch import Watch
 
     if evidence is not None and record is None:
-        fail(_needs_recording())
+        fail(diagnostic("evidence_needs_recording"))
     reaction = None if command is None else Reaction(notify.words(command, "--on-violation"))
     source = chosen(words, follow=follow)
     if isinstance(source, Diagnostic):
@@ -203,7 +203,3 @@ def _needs_lateness(plan: Plan) -> Diagnostic:
         source.span(start, start + len("[clock]")) if start >= 0 else None,
         time=plan.declarations.clock.time,
     )
-
-
-def _needs_recording() -> Diagnostic:
-    return diagnostic("evidence_needs_recording")

@@ -19,7 +19,7 @@ from fretish.bindings.amounts import duration, seconds
 from fretish.bindings.declarations import Signal, short_type
 from fretish.bindings.words import listed
 from fretish.clock import Clock, TimeSource
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, did_you_mean, suggestion
 from fretish.diagnostics.extras import install_help
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
@@ -29,16 +29,6 @@ _SECOND = 10**9
 _MOST = 20
 
 # The whole file
-
-
-def changed(place: Span) -> Diagnostic:
-    """F903: the bytes that were read and those that were hashed may differ."""
-    return diagnostic("changed_log", place)
-
-
-def empty(place: Span) -> Diagnostic:
-    """A log without bytes, or without messages."""
-    return diagnostic("empty_log", place)
 
 
 _PACKED = {
@@ -63,11 +53,6 @@ def not_a_log(start: bytes, place: Span) -> Diagnostic:
 def truncated(cut: int, place: Span) -> Diagnostic:
     """A log without an end, and without a whole message before byte `cut`."""
     return diagnostic("truncated_log", place, cut=cut)
-
-
-def nothing_whole(damage: Damage, place: Span) -> Diagnostic:
-    """A log with messages, none of which is whole."""
-    return diagnostic("no_whole_message", place, description=damage.description)
 
 
 def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
@@ -129,13 +114,12 @@ def no_message(topic: str, span: Span | None) -> Diagnostic:
 
 def no_topic(topic: str, topics: Collection[str], span: Span | None) -> Diagnostic:
     """F405, with the topics that are in the log."""
-    near = suggestion(topic, topics)
     listed = ", ".join(sorted(topics)[:8]) + (", ..." if len(topics) > 8 else "")
     return diagnostic(
         "no_topic",
         span,
         topic=topic,
-        help=f"did you mean `{near}`?" if near else f"it holds {listed}",
+        help=did_you_mean(topic, topics, f"it holds {listed}"),
     )
 
 
@@ -149,7 +133,6 @@ def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
     name = ".".join(signal.path.fields)
     numbers = [path.removesuffix("[:]") for path in paths]
     what = "word" if signal.values else "number"
-    near = suggestion(name, numbers)
     first = f"{', '.join(numbers[:8])}{', ...' if len(numbers) > 8 else ''}"
     return diagnostic(
         "never_stated",
@@ -157,7 +140,7 @@ def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
         topic=signal.path.topic,
         what=what,
         name=name,
-        help=f"did you mean `{near}`?" if near else f"they state {first or f'no {what} at all'}",
+        help=did_you_mean(name, numbers, f"they state {first or f'no {what} at all'}"),
     )
 
 
@@ -193,14 +176,13 @@ def _constant(word: str, known: Mapping[str, int]) -> str | None:
 
 def foreign_value(signal: Signal, foreign: UnmappedSamples, count: int, after: int) -> Diagnostic:
     """F423: some samples are not among the signal's values; the first comes at `after` seconds."""
-    near = suggestion(foreign.text, signal.values)
     is_number = re.fullmatch(r"-?[\d.]+", foreign.text) is not None
     if is_number and not signal.numbers:
         fix = "give the number of each value: `values = { drive = 0 }`"
     elif signal.numbers and not is_number:
         fix = 'the field is a text: `values = ["drive"]`'
     else:
-        fix = f"did you mean `{near}`?" if near else "add this one if it is valid"
+        fix = did_you_mean(foreign.text, signal.values, "add this one if it is valid")
     return diagnostic(
         "foreign_value",
         signal.span,

@@ -9,7 +9,6 @@ from fretc.audit.evidence.verdicts import WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.sections.matrix import unknown_ids
-from fretc.traceability.waivers import idle_waiver
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
@@ -56,7 +55,13 @@ def _suspicions(assessment: Assessment) -> tuple[int, str]:
 def idle_waivers(assessments: Sequence[Assessment]) -> tuple[Diagnostic, ...]:
     """F543 for each waiver of another verdict than the present one."""
     return tuple(
-        idle_waiver(assessment.waiver, assessment.verdict)
+        diagnostic(
+            "idle_waiver",
+            assessment.waiver.span,
+            requirement=assessment.waiver.requirement,
+            waived=assessment.waiver.verdict,
+            verdict=assessment.verdict,
+        )
         for assessment in assessments
         if assessment.waiver is not None and assessment.verdict != WAIVED
     )

@@ -293,7 +293,7 @@ def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
     schema = tables.data.get("schema")
     # A table `schema` is the review of a requirement of that name.
     if schema in _OLDER or isinstance(schema, dict):
-        yield _older(tables)
+        yield diagnostic("older_lock", tables.place("schema"))
         return
     if schema not in _SCHEMAS:
         yield _wrong(tables, f"the lock does not have the schema `{SCHEMA}`", "schema")
@@ -338,10 +338,6 @@ def _broken(tables: Tables, lock: Lock) -> Iterator[Diagnostic]:
         elif is_in_future(review.date):
             what = f"the review of {id} is of {review.date}, a date in the future"
             yield _wrong(tables, what, _TABLE, id, "date")
-
-
-def _older(tables: Tables) -> Diagnostic:
-    return diagnostic("older_lock", tables.place("schema"))
 
 
 def _wrong(tables: Tables, what: str, *path: str) -> Diagnostic:

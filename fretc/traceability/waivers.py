@@ -14,7 +14,7 @@ from compiler.files.dates import is_date
 from compiler.files.text_files import read as read_text
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretish.bindings.canonical import digest
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.toml_text import Tables, unknown_key
@@ -99,8 +99,7 @@ def _mistakes(
         yield _wrong(tables, f"`{id}` is not a waiver", f"write `[{id}]`, then its fields", id)
         return
     if ids is not None and id not in ids:
-        near = suggestion(id, ids)
-        fix = f"did you mean `{near}`?" if near else "name a requirement of the project"
+        fix = did_you_mean(id, ids, "name a requirement of the project")
         yield _wrong(tables, f"{id} is waived, but is not among the requirements", fix, id)
     for key in fields:
         if key not in _FIELDS:
@@ -127,20 +126,8 @@ def _no_verdict(tables: Tables, id: str, value: object) -> Diagnostic:
             'add `verdict = "',
         )
         return _wrong(tables, what, f'{fix}no data"`; it may be {listed}', id, "reason")
-    near = suggestion(str(value), VERDICTS)
-    fix = f"did you mean `{near}`?" if near else f"it may be {listed}"
+    fix = did_you_mean(str(value), VERDICTS, f"it may be {listed}")
     return _wrong(tables, f"`{value}` is not a verdict that can be waived", fix, id, "verdict")
-
-
-def idle_waiver(waiver: Waiver, verdict: str) -> Diagnostic:
-    """F543: the verdict of the requirement is not the waived one."""
-    return diagnostic(
-        "idle_waiver",
-        waiver.span,
-        requirement=waiver.requirement,
-        waived=waiver.verdict,
-        verdict=verdict,
-    )
 
 
 def _wrong(tables: Tables, what: str, fix: str, *path: str) -> Diagnostic:

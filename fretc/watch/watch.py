@@ -237,7 +237,7 @@ class Watch:
         verdicts = ended.verdicts
         if session.disordered:
             log = path or (self._log if not self.runs and not begins_anew else None)
-            judged = _no_log() if log is None else session.judge_again(log)
+            judged = diagnostic("run_not_recorded") if log is None else session.judge_again(log)
             yield DiagnosticEvent(_disordered(session.disordered, log, judged))
             verdicts = verdicts if isinstance(judged, Diagnostic) else judged
         yield from self._changes(ahead=False)
@@ -263,10 +263,6 @@ def _disordered(count: int, log: str | None, judged: object) -> Diagnostic:
     if not isinstance(judged, Diagnostic):
         return diagnostic("run_judged_again", messages=messages, log=log)
     return diagnostic("unknown_after_disorder", messages=messages, message=judged.message)
-
-
-def _no_log() -> Diagnostic:
-    return diagnostic("run_not_recorded")
 
 
 def _not_recorded(path: str, why: str) -> Diagnostic:

@@ -24,7 +24,6 @@ from fretish.units import (
     is_vague,
     number,
     times,
-    too_long,
     unit,
     unit_product,
     unit_quotient,
@@ -264,7 +263,7 @@ class _Writer:
         """A part of bare numbers only, with the target's unit attached where bindings need it."""
         for operand in e.parts(part):
             if isinstance(operand, e.Number) and not _is_number(operand.digits):
-                raise _ComparisonError(too_long(self._span(operand)))
+                raise _ComparisonError(diagnostic("number_too_long", self._span(operand)))
         zero = isinstance(part, e.Number) and number(part.digits) == 0
         if (target.mixed or target.vague) and not zero:
             raise _ComparisonError(_ambiguous_unit(self._span(part), target))

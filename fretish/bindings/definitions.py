@@ -104,7 +104,7 @@ def expanded(sentence: Sentence, needed: Definitions) -> Sentence | Diagnostic:
     for name, value in needed.items():
         sizes[name], depths[name] = _size(value, sizes), _depth(value, depths)
     if sum(_size(condition, sizes) for condition in conditions(sentence)) > MOST_PARTS:
-        return _too_large(sentence.span)
+        return diagnostic("sentence_too_large", sentence.span, most_parts=MOST_PARTS)
     if max(_depth(condition, depths) for condition in conditions(sentence)) > MOST:
         return too_deep(sentence)
     return s.with_expressions(sentence, partial(_substitute, values=needed))
@@ -145,7 +145,3 @@ def _with_span(tree: e.Expression, span: Span | None, values: Definitions) -> e.
             return replace(placed, span=span)
         case _:
             return placed
-
-
-def _too_large(place: Span | None) -> Diagnostic:
-    return diagnostic("sentence_too_large", place, most_parts=MOST_PARTS)

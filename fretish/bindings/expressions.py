@@ -17,7 +17,7 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedInput, VisitError
 from lark.visitors import Transformer_NonRecursive
 
 from fretish import expressions as e
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.caching import cache_by_identity
@@ -89,7 +89,7 @@ class _TreeBuilder(Transformer_NonRecursive[Token, Any]):
             text = str(token)
             before = len(text) - len(text.lstrip())
             place = self._span(token).part(before, len(text))
-            raise _ExpressionError(_bad_duration(text.strip(), place))
+            raise _ExpressionError(diagnostic("not_a_duration", place, text=text.strip()))
         return e.Persistence(arg, duration)
 
     def either(self, children: list[Any]) -> e.Expression:
@@ -371,18 +371,13 @@ def plain_percents(
             )
 
 
-def _bad_duration(text: str, span: Span) -> Diagnostic:
-    return diagnostic("not_a_duration", span, text=text)
-
-
 def _unknown_name(id: str, kinds: Mapping[str, Kind], span: Span) -> Diagnostic:
-    near = suggestion(id, kinds)
     declared = ", ".join(sorted(kinds)) or "nothing"
     return diagnostic(
         "undeclared_name",
         span,
         id=id,
-        help=f"did you mean `{near}`?" if near else f"declared here: {declared}",
+        help=did_you_mean(id, kinds, f"declared here: {declared}"),
     )
 
 

@@ -318,6 +318,12 @@ def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | No
     return by_folded[near[0]] if near else None
 
 
+def did_you_mean(word: str, known: Iterable[str], otherwise: str) -> str:
+    """A help text for a misspelt word: the most similar known word, or else another text."""
+    near = suggestion(word, known)
+    return f"did you mean `{near}`?" if near else otherwise
+
+
 def _claim(word: str) -> list[str]:
     """The numbers and operators in a word, in order."""
     parts: list[str] = re.findall(r"\d+|[<>=!&|]+", word)

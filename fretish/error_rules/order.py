@@ -30,17 +30,13 @@ def further_sentence(u: Unexpected) -> Diagnostic | None:
     if not u.expects("$END") or u.lexeme.kind not in _BEGINNINGS:
         return None
     if u.follows("_DOT") and u.lexeme.kind not in ("ID", "QUOTED"):
-        return _sentence_error(u)
+        return diagnostic("second_sentence", u.lexeme.span)
     ended = u.follows("_DOT") or "\n" in _space_before(u)
     named = u.lexeme.kind in ("ID", "QUOTED")
     direct = named and re.match(r'("[^"\n]+"|[\w.%]+)\s+shall\b', u.rest.text, re.IGNORECASE)
     plain = ended or not (named or u.lexeme.kind in TIMINGS)
     if not direct and not (plain and _SHALL.search(u.rest.text)):
         return None
-    return _sentence_error(u)
-
-
-def _sentence_error(u: Unexpected) -> Diagnostic:
     return diagnostic("second_sentence", u.lexeme.span)
 
 

@@ -157,10 +157,10 @@ def run_query(known: EvidenceTables, query: str) -> Answer | Diagnostic:
     with _asked(known) as ask:
         try:
             if not ask.extract_statements(query):
-                return _bad_query("it is empty")
+                return diagnostic("query_fails", message="it is empty")
             return _answer(ask, query)
         except duckdb.Error as error:
-            return _bad_query(str(error).strip().splitlines()[0])
+            return diagnostic("query_fails", message=str(error).strip().splitlines()[0])
 
 
 def _answer(ask: duckdb.DuckDBPyConnection, query: str) -> Answer:
@@ -206,7 +206,3 @@ def _torn(rows_of_all: Sequence[Mapping[str, Any]]) -> Iterator[Diagnostic]:
             verdicts=" and ".join(first["verdicts"]),
             others=others,
         )
-
-
-def _bad_query(message: str) -> Diagnostic:
-    return diagnostic("query_fails", message=message)

@@ -111,7 +111,7 @@ def _read(path: str) -> EvidenceTables | Diagnostic:
             rows = _read_parquet(path)
             return rows if isinstance(rows, Diagnostic) else _alone(rows)
         if not start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
-            return _neither(path)
+            return diagnostic("neither_table_nor_evidence", Source(path, "").span(), path=path)
     evidence = required_source(path)
     return evidence if isinstance(evidence, Diagnostic) else _known(evidence)
 
@@ -169,10 +169,6 @@ def _read_parquet(path: str) -> Table | Diagnostic:
 
 def _no_table(path: str, what: str) -> Diagnostic:
     return diagnostic("bad_table", Source(path, "").span(), path=path, what=what)
-
-
-def _neither(path: str) -> Diagnostic:
-    return diagnostic("neither_table_nor_evidence", Source(path, "").span(), path=path)
 
 
 def _schema() -> pyarrow.Schema:

@@ -46,7 +46,14 @@ def slow_topics(
         period = topic.median_period_ns
         if signal.max_age is not None:
             if period > signal.max_age:
-                yield _too_old(signal, period, signal.max_age)
+                yield diagnostic(
+                    "sample_too_old",
+                    signal.span,
+                    topic=signal.path.topic,
+                    period=_long(period, signal.max_age),
+                    signal=signal.name,
+                    max_age=exact_duration(signal.max_age / 1000000000.0),
+                )
         elif tick is not None and period > tick * _JITTER and _is_regular(topic):
             if topic.name in slow:
                 continue
@@ -113,17 +120,6 @@ def _tick(clock: Clock, recording: Recording) -> int | None:
         return clock.period
     topic = recording.topics.get(clock.topic or "")
     return topic.median_period_ns if topic is not None else None
-
-
-def _too_old(signal: Signal, period: int, max_age: int) -> Diagnostic:
-    return diagnostic(
-        "sample_too_old",
-        signal.span,
-        topic=signal.path.topic,
-        period=_long(period, max_age),
-        signal=signal.name,
-        max_age=exact_duration(max_age / 1e9),
-    )
 
 
 def _slow(signal: Signal, period: int, clock: Clock, tick: int) -> Diagnostic:

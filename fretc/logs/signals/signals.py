@@ -32,7 +32,7 @@ from fretish.bindings.declarations import (
     Reduce,
     Signal,
 )
-from fretish.diagnostics.diagnostic import Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 
 RANGE_MIN = "range_min"
@@ -181,11 +181,8 @@ def _attribute(value: object, name: str, parent: str) -> object:
     if name in names:
         return getattr(value, name)
     where = f"`{parent}`" if parent else "the message"
-    near = suggestion(name, names)
-    listed = f"it has {', '.join(names)}" if names else None
-    raise FieldError(
-        f"{where} has no field `{name}`", f"did you mean `{near}`?" if near else listed
-    )
+    fix = did_you_mean(name, names, f"it has {', '.join(names)}") if names else None
+    raise FieldError(f"{where} has no field `{name}`", fix)
 
 
 def fields(message: object) -> tuple[str, ...]:

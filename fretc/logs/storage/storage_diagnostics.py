@@ -22,18 +22,8 @@ def no_stdin(why: str) -> Diagnostic:
 def no_package(url: str, error: ImportError, place: Span) -> Diagnostic:
     """The package for URLs, or for the protocol of a URL, is not installed."""
     if error.name == "fsspec":
-        return no_fsspec(place)
+        return missing_extra("a URL cannot be read: that needs", ["fsspec"], "remote", place)
     return no_protocol_package(url.partition("://")[0], str(error), place)
-
-
-def unlisted(error: OSError, place: Span) -> Diagnostic:
-    """An object store cannot be listed."""
-    return diagnostic("folder_not_listed", place, reason=error.strerror or error)
-
-
-def no_fsspec(place: Span) -> Diagnostic:
-    """The extra for URLs is not installed."""
-    return missing_extra("a URL cannot be read: that needs", ["fsspec"], "remote", place)
 
 
 def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
@@ -60,19 +50,9 @@ def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
 # Bags and folders
 
 
-def no_rosbags(place: Span) -> Diagnostic:
-    """The extra for bags is not installed."""
-    return missing_extra("a bag cannot be read: that needs", ["rosbags"], "bags", place)
-
-
 def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
     """A bag cannot be read by rosbags."""
     return diagnostic("bag_to_reindex" if indexed else "bad_bag", place, why=why)
-
-
-def bag_of_no_file(place: Span) -> Diagnostic:
-    """A bag from standard input or a URL."""
-    return diagnostic("bag_of_no_file", place)
 
 
 def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
@@ -95,44 +75,9 @@ def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
     )
 
 
-def without_crc(place: Span) -> Diagnostic:
-    """The limits of an MCAP file without CRCs of its messages."""
-    return diagnostic("without_crc", place)
-
-
-def bad_metadata(place: Span) -> Diagnostic:
-    """The `metadata.yaml` of a run is invalid."""
-    return diagnostic("bad_run_metadata", place)
-
-
 def part_of_a_run(i: int, count: int, run: str, place: Span) -> Diagnostic:
     """One file of several is read as a run of its own; `run` is the name of the whole run."""
     return diagnostic("part_of_a_run", place, number=i + 1, count=count, run=run)
-
-
-def compressed_folder(mode: str, place: Span) -> Diagnostic:
-    """The files or messages of a run are compressed by rosbag2."""
-    return diagnostic("compressed_run", place, mode=mode)
-
-
-def no_such_file(place: Span) -> Diagnostic:
-    """There is nothing at the path."""
-    return diagnostic("no_such_log", place)
-
-
-def is_a_directory(place: Span) -> Diagnostic:
-    """The path names a directory."""
-    return diagnostic("log_is_directory", place)
-
-
-def grown(size: int, place: Span) -> Diagnostic:
-    """F431: the log grew while it was read; only its first bytes are used."""
-    return diagnostic("grown_log", place, size=f"{size:,}")
-
-
-def not_a_file(place: Span) -> Diagnostic:
-    """The path names a device, a pipe or the like."""
-    return diagnostic("not_a_regular_file", place)
 
 
 def unreadable(error: OSError, place: Span) -> Diagnostic:

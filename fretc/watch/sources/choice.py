@@ -27,20 +27,20 @@ def chosen(words: Sequence[str], *, follow: bool) -> Source | Diagnostic:
         return diagnostic("follow_needs_log", name=name)
     if middleware is not None:
         return middleware(more)
-    return _one_name_too_many(more[0]) if more else Log(name, follow=follow)
+    return diagnostic("second_source", name=more[0]) if more else Log(name, follow=follow)
 
 
 def _ros1(more: Sequence[str]) -> Source | Diagnostic:
-    return _one_name_too_many(more[0]) if more else Ros1()
+    return diagnostic("second_source", name=more[0]) if more else Ros1()
 
 
 def _dds(more: Sequence[str]) -> Source | Diagnostic:
-    return _one_name_too_many(more[0]) if more else Dds()
+    return diagnostic("second_source", name=more[0]) if more else Dds()
 
 
 def _foxglove(more: Sequence[str]) -> Source | Diagnostic:
     if len(more) > 1:
-        return _one_name_too_many(more[1])
+        return diagnostic("second_source", name=more[1])
     url = address("".join(more))
     return url if isinstance(url, Diagnostic) else Foxglove(url)
 
@@ -51,7 +51,3 @@ _MIDDLEWARE: Mapping[str, Callable[[Sequence[str]], Source | Diagnostic]] = {
     "foxglove": _foxglove,
 }
 """For each name of a middleware, the parser of the words after it."""
-
-
-def _one_name_too_many(name: str) -> Diagnostic:
-    return diagnostic("second_source", name=name)

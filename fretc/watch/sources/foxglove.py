@@ -32,7 +32,7 @@ from fretc.watch.sources.foxglove_protocol import (
     subscribe,
     unsubscribe,
 )
-from fretc.watch.sources.middleware import Middleware, simulated_time
+from fretc.watch.sources.middleware import Middleware
 from fretc.watch.sources.source import Channel
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import install_help
@@ -149,7 +149,7 @@ class Foxglove(Middleware):
             from websockets.sync.client import connect
             from websockets.typing import Subprotocol
         except ImportError as error:
-            self._lost(_no_websockets(str(error)))
+            self._lost(diagnostic("no_websockets", why=str(error), help=install_help("live")))
             return False
         logging.getLogger("websockets").addHandler(logging.NullHandler())
         connection = None
@@ -246,7 +246,7 @@ class Foxglove(Middleware):
                 if is_grave and not connection.is_unknown_yet(text[:_EXCERPT]):
                     self._repeat(text)
             case ServerTime():
-                self._warn_once(simulated_time())
+                self._warn_once(diagnostic("simulated_time"))
             case Greeting():
                 pass  # a new session advertises its channels again
             case _:
@@ -255,12 +255,12 @@ class Foxglove(Middleware):
     def _subscribe(self, connection: _Connection, advertised: Advertised) -> None:
         channel = advertised.channel
         if isinstance(channel, str):
-            self._warn_once(_unreadable_channel(advertised.topic, channel))
+            self._warn_once(diagnostic("unreadable_channel", topic=advertised.topic, why=channel))
             return
         is_new = channel not in self._channels
         most = max(len(self._channels) * is_new, len(connection.subscriptions))
         if most >= MOST_CHANNELS:
-            self._warn_once(_too_many_channels(MOST_CHANNELS))
+            self._warn_once(diagnostic("too_many_channels", most=MOST_CHANNELS))
             return
         channel = self._channels.setdefault(channel, channel)
         before = connection.of_channel.get(advertised.id)
@@ -270,7 +270,7 @@ class Foxglove(Middleware):
             del connection.subscriptions[before]
             connection.socket.send(unsubscribe(before))
         if channel.topic in connection.subscribed:
-            self._warn_once(_several_channels(channel.topic))
+            self._warn_once(diagnostic("several_channels", topic=channel.topic))
         connection.count += 1
         connection.of_channel[advertised.id] = connection.count
         connection.subscriptions[connection.count] = channel
@@ -284,15 +284,15 @@ class Foxglove(Middleware):
         topic = connection.subscriptions.pop(subscription).topic
         if topic not in connection.subscribed:
             self._topics.discard(topic)
-            self._warn_once(_withdrawn(topic))
+            self._warn_once(diagnostic("channel_withdrawn", topic=topic))
 
     def _repeat(self, text: str) -> None:
         """Report a status message of the server."""
-        problem = _status(text[:_EXCERPT])
+        problem = diagnostic("server_status", text=text[:_EXCERPT])
         if problem not in self._warnings:
             self._statuses += 1
             few = self._statuses <= MOST_STATUSES
-            self._warn_once(problem if few else _more_statuses(MOST_STATUSES))
+            self._warn_once(problem if few else diagnostic("more_statuses", most=MOST_STATUSES))
 
     def _warn_once(self, problem: Diagnostic) -> None:
         if problem not in self._warnings:
@@ -334,10 +334,6 @@ def _reason(error: Exception) -> tuple[str, str | None]:
             return str(error)[:_EXCERPT], None
 
 
-def _no_websockets(why: str) -> Diagnostic:
-    return diagnostic("no_websockets", why=why, help=install_help("live"))
-
-
 def _server_not_reached(name: str, why: str, fix: str | None) -> Diagnostic:
     return diagnostic(
         "server_not_reached",
@@ -345,30 +341,3 @@ def _server_not_reached(name: str, why: str, fix: str | None) -> Diagnostic:
         why=why,
         help=fix or "start the server on the robot (`ros2 run foxglove_bridge foxglove_bridge`)",
     )
-
-
-def _several_channels(topic: str) -> Diagnostic:
-    return diagnostic("several_channels", topic=topic)
-
-
-def _too_many_channels(most: int) -> Diagnostic:
-    """The server keeps creating channels."""
-    return diagnostic("too_many_channels", most=most)
-
-
-def _unreadable_channel(topic: str, why: str) -> Diagnostic:
-    return diagnostic("unreadable_channel", topic=topic, why=why)
-
-
-def _withdrawn(topic: str) -> Diagnostic:
-    """A warning, because the topic has no messages any more."""
-    return diagnostic("channel_withdrawn", topic=topic)
-
-
-def _status(text: str) -> Diagnostic:
-    return diagnostic("server_status", text=text)
-
-
-def _more_statuses(most: int) -> Diagnostic:
-    """Further status messages are not shown."""
-    return diagnostic("more_statuses", most=most)

@@ -64,9 +64,9 @@ class Log:
                 yield Opened(self.name)
                 yield from self._read(stream, place)
         except FileNotFoundError:
-            yield Problem(storage_diagnostics.no_such_file(place))
+            yield Problem(diagnostic("no_such_log", place))
         except IsADirectoryError:
-            yield Problem(storage_diagnostics.is_a_directory(place))
+            yield Problem(diagnostic("log_is_directory", place))
         except OSError as error:
             yield Problem(storage_diagnostics.unreadable(error, place))
 

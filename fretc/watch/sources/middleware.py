@@ -113,8 +113,3 @@ def several_publishers(topic: str, count: int, names: Collection[str] = ()) -> D
     """F956, with the names of the nodes, if the middleware reports them."""
     who = f": {', '.join(names)}" if names else ""
     return diagnostic("several_publishers", count=count, topic=topic, who=who)
-
-
-def simulated_time() -> Diagnostic:
-    """F957: durations are wrong if the simulation does not run in real time."""
-    return diagnostic("simulated_time")

@@ -15,7 +15,7 @@ from threading import Lock
 from typing import IO, Any
 
 from fretc.watch.sources import ros1_bridge
-from fretc.watch.sources.middleware import Middleware, several_publishers, simulated_time
+from fretc.watch.sources.middleware import Middleware, several_publishers
 from fretc.watch.sources.source import Channel
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -83,7 +83,7 @@ class Ros1(Middleware):
                     node.kill()
         except OSError:
             pass  # its pipe is broken: the node has ended
-        self._lost(_node_ended())
+        self._lost(diagnostic("node_ended"))
         return opened
 
     def _start(self) -> subprocess.Popen[bytes] | None:
@@ -117,10 +117,10 @@ class Ros1(Middleware):
             case "simulated time":
                 self._warn_of_simulated_time()
             case "no diagnostics":
-                self._warn(_no_diagnostics(self._python, head["why"]))
+                self._warn(diagnostic("no_diagnostics_type", python=self._python, why=head["why"]))
                 self._is_mute = True
             case "no master":
-                self._lost(_no_master(head["uri"]))
+                self._lost(diagnostic("no_master", uri=head["uri"]))
             case "no rospy":
                 self._lost(_no_rospy(self._python, head["why"]))
             case kind:
@@ -135,7 +135,7 @@ class Ros1(Middleware):
     def _warn_of_simulated_time(self) -> None:
         if not self._simulated:
             self._simulated = True
-            self._warn(simulated_time())
+            self._warn(diagnostic("simulated_time"))
 
 
 def _write(stream: IO[bytes], content: object) -> None:
@@ -157,15 +157,3 @@ def _frames(stream: IO[bytes]) -> Iterator[tuple[dict[str, Any], bytes]]:
 
 def _no_rospy(python: str, why: str) -> Diagnostic:
     return diagnostic("no_rospy", python=python, why=why)
-
-
-def _no_diagnostics(python: str, why: str) -> Diagnostic:
-    return diagnostic("no_diagnostics_type", python=python, why=why)
-
-
-def _no_master(uri: str) -> Diagnostic:
-    return diagnostic("no_master", uri=uri)
-
-
-def _node_ended() -> Diagnostic:
-    return diagnostic("node_ended")
