@@ -6,7 +6,7 @@ import re
 
 from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean
+from fretish.diagnostics.diagnostic import Diagnostic, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 
@@ -21,11 +21,6 @@ class TrapError(Exception):
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
         self.diagnostic = diagnostic
-
-
-def misread(message: str, span: Span, fix: str) -> TrapError:
-    """The exception for F610."""
-    return TrapError(Diagnostic(Code.BAD_AGENT, message, span, fix))
 
 
 def beyond(feature: str, span: Span) -> TrapError:
