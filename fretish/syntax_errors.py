@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable
 from fractions import Fraction
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, suggestion
 from fretish.diagnostics.fixes import Fix, removal
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
@@ -99,14 +99,9 @@ def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
     if span.text.isdigit():
         return diagnostic("duration_too_long", span)
     fix = _whole(span.text, unit, whole)
-    words = "use a smaller unit, so that the number is whole: 500 milliseconds, not 0.5 seconds"
-    return diagnostic(
-        "duration_not_whole",
-        span,
-        span=span.text,
-        help=fix.help if fix is not None else words,
-        fix=fix,
-    )
+    if fix is not None:
+        return diagnostic("duration_of_smaller_unit", span, text=span.text, fix=fix)
+    return diagnostic("duration_not_whole", span, text=span.text)
 
 
 def _whole(digits: str, unit: str, whole: Span) -> Fix | None:
@@ -125,7 +120,7 @@ def _whole(digits: str, unit: str, whole: Span) -> Fix | None:
 
 def bad_probability(span: Span) -> Diagnostic:
     """F110 for a probability out of range."""
-    return diagnostic("impossible_probability", span, span=span.text)
+    return diagnostic("impossible_probability", span, text=span.text)
 
 
 # Rules, the most specific first ----------------------------------------------------------------
@@ -134,17 +129,12 @@ def bad_probability(span: Span) -> Diagnostic:
 def _unit(u: Unexpected) -> Diagnostic | None:
     if not u.expects(*_UNITS):
         return None
-    words = "write ticks, microseconds, milliseconds, seconds, minutes or hours: `within 3 seconds`"
     if u.lexeme.kind != "ID":
-        return diagnostic("duration_without_unit", u.lexeme.span, help=words)
+        return diagnostic("duration_without_unit", u.lexeme.span)
     fix = _unit_fix(u.lexeme.span)
-    return diagnostic(
-        "duration_of_unknown_unit",
-        u.lexeme.span,
-        lexeme=u.lexeme.word,
-        help=fix.help if fix is not None else words,
-        fix=fix,
-    )
+    if fix is not None:
+        return diagnostic("misspelt_unit", u.lexeme.span, word=u.lexeme.word, fix=fix)
+    return diagnostic("duration_of_unknown_unit", u.lexeme.span, word=u.lexeme.word)
 
 
 def _measured(u: Unexpected) -> Diagnostic | None:
@@ -201,12 +191,9 @@ def _globally(u: Unexpected) -> Diagnostic | None:
     if not u.expects("SHALL"):
         return None
     comma = u.lexeme.kind == "_COMMA"
-    return not_fretish(
-        f"FRETish has no word for the scope `{u.previous.word}`",
-        u.previous.span,
-        removal(u.previous.span.to(u.lexeme.span) if comma else u.previous.span, is_safe=True),
-        "remove it: without a scope a requirement applies to the whole run",
-    )
+    removed = u.previous.span.to(u.lexeme.span) if comma else u.previous.span
+    fix = removal(removed, is_safe=True)
+    return diagnostic("word_for_no_scope", u.previous.span, word=u.previous.word, fix=fix)
 
 
 def _mode(u: Unexpected) -> Diagnostic | None:
@@ -215,11 +202,7 @@ def _mode(u: Unexpected) -> Diagnostic | None:
         return None
     if not u.expects("MODE") or u.expects("NUMBER"):
         return None
-    return not_fretish(
-        "a mode must be one name",
-        u.lexeme.span,
-        "for an expression, write `while p & q` instead of `in`",
-    )
+    return diagnostic("mode_of_several_names", u.lexeme.span)
 
 
 def _shall(u: Unexpected) -> Diagnostic | None:
@@ -227,7 +210,7 @@ def _shall(u: Unexpected) -> Diagnostic | None:
     if not u.expects("SHALL") or word not in (*_SHALL, *_WEAKER):
         return None
     fix = Fix(u.lexeme.span, "shall", is_safe=word in _SHALL)
-    return diagnostic("misspelt_shall", u.lexeme.span, lexeme=u.lexeme.word, help=fix.help, fix=fix)
+    return diagnostic("misspelt_shall", u.lexeme.span, word=u.lexeme.word, fix=fix)
 
 
 def _missing_shall(u: Unexpected) -> Diagnostic | None:
@@ -237,7 +220,7 @@ def _missing_shall(u: Unexpected) -> Diagnostic | None:
     if u.lexeme.kind not in ("SATISFY", *TIMINGS) or re.search(r"\bshall\b", u.rest.text, re.I):
         return None
     fix = Fix(u.lexeme.span.part(0, 0), "shall ", is_safe=u.lexeme.kind == "SATISFY")
-    return diagnostic("missing_shall", u.lexeme.span, lexeme=u.lexeme.word, fix=fix)
+    return diagnostic("missing_shall", u.lexeme.span, word=u.lexeme.word, fix=fix)
 
 
 def _component(u: Unexpected) -> Diagnostic | None:
@@ -248,7 +231,7 @@ def _component(u: Unexpected) -> Diagnostic | None:
         return None
     both = u.previous.span.to(u.lexeme.span)
     fix = Fix(both, f"{u.previous.word}_{u.lexeme.word}")
-    return not_fretish("a component must be one name", both, fix)
+    return diagnostic("component_of_several_names", both, fix=fix)
 
 
 def _misspelt(u: Unexpected) -> Diagnostic | None:
@@ -260,9 +243,7 @@ def _misspelt(u: Unexpected) -> Diagnostic | None:
         near = suggestion(suspect.word, KEYWORDS, cutoff=0.72)
         if suspect.kind == "ID" and near is not None:
             fix = Fix(suspect.span, near)
-            return diagnostic(
-                "misspelt_word", suspect.span, suspect=suspect.word, help=fix.help, fix=fix
-            )
+            return diagnostic("misspelt_word", suspect.span, word=suspect.word, fix=fix)
     return None
 
 
@@ -300,15 +281,10 @@ def _key_word_as_name(u: Unexpected) -> Diagnostic | None:
 def _does_not_fit(u: Unexpected) -> Diagnostic:
     own = frozenset({"MODE"}) if u.expects("ID") else frozenset()  # there `mode` is a name, too
     expected = [words for words, kinds in _GROUPS if u.expects(*kinds - own)]
-    message = (
-        "the sentence ends too early" if u.lexeme.at_end else f"`{u.lexeme.word}` does not fit here"
-    )
-    return Diagnostic(
-        Code.NOT_FRETISH,
-        message,
-        u.lexeme.span,
-        help=f"expected {_alternatives(expected)}" if expected else None,
-    )
+    fix = f"expected {_alternatives(expected)}" if expected else None
+    if u.lexeme.at_end:
+        return diagnostic("sentence_ends", u.lexeme.span, help=fix)
+    return diagnostic("misplaced_word", u.lexeme.span, word=u.lexeme.word, help=fix)
 
 
 def _alternatives(words: list[str]) -> str:

@@ -10,7 +10,6 @@ from compiler.files.text_files import read
 from fretish.diagnostics.diagnostic import (
     Code,
     Diagnostic,
-    Severity,
     did_you_mean,
     has_errors,
 )
@@ -96,24 +95,22 @@ def unknown_parents(
         remainder = (
             f" ({more} more {'parent is' if more == 1 else 'parents are'}, too)" if more else ""
         )
-        yield _unknown(
-            requirement,
-            f"there is no `hazards.toml`: the parent `{parent}` of {requirement.id} is declared "
-            f"nowhere{remainder}",
-            "write `hazards.toml` beside the requirements, or name it with `--hazards`",
+        yield diagnostic(
+            "no_hazards_file",
+            requirement.place("parents"),
+            parent=parent,
+            requirement=requirement.id,
+            remainder=remainder,
         )
         return
     for requirement, parent in unknown:
-        yield _unknown(
-            requirement,
-            f"{requirement.id} names the parent `{parent}`, which is not declared",
-            did_you_mean(parent, declared, "declare it in hazards.toml"),
+        yield diagnostic(
+            "unknown_parent",
+            requirement.place("parents"),
+            requirement=requirement.id,
+            parent=parent,
+            help=did_you_mean(parent, declared, "declare it in hazards.toml"),
         )
-
-
-def _unknown(requirement: RequirementEntry, message: str, fix: str) -> Diagnostic:
-    place = requirement.place("parents")
-    return Diagnostic(Code.UNKNOWN_PARENT, message, place, fix, Severity.WARNING)
 
 
 def cycles(requirements: Sequence[RequirementEntry]) -> Iterator[Diagnostic]:

@@ -28,7 +28,7 @@ from fretc.audit.many_logs import (
     results_of_killed_process,
 )
 from fretc.audit.plan import Plan, packed, unpacked
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import unless_installed
 from fretish.diagnostics.messages import diagnostic
 
@@ -294,9 +294,4 @@ def _unreachable(address: str, why: str) -> Diagnostic:
 
 
 def _other_edition(what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.OTHER_EDITION,
-        what,
-        help="install the same fretc, Python and libraries on all machines: verdicts of "
-        "different versions are not mixed",
-    )
+    return diagnostic("other_edition", what=what)

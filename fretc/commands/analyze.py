@@ -31,7 +31,7 @@ from fretc.terminal.output import (
     print_status,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean, has_errors
+from fretish.diagnostics.diagnostic import did_you_mean, has_errors
 from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
@@ -199,8 +199,7 @@ def _emit(
     machines = [each for each in found if isinstance(each, Mealy)]
     for each in found:
         if isinstance(each, OpenQuestion):
-            message = f"no controller can be written: {each.why}"
-            fail(Diagnostic(Code.TOO_LARGE, message, help=_smaller(output_format)))
+            fail(diagnostic("no_controller", why=each.why, help=_smaller(output_format)))
     if output_format is ControllerFormat.PYTHON:
         sentences = {requirement.id: printed(requirement.written) for requirement in requirements}
         promises = {assumption.id: assumption.sentence for assumption in analysis.assumptions}

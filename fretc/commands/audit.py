@@ -44,7 +44,8 @@ from fretc.terminal.output import (
     protect,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
@@ -374,17 +375,12 @@ def _samples(target: Target, *, rehash: bool) -> SampleCache | None:
     from fretc.audit.store.recordings import SUFFIX, SampleCache
 
     if str(target.path) == "-":
-        fail(_no_place_for_columns("evidence is printed", "name a file with `-o`"))
+        fail(diagnostic("columns_beside_printed"))
     key = user_key()
     if isinstance(key, Diagnostic):
         print_diagnostics([key])
         return None
     return SampleCache(target.path.with_name(f"{target.path.name}{SUFFIX}"), key, rehash)
-
-
-def _no_place_for_columns(why: str, fix: str) -> Diagnostic:
-    message = f"`--keep-columns` stores samples beside the evidence on this machine, but {why}"
-    return Diagnostic(Code.BAD_USAGE, message, help=fix)
 
 
 def _engine(
@@ -401,8 +397,7 @@ def _engine(
             return local_executor(jobs, kept, limits=limits)
         return local_executor(jobs, kept, earlier.results, limits)
     if kept is not None:
-        why = f"`--engine {name}` reads the logs elsewhere"
-        fail(_no_place_for_columns(why, "remove one of the two options"))
+        fail(diagnostic("columns_elsewhere", engine=name))
     from fretc.audit import dask_executor
 
     engine = dask_executor.engine(name, jobs)

@@ -139,14 +139,7 @@ def _check_weaken(kinds: Sequence[str]) -> None:
     """F907 if no requested target has a weaker form."""
     weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
     if not any(TARGETS[kind].weak for kind in kinds):
-        message = f"`--weaken` applies only to {' and '.join(weak)}"
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                message,
-                help="remove `--weaken`: other kinds of files never weaken a requirement",
-            )
-        )
+        fail(diagnostic("nothing_to_weaken", targets=" and ".join(weak)))
 
 
 def _deliver_formulas(project: Project, output: str) -> None:

@@ -31,7 +31,6 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretish.diagnostics.diagnostic import (
-    Code,
     Diagnostic,
     Severity,
     did_you_mean,
@@ -118,8 +117,7 @@ def lock(
     if not is_date(day):
         fail(diagnostic("not_a_date", day=day))
     if is_in_future(day):
-        message = f"`{day}` is in the future: a review cannot have happened yet"
-        fail(Diagnostic(Code.BAD_USAGE, message, help="leave out `--date` to use today"))
+        fail(diagnostic("review_in_future", day=day))
     project, chains, refuted = _chains(requirements, evidence, verification, analysis, accept=True)
     refused = _refused(project)
     where = path or _beside(requirements)

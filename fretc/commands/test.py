@@ -32,7 +32,7 @@ from fretc.terminal.output import (
     print_status,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, did_you_mean, has_errors
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
@@ -156,12 +156,10 @@ def test(
     sources = [entry.wording.source.name for entry in project.requirements]
     protected = [*sources, *companions(sources), *filter(None, [bindings])]
     if languages and emitted != "pytest":
-        why = "`--language` needs `--emit pytest`"
-        fail(Diagnostic(Code.BAD_USAGE, why, help="add `--emit pytest`, or remove `--language`"))
+        fail(diagnostic("language_without_pytest"))
     if against is not None:
         if emitted is not None or show is not None:
-            clash = "`--against` tests a program; it cannot be combined with `--emit` or `--show`"
-            fail(Diagnostic(Code.BAD_USAGE, clash, help="remove one of them"))
+            fail(diagnostic("against_with_emit"))
         place = output or "build/tests/conformance.json"
         test_against.against(
             against, formalized, assumed, seconds, line_time, output_format, place, protected
@@ -221,8 +219,7 @@ def _of(path: str, requirements: Sequence[FormalizedRequirement]) -> Suite:
         others = ", ".join(found.others)
         print_status(visible(f"left out, because the requirements have changed: {others}"))
     if not found.suite.tests:
-        why = f"`{path}` has no test of a current requirement"
-        fail(Diagnostic(Code.NOTHING_TO_DO, why, help=again))
+        fail(diagnostic("no_current_test", path=path, help=again))
     return found.suite
 
 

@@ -19,6 +19,7 @@ from fretc.terminal.output import (
 from fretc.terminal.progress import progress
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
@@ -36,8 +37,7 @@ def check(emitted: str, emit_to: str) -> None:
     from fretc.commands.simulate import require_simulation
 
     if emit_to == "-":
-        message = f"`--emit {emitted}` writes several files, which cannot be printed with `-`"
-        fail(Diagnostic(Code.BAD_USAGE, message, help="name a folder"))
+        fail(diagnostic("several_files_printed", emitted=emitted))
     require_simulation()
 
 

@@ -97,11 +97,8 @@ def few(diagnostics: list[Diagnostic], place: Span) -> list[Diagnostic]:
     """At most a page of diagnostics; the last one counts the others."""
     if len(diagnostics) <= _MOST:
         return diagnostics
-    more = f"the log is damaged in {len(diagnostics) - _MOST} more places"
-    return [
-        *diagnostics[:_MOST],
-        Diagnostic(Code.DAMAGED_CHUNK, more, place, diagnostics[0].help, Severity.WARNING),
-    ]
+    more, help_ = len(diagnostics) - _MOST, diagnostics[0].help
+    return [*diagnostics[:_MOST], diagnostic("more_damage", place, more=more, help=help_)]
 
 
 # One topic
@@ -149,22 +146,19 @@ def no_constant(signal: Signal, known: Mapping[str, int]) -> Diagnostic:
     name = ".".join(signal.path.fields)
     missing = [word for word in signal.values if word not in known]
     if not missing:
-        message = f"two values of `{signal.name}` have the same number in `{name}`"
-        fix = "remove one of them"
-    else:
-        near = _constant(missing[0], known)
-        listed = f"it names {', '.join(list(known)[:8])}{', ...' if len(known) > 8 else ''}"
-        message = (
-            f"`{name}` of `{signal.path.topic}` is a number, and the definition of its messages "
-            f"has no constant `{missing[0]}`"
-        )
-        fix = (
-            f"did you mean `{near}`?"
-            if near
-            else f"{listed if known else 'it names none'}; or write the number of each value: "
-            f"`values = {{ {as_key(missing[0])} = 0 }}`"
-        )
-    return Diagnostic(Code.UNKNOWN_WORD, message, signal.span, fix)
+        return diagnostic("equal_constants", signal.span, signal=signal.name, name=name)
+    near = _constant(missing[0], known)
+    listed = f"it names {', '.join(list(known)[:8])}{', ...' if len(known) > 8 else ''}"
+    fix = (
+        f"did you mean `{near}`?"
+        if near
+        else f"{listed if known else 'it names none'}; or write the number of each value: "
+        f"`values = {{ {as_key(missing[0])} = 0 }}`"
+    )
+    topic = signal.path.topic
+    return diagnostic(
+        "no_constant", signal.span, name=name, topic=topic, constant=missing[0], help=fix
+    )
 
 
 def _constant(word: str, known: Mapping[str, int]) -> str | None:
@@ -259,16 +253,10 @@ def out_of_order(signal: Signal, late: int, count: int) -> Diagnostic:
 
 def unstamped(signal: Signal, shift: int) -> Diagnostic:
     """A topic without stamps; the stamps of others differ by `shift` nanoseconds from log times."""
-    message = f"the messages of `{signal.path.topic}` have no header.stamp: their log_time is used"
     if shift < _SECOND:
-        return Diagnostic(Code.NO_FIELD, message, signal.span, severity=Severity.NOTE)
-    return Diagnostic(
-        Code.NO_FIELD,
-        f"{message}, which is {duration(shift / _SECOND)} away from the stamps of the other topics",
-        signal.span,
-        'two clocks are mixed: use `time = "log_time"` under `[clock]`',
-        Severity.WARNING,
-    )
+        return diagnostic("unstamped", signal.span, topic=signal.path.topic)
+    away = duration(shift / _SECOND)
+    return diagnostic("unstamped_beside_others", signal.span, topic=signal.path.topic, away=away)
 
 
 def zero_stamps(

@@ -265,17 +265,11 @@ def _power(
     exact = Fraction(exponent.digits) if isinstance(exponent, e.Number) else Fraction(0)
     times = int(exact)
     if times != exact or not 1 <= times <= e.MOST_EXPONENT:
-        message, part = f"an exponent must be a whole number from 1 to {e.MOST_EXPONENT}", exponent
-    elif not is_base(base):
-        message, part = "a power of this expression may become too large", base
-    else:
-        return tuple(times * power for power in dimension)
-    return Diagnostic(
-        Code.BAD_EXPRESSION,
-        message,
-        getattr(part, "span", None) or place,
-        help="write, for example, `x^2` or `10^3`; for a power of a power write a product",
-    )
+        span = getattr(exponent, "span", None) or place
+        return diagnostic("bad_exponent", span, most=e.MOST_EXPONENT)
+    if not is_base(base):
+        return diagnostic("power_too_large", getattr(base, "span", None) or place)
+    return tuple(times * power for power in dimension)
 
 
 def is_base(base: e.Expression) -> bool:
@@ -399,10 +393,6 @@ def _unexpected(error: UnexpectedInput, text: Span) -> Diagnostic:
         length = len(token) if token.type != "$END" else 0
         at = len(text.text) if token.type == "$END" else token.start_pos
     span = text.part(at or 0, (at or 0) + length)
-    message = f"`{span.text}` does not fit here" if span.text else "the expression ends too early"
-    return Diagnostic(
-        Code.BAD_EXPRESSION,
-        message,
-        span,
-        help="write, for example, `min_range < 5 cm` or `abs(v) < 0.01 m/s and ready for 200 ms`",
-    )
+    if not span.text:
+        return diagnostic("expression_ends", span)
+    return diagnostic("misplaced_in_expression", span, text=span.text)

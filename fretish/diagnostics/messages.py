@@ -64,7 +64,7 @@ def diagnostic(
     Args:
         name: the name of the message in `fretish/diagnostics/codes/*.toml`.
         span: the place of the mistake, if it has one.
-        help: the help text, if it depends on more than the values.
+        help: the help text, if it depends on more than the values; without any, that of the fix.
         paste: lines that the help says to paste into a file.
         subject: the topic or hazard of a warning, by which it can be accepted.
         fix: the fix as a value, if it replaces a span by a text.
@@ -74,11 +74,13 @@ def diagnostic(
         KeyError: there is no such message, or a placeholder has no value.
     """
     message = messages()[name]
+    if help is None:
+        help = message.help.format_map(values) or (fix.help if fix else None)  # noqa: A001
     return Diagnostic(
         message.code,
         message.message.format_map(values),
         span,
-        message.help.format_map(values) or None if help is None else help,
+        help,
         message.severity,
         paste,
         subject,

@@ -6,7 +6,7 @@ import errno
 from collections.abc import Collection
 
 from fretish.bindings.declarations import short_type
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import missing_extra
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
@@ -36,14 +36,10 @@ def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
         return missing_extra(
             f"`{protocol}://` addresses cannot be read: that needs", ["aiohttp"], "remote", place
         )
+    if package is None:
+        return diagnostic("unknown_protocol", place, protocol=protocol, reason=reason)
     return diagnostic(
-        "no_protocol_package",
-        place,
-        protocol=protocol,
-        reason=reason,
-        help=f"install its package: pip install {package}"
-        if package
-        else "fsspec's documentation lists the package for each protocol",
+        "no_protocol_package", place, protocol=protocol, reason=reason, package=package
     )
 
 
@@ -57,22 +53,11 @@ def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
 
 def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
     """The limits of a bag: no check sums, and types whose definitions it lacks."""
-    message = (
-        "a bag has no check sums, and one time for each message: a changed byte within a "
-        "message is not detected, and publish_time is log_time"
-    )
     if not assumed:
-        return Diagnostic(Code.BAG_FORMAT, message, place, severity=Severity.NOTE)
+        return diagnostic("limits_of_bag", place)
     names = ", ".join(sorted({short_type(name) for name in assumed})[:8])
     more = ", ..." if len(set(assumed)) > 8 else ""
-    return Diagnostic(
-        Code.BAG_FORMAT,
-        f"{message}; it defines no types: the definitions of ROS 2, the same in all releases, "
-        f"are used for {names}{more}",
-        place,
-        "if these are packages of your own with the same names, record MCAP instead",
-        Severity.WARNING,
-    )
+    return diagnostic("limits_of_bag_without_types", place, names=f"{names}{more}")
 
 
 def part_of_a_run(i: int, count: int, run: str, place: Span) -> Diagnostic:

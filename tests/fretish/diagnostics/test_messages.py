@@ -11,6 +11,7 @@ import pytest
 
 from fretish.diagnostics import messages as module
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.fixes import Fix
 from fretish.diagnostics.messages import Message, code_tables, diagnostic, messages
 from fretish.diagnostics.source import Source
 
@@ -115,3 +116,17 @@ def test_values_are_inserted_as_they_are(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_a_message_without_help_has_none(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "messages", lambda: {"empty": Message(Code.EMPTY_LOG, "empty")})
     assert diagnostic("empty") == Diagnostic(Code.EMPTY_LOG, "empty")
+
+
+def test_without_a_help_text_the_help_is_that_of_the_fix(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = {
+        "empty": Message(Code.EMPTY_LOG, "empty"),
+        "helped": Message(Code.EMPTY_LOG, "empty", "fill it"),
+    }
+    monkeypatch.setattr(module, "messages", lambda: rows)
+    fix = Fix(Source("r.fret", "shal").span(), "shall", is_safe=True)
+    assert diagnostic("empty", fix=fix) == Diagnostic(
+        Code.EMPTY_LOG, "empty", help="write `shall`", fix=fix
+    )
+    assert diagnostic("helped", fix=fix).help == "fill it"
+    assert diagnostic("empty", fix=fix, help="no").help == "no"
