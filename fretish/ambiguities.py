@@ -27,11 +27,11 @@ def ambiguity_warnings(sentence: s.Sentence) -> Iterator[Diagnostic]:
         return
     m = expression(scope.mode)
     if s.deadline(sentence.timing) and scope.kind in _ENDS:
-        yield diagnostic("short_scope", sentence.timing_span, m=m)
+        yield diagnostic("short_scope", sentence.timing_span, mode=m)
     if scope.kind in (s.ScopeKind.AFTER, s.ScopeKind.ONLY_AFTER):
-        yield diagnostic("first_stretch_only", scope.span, m=m)
+        yield diagnostic("first_stretch_only", scope.span, mode=m)
     if scope.kind is s.ScopeKind.BEFORE:
-        yield diagnostic("before_nothing", scope.span, m=m)
+        yield diagnostic("before_nothing", scope.span, mode=m)
 
 
 def _edge(condition: s.Condition | None) -> Iterator[Diagnostic]:
@@ -40,4 +40,4 @@ def _edge(condition: s.Condition | None) -> Iterator[Diagnostic]:
     if condition.kind is not s.ConditionKind.TRIGGER:
         return
     p = expression(condition.expression)
-    yield diagnostic("edge_trigger", condition.span, condition=condition.word, p=p)
+    yield diagnostic("edge_trigger", condition.span, word=condition.word, expression=p)

@@ -238,7 +238,7 @@ class _Reader:
         self.level += 1
         if self.level > _MOST_LEVELS:
             raise AjpfDivergenceError(
-                diagnostic("too_many_parentheses", self.next.span, most_levels=_MOST_LEVELS)
+                diagnostic("too_many_parentheses", self.next.span, most=_MOST_LEVELS)
             )
 
     def _no_formula(self, token: _Token) -> AjpfDivergenceError:

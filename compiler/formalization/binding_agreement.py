@@ -170,7 +170,7 @@ def _drifted(
         place if inside else requirement.entry.wording,
         name=name,
         requirement=requirement.id,
-        span=bound.span.text,
+        text=bound.span.text,
         where=where,
     )
 

@@ -123,7 +123,7 @@ def too_long(
         "property_too_long",
         requirement.entry.wording,
         requirement=requirement.id,
-        most_operators=_MOST_OPERATORS,
+        most=_MOST_OPERATORS,
         target=target,
     )
 

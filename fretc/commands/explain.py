@@ -101,7 +101,7 @@ def _too_long(requirement: FormalizedRequirement) -> Diagnostic:
         "picture_too_large",
         requirement.entry.wording,
         requirement=requirement.id,
-        most_ticks=_MOST_TICKS,
+        most=_MOST_TICKS,
     )
 
 

@@ -37,7 +37,7 @@ def check(emitted: str, emit_to: str) -> None:
     from fretc.commands.simulate import require_simulation
 
     if emit_to == "-":
-        fail(diagnostic("several_files_printed", emitted=emitted))
+        fail(diagnostic("several_files_printed", form=emitted))
     require_simulation()
 
 

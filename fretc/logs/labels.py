@@ -89,7 +89,7 @@ def given(texts: Sequence[str]) -> Labels | Diagnostic:
             return diagnostic("label_given_twice", name=name)
         labels_given[name] = value
     if len(labels_given) > MOST_LABELS:
-        return diagnostic("too_many_labels", count=len(labels_given), most_labels=MOST_LABELS)
+        return diagnostic("too_many_labels", count=len(labels_given), most=MOST_LABELS)
     return labels_given
 
 

@@ -255,7 +255,7 @@ def _set_back(jump: Jump) -> Diagnostic:
 
 
 def _two_clocks(jump: Jump) -> Diagnostic:
-    return diagnostic("clock_set_back_too_often", topic=jump.topic, most_runs=MOST_RUNS)
+    return diagnostic("clock_set_back_too_often", topic=jump.topic, most=MOST_RUNS)
 
 
 def _disordered(count: int, log: str | None, judged: object) -> Diagnostic:

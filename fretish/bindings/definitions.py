@@ -104,7 +104,7 @@ def expanded(sentence: Sentence, needed: Definitions) -> Sentence | Diagnostic:
     for name, value in needed.items():
         sizes[name], depths[name] = _size(value, sizes), _depth(value, depths)
     if sum(_size(condition, sizes) for condition in conditions(sentence)) > MOST_PARTS:
-        return diagnostic("sentence_too_large", sentence.span, most_parts=MOST_PARTS)
+        return diagnostic("sentence_too_large", sentence.span, most=MOST_PARTS)
     if max(_depth(condition, depths) for condition in conditions(sentence)) > MOST:
         return too_deep(sentence)
     return s.with_expressions(sentence, partial(_substitute, values=needed))

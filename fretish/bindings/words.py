@@ -202,7 +202,7 @@ class _Resolver:
         if signal.unit_name:
             raise _WordError(
                 diagnostic(
-                    "quantity_as_truth", span or self.place, name=name, unit_name=signal.unit_name
+                    "quantity_as_truth", span or self.place, name=name, unit=signal.unit_name
                 )
             )
 
@@ -218,7 +218,7 @@ class _Resolver:
         self, op: str, left: e.Expression, right: e.Expression, span: Span | None
     ) -> _WordError:
         place = span or getattr(left, "span", None) or getattr(right, "span", None)
-        return _WordError(diagnostic("words_without_order", place or self.place, op=op))
+        return _WordError(diagnostic("words_without_order", place or self.place, operator=op))
 
     def _kind_error(self, signal: Signal, what: str, span: Span | None) -> _WordError:
         return _WordError(

@@ -41,6 +41,6 @@ def _too_large(requirement: FormalizedRequirement) -> Diagnostic | None:
             "automaton_too_large",
             requirement.entry.wording,
             requirement=requirement.id,
-            most_states=MOST_STATES,
+            most=MOST_STATES,
         )
     return None

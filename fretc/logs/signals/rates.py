@@ -94,7 +94,7 @@ def late_messages(
         "late_messages",
         place,
         count=count,
-        of=of,
+        total=of,
         topic=topic,
         lateness=in_words(lateness),
         most=in_words(lateness + over),

@@ -78,7 +78,7 @@ class ClockTable(Fields):
             diagnostic(
                 "bad_lateness",
                 self.tables.value("clock", "lateness"),
-                most_lateness=in_words(_MOST_LATENESS),
+                most=in_words(_MOST_LATENESS),
             )
         )
         return None

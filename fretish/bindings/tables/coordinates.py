@@ -56,7 +56,7 @@ class MapTable(Fields):
                     "map_coordinate_not_length",
                     self.tables.value("map", key),
                     key=key,
-                    own=own.name,
+                    signal=own.name,
                     unit=own.unit_name or "plain numbers",
                 )
             )

@@ -36,7 +36,7 @@ class ValuesField(Fields):
                     "too_many_values",
                     self.tables.value(*at),
                     count=len(values),
-                    most_words=_MOST_WORDS,
+                    most=_MOST_WORDS,
                 )
             )
         for place, word in enumerate(values[:_MOST_WORDS]):
