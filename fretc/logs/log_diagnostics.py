@@ -1,4 +1,4 @@
-"""Diagnostics about a log: one function for each message (F400 to F418).
+"""Diagnostics about a log whose values are computed from signals, clocks and damage.
 
 `place` is the log itself; a diagnostic about one signal points at its line of the bindings. Times
 are nanoseconds.

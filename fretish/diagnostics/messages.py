@@ -5,7 +5,6 @@ The name of a message is unique among all codes, and gives its code, severity, t
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -32,6 +31,8 @@ class Message:
 @cache
 def code_tables(kind: str) -> dict[str, dict[str, Any]]:
     """Number of each code that begins with this digit → its table: cause, fix, messages..."""
+    import tomllib  # Imported here to make the start faster.
+
     (file,) = _FILES.glob(f"{kind}_*.toml")
     return tomllib.loads(file.read_text(encoding="utf-8"))
 

@@ -1,4 +1,4 @@
-"""Diagnostics about bags, folders, URLs and standard input: one function for each message."""
+"""Diagnostics about bags, folders, URLs and standard input."""
 
 from __future__ import annotations
 
