@@ -24,8 +24,9 @@ from xml.etree import ElementTree
 from compiler.files.checked_json import SchemaError, plain
 from compiler.files.settings import Settings
 from compiler.files.text_files import open_regular
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import missing_extra
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import with_budget
 from fretish.reading.yaml_text import loaded
@@ -94,10 +95,11 @@ def _size(path: Path) -> int:
 
 
 def _unreadable(settings: Settings, name: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_PARENTS,
-        f"the parents in `{name}` cannot be read: {why}",
+    return diagnostic(
+        "unreadable_parents",
         _place(settings, name),
+        name=name,
+        why=why,
         help="to allow it, name its folder: `fretc --parents FOLDER COMMAND ...`"
         if why == _OUTSIDE
         else _EXPORTS.get(Path(name).suffix.lower(), _EXPORTS[""]),

@@ -13,7 +13,8 @@ from compiler.files.attribution import NOBODY, Attribution
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from fretish.bindings.declarations import Declarations
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry
 from fretish.reading.recursion import with_recursion_limit
 
@@ -120,10 +121,12 @@ def not_expressible(
     target: str, requirement: FormalizedRequirement, what: str, fix: str
 ) -> Diagnostic:
     """F601: the target's language cannot express a part of the requirement."""
-    return Diagnostic(
-        Code.NOT_EXPRESSIBLE,
-        f"{target} cannot express {what} of {requirement.id}",
+    return diagnostic(
+        "not_expressible",
         requirement.entry.wording,
+        target=target,
+        what=what,
+        requirement=requirement.id,
         help=fix,
     )
 
@@ -138,11 +141,12 @@ def too_long(
     """F670 if the formula is too long without `<->` and `xor`."""
     if _size(formula) <= _MOST_OPERATORS:
         return None
-    return Diagnostic(
-        Code.TOO_LARGE,
-        f"the property of {requirement.id} has more than {_MOST_OPERATORS} operators",
+    return diagnostic(
+        "property_too_long",
         requirement.entry.wording,
-        help=f"{target}'s formulas have no `<->` and no `xor`: bind parts as propositions",
+        requirement=requirement.id,
+        most=_MOST_OPERATORS,
+        target=target,
     )
 
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from fretc.audit.evidence.schema import Result
 from fretc.audit.measurements.tallies import NOTHING, Tally
 from fretish.bindings.declarations import Declarations
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +60,12 @@ def never_changed(
         if explained and not total.true + total.false:
             continue
         runs = "the log" if of_runs.runs == 1 else f"any of {of_runs.runs} logs"
-        yield Diagnostic(
-            Code.NEVER_CHANGED,
-            f"`{name}` never changed in {runs}: {_always(total)}",
+        yield diagnostic(
+            "never_changed",
             declarations.propositions[name].span,
-            help="check its path, its unit and its bound, or audit a run in which it should change",
-            severity=Severity.NOTE,
+            name=name,
+            runs=runs,
+            values=_always(total),
         )
 
 

@@ -27,7 +27,8 @@ from fretc.audit.one_log import MonitoredRequirement
 from fretc.audit.refusals import RefusedRequirement, refusals
 from fretc.logs.signals.integrity import Integrity
 from fretish.bindings.declarations import Declarations
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry
 from fretish.reading.recursion import with_recursion_limit
 from monitors.loading import load
@@ -93,7 +94,7 @@ def planned(
     ]
     errors = tuple(dict.fromkeys(reason for _, why in unauditable for reason in why))
     if declarations is None or not requirements:
-        return errors or (Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to audit"),)
+        return errors or (diagnostic("nothing_to_audit"),)
     texts = {requirement.entry: monitors.text(requirement) for requirement in requirements}
     basis_of = bases(project, monitors={place: sha256(text) for place, text in texts.items()})
     claims = tuple(

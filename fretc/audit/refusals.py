@@ -10,7 +10,8 @@ from compiler.project.project import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.evidence.basis import Basis
 from fretish.bindings.declarations import Declarations
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry
 
 
@@ -57,18 +58,10 @@ def _unusable(project: Project, first: FormalizedRequirement) -> Diagnostic | No
     """The reason why the bindings cannot be used for any requirement; None: they can."""
     declarations = project.declarations
     if declarations is None:
-        return Diagnostic(
-            Code.UNBOUND,
-            "no bindings map the propositions to messages",
-            first.entry.wording,
-            help="write `bindings.toml` beside the requirements, or name it with `--bindings`",
-        )
+        return diagnostic("no_bindings", first.entry.wording)
     if not declarations.clock.declared:
-        return Diagnostic(
-            Code.NO_CLOCK,
-            f"`{declarations.source.name}` declares no clock",
-            declarations.source.span(0, 0),
-            help='add `[clock]` with `tick = "100 ms"`',
+        return diagnostic(
+            "no_clock_declared", declarations.source.span(0, 0), source=declarations.source.name
         )
     return None
 

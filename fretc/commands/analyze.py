@@ -32,7 +32,7 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretc.terminal.progress import print_activity
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -177,8 +177,7 @@ def _emit(
     machines = [each for each in found if isinstance(each, Mealy)]
     for each in found:
         if isinstance(each, OpenQuestion):
-            message = f"no controller can be written: {each.why}"
-            fail(Diagnostic(Code.TOO_LARGE, message, help=_smaller(output_format)))
+            fail(diagnostic("no_controller", why=each.why, help=_smaller(output_format)))
     if output_format is ControllerFormat.PYTHON:
         sentences = {requirement.id: printed(requirement.written) for requirement in requirements}
         promises = {assumption.id: assumption.sentence for assumption in analysis.assumptions}

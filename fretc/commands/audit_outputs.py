@@ -16,7 +16,8 @@ from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import SCHEMA, Result
 from fretc.terminal.output import EVIDENCE, STORE, fail, not_written, print_status
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 _BATCH = 256
 """Number of results that are read at once."""
@@ -78,11 +79,11 @@ def check(target: Target, parquet: str | None) -> None:
             fail(not_written(str(path), "it is not a regular file"))
         return
     if not path.is_dir():
-        fail(_no_folder(path))
+        fail(diagnostic("store_is_file", path=path))
     from fretc.audit.store.writer import is_store
 
     if any(path.iterdir()) and not is_store(path):
-        fail(_no_store(path))
+        fail(diagnostic("store_folder_in_use", path=path))
 
 
 def _check_table(parquet: str, evidence: Path) -> None:
@@ -178,19 +179,3 @@ def _json(outcome: Outcome) -> str:
     if not outcome.estimates:
         return f"{to_json(found)}\n"
     return f"{to_json({'results': found, 'probabilities': plain(tuple(outcome.estimates))})}\n"
-
-
-def _no_folder(path: Path) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` cannot be written: an evidence store is a folder, and this is a file",
-        help=f"for evidence in one file, use a name that ends with `.json`: `-o {path}.json`",
-    )
-
-
-def _no_store(path: Path) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` cannot be written: the folder contains other files",
-        help="name a new folder, an empty one, or a store that `fretc audit` has written",
-    )

@@ -49,7 +49,8 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretc.terminal.screen import screen
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 from fretish.units import nanoseconds
 
@@ -202,26 +203,14 @@ def _limits(log: str | None, whole: str | None, logs: Sequence[str], engine: str
     limits = Limits(_seconds("--log-time", log), _seconds("--time", whole))
     if limits != ENDLESS and (STDIN in logs or engine != "local"):
         what = "standard input" if STDIN in logs else f"`--engine {engine}`"
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"{what} does not support time limits",
-                help="remove `--time` and `--log-time`, or audit files on this machine",
-            )
-        )
+        fail(diagnostic("no_time_limits", what=what))
     return limits
 
 
 def _seconds(option: str, text: str | None) -> float | None:
     length = None if text is None else nanoseconds(text)
     if text is not None and length is None:
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"`{option} {text}` is not a duration",
-                help=f"write `{option} 90s`, `{option} 30min` or `{option} 6h`",
-            )
-        )
+        fail(diagnostic("bad_duration_option", option=option, text=text))
     return None if length is None else length / 1e9
 
 
@@ -230,16 +219,11 @@ def _samples(target: outputs.Target, *, rehash: bool) -> SampleCache | None:
     from fretc.audit.store.recordings import SUFFIX, SampleCache
 
     if target.is_printed:
-        fail(_no_place_for_columns("evidence is printed", "name a file with `-o`"))
+        fail(diagnostic("columns_beside_printed"))
     key = _key()
     if key is None:
         return None
     return SampleCache(target.path.with_name(f"{target.path.name}{SUFFIX}"), key, rehash)
-
-
-def _no_place_for_columns(why: str, fix: str) -> Diagnostic:
-    message = f"`--keep-columns` stores samples beside the evidence on this machine, but {why}"
-    return Diagnostic(Code.BAD_USAGE, message, help=fix)
 
 
 def _key() -> bytes | None:
@@ -288,8 +272,7 @@ def _engine(
             return local_executor(jobs, kept, limits=limits)
         return local_executor(jobs, kept, earlier.results, limits)
     if kept is not None:
-        why = f"`--engine {name}` reads the logs elsewhere"
-        fail(_no_place_for_columns(why, "remove one of the two options"))
+        fail(diagnostic("columns_elsewhere", engine=name))
     from fretc.audit import dask_executor
 
     return or_fail(dask_executor.engine(name, jobs))

@@ -33,7 +33,8 @@ from fretc.terminal.output import (
     print_project_diagnostics,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from compiler.project.project import Project
@@ -83,14 +84,14 @@ def bind(
         project = _project(requirements, bindings, replaced=output)
         print_diagnostics(
             [
-                diagnostic
-                for diagnostic in project.diagnostics
-                if diagnostic.is_error and not _is_in(diagnostic, output)
+                finding
+                for finding in project.diagnostics
+                if finding.is_error and not _is_in(finding, output)
             ]
         )
         _draft(source, project, output, force=force)
     elif not paths:
-        fail(Diagnostic(Code.NOTHING_TO_DO, "no log was given to check", help="name the logs"))
+        fail(diagnostic("no_log_to_check"))
     else:
         project = _project(requirements, bindings)
         _check(paths, project, requirements, output_format, jobs)
@@ -144,7 +145,7 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
-        fail(_exists(output))
+        fail(diagnostic("bindings_exist", path=output))
     contents = or_fail(look(log, words=True))
     print_diagnostics(contents.recording.findings)
     text = draft(
@@ -154,31 +155,14 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
     raise SystemExit(EXIT_OK)
 
 
-def _exists(path: str) -> Diagnostic:
-    """F905: a file exists, and `--force` is not given."""
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` already exists",
-        help="name another file with `-o`, or overwrite it with `--force`",
-    )
-
-
 def _not_one_mode() -> Diagnostic:
     """F907: neither `--from` nor `--check`, or both."""
-    return Diagnostic(
-        Code.BAD_USAGE,
-        "either draft bindings with `--from LOG`, or check them with `--check LOG...`",
-        help="see `fretc bind --help`",
-    )
+    return diagnostic("from_or_check")
 
 
 def _second_log(path: str) -> Diagnostic:
     """F907: a LOG in addition to that of `--from`."""
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"bindings are drafted from one log, but a second one is given: `{path}` is one more",
-        help="name one log after `--from`",
-    )
+    return diagnostic("second_log", path=path)
 
 
 # Checks --------------------------------------------------------------------------------------
@@ -227,8 +211,4 @@ def _unbound(project: Project) -> list[Diagnostic]:
 
 
 def _no_bindings() -> Diagnostic:
-    return Diagnostic(
-        Code.NOTHING_TO_DO,
-        "there are no bindings to check",
-        help="name them with `--bindings`, or draft some: `fretc bind --from LOG`",
-    )
+    return diagnostic("no_bindings_to_check")

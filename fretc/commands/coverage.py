@@ -34,7 +34,8 @@ from fretc.terminal.output import (
     print_diagnostics_below,
     print_status,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
@@ -87,13 +88,7 @@ def coverage(
     from fretc.coverage.directions import is_complete
 
     if paths and is_given("evidence"):
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                "logs and `--evidence` are both given, but the runs come from only one of them",
-                help="remove one of the two options",
-            )
-        )
+        fail(diagnostic("logs_and_evidence"))
     if paths:
         source, titles, is_bad = _audited(paths, requirements, bindings, jobs)
     else:

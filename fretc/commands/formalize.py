@@ -27,6 +27,7 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
@@ -90,11 +91,7 @@ def compile_(
     if one_file and not any(TARGETS[kind].joins for kind in kinds):
         *most, last = (f"`--emit {name}`" for name, each in TARGETS.items() if each.joins)
         joining = f"{', '.join(most)} and {last}"
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE, f"`--one-file` applies only to {joining}", help="add one of them"
-            )
-        )
+        fail(diagnostic("one_file_not_joining", joining=joining))
     if weaken:
         _check_weaken(kinds)
     paths = or_fail(expanded_paths(files))
@@ -141,14 +138,7 @@ def _check_weaken(kinds: Sequence[str]) -> None:
     """F907 if no requested target has a weaker form."""
     weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
     if not any(TARGETS[kind].weak for kind in kinds):
-        message = f"`--weaken` applies only to {' and '.join(weak)}"
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                message,
-                help="remove `--weaken`: other kinds of files never weaken a requirement",
-            )
-        )
+        fail(diagnostic("nothing_to_weaken", targets=" and ".join(weak)))
 
 
 def _deliver_formulas(project: Project, output: str) -> None:
@@ -245,8 +235,8 @@ def _emitted(
 
     requirements = project.formalized
     answers = [(requirement, target.refuse(requirement)) for requirement in requirements]
-    wrong = [diagnostic for _, diagnostic in answers if diagnostic is not None]
-    whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
+    wrong = [refusal for _, refusal in answers if refusal is not None]
+    whole = [refusal] if (refusal := target.refuse_project(options)) else []
     one_file = target.together or (options.one_file and target.joins)
     if one_file:
         whole += name_collisions(requirements)
@@ -258,18 +248,14 @@ def _emitted(
         whole.append(_not_of_all(target, project.refused))
     if whole or (wrong and (one_file or not target.per_rule)):
         return None, [*wrong, *whole]
-    expressible = [requirement for requirement, diagnostic in answers if diagnostic is None]
+    expressible = [requirement for requirement, refusal in answers if refusal is None]
     return (expressible or None) if wrong else expressible, wrong
 
 
 def _not_of_all(target: Target, refused: Sequence[Refused]) -> Diagnostic:
     """F618: a file that combines all requirements would lack some."""
     ids = ", ".join(refusal.requirement.id for refusal in refused)
-    return Diagnostic(
-        Code.NOT_OF_ALL,
-        f"`--emit {target.name}` combines all requirements, but some have errors: {ids}",
-        help="fix them, or name only the files of the other requirements",
-    )
+    return diagnostic("not_of_all", target=target.name, ids=ids)
 
 
 @click.command()
@@ -343,7 +329,7 @@ def import_(
     files = {str(artifact.path): artifact.text for artifact in result.artifacts}
     clashes = [path for path in files if (Path(output) / path).exists()]
     if clashes and output != "-" and not force:
-        fail(_exists(str(Path(output) / clashes[0])))
+        fail(diagnostic("output_exists", path=str(Path(output) / clashes[0])))
     _deliver_all(files, output)
     counts = f"{result.requirements} requirements, {result.variables} variables"
     print_status(f"imported {counts}")
@@ -355,11 +341,3 @@ def _deliver_all(files: Mapping[str, str], output: str) -> None:
         write_outputs({Path("-"): "".join(files.values())})
     else:
         write_outputs({Path(output) / path: text for path, text in files.items()})
-
-
-def _exists(path: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` already exists",
-        help="name another folder with `-o`, or overwrite it with `--force`",
-    )

@@ -19,7 +19,8 @@ from fretc.terminal.output import (
     print_project_diagnostics,
     print_status,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, did_you_mean, has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
@@ -113,7 +114,7 @@ def active_requirements(
     if component is not None:
         requirements = _of_component(requirements, component)
     if not requirements:
-        fail(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to analyze"))
+        fail(diagnostic("nothing_to_analyze"))
     return requirements
 
 
@@ -125,12 +126,11 @@ def _of_component(
     )
     if not chosen:
         known = tuple(dict.fromkeys(requirement.sentence.component for requirement in requirements))
-        near = suggestion(component, known)
         fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"no requirement is about the component `{component}`",
-                help=f"did you mean `{near}`?" if near else f"there are {', '.join(known)}",
+            diagnostic(
+                "unknown_component",
+                component=component,
+                help=did_you_mean(component, known, f"there are {', '.join(known)}"),
             )
         )
     return chosen

@@ -34,12 +34,12 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretish.diagnostics.diagnostic import (
-    Code,
     Diagnostic,
     Severity,
+    did_you_mean,
     has_errors,
-    suggestion,
 )
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 from fretish.reading.natural_order import natural
 
@@ -114,13 +114,12 @@ def lock(
 
     for name, words in (("--reviewer", reviewer), ("--role", role), ("--comment", comment)):
         if not words.strip():
-            fail(Diagnostic(Code.BAD_USAGE, f"`{name}` says nothing", help="fill it in"))
+            fail(diagnostic("empty_option", name=name))
     day = day or today()
     if not is_date(day):
-        fail(Diagnostic(Code.BAD_USAGE, f"`{day}` is no date", help="write it as `2026-11-22`"))
+        fail(diagnostic("not_a_date", day=day))
     if is_in_future(day):
-        message = f"`{day}` is in the future: a review cannot have happened yet"
-        fail(Diagnostic(Code.BAD_USAGE, message, help="leave out `--date` to use today"))
+        fail(diagnostic("review_in_future", day=day))
     project, chains, refuted = _chains(requirements, evidence, verification, analysis, accept=True)
     refused = _refused(project)
     where = path or _beside(requirements)
@@ -270,9 +269,8 @@ def _chosen(
     known = [*(chain.requirement for chain in chains), *orphans]
     for id in ids:
         if id not in known:
-            near = suggestion(id, known)
-            fix = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
-            fail(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=fix))
+            fix = did_you_mean(id, known, f"there are {', '.join(known)}")
+            fail(diagnostic("unknown_requirement", id=id, help=fix))
     return [chain for chain in chains if not ids or chain.requirement in ids]
 
 

@@ -23,6 +23,7 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.source import Source
 from fretish.reading.natural_order import natural
@@ -121,11 +122,11 @@ def _passphrase(path: str) -> str:
         return known
     if not sys.stdin.isatty():
         fail(
-            Diagnostic(
-                Code.BAD_KEY,
-                f"the key in `{path}` has a passphrase, but there is no terminal to ask for it",
+            diagnostic(
+                "passphrase_without_terminal",
                 Source(path, "").span(),
-                help=f"set the environment variable {PASSPHRASE} to the passphrase",
+                path=path,
+                passphrase=PASSPHRASE,
             )
         )
     asked: str = click.prompt(f"passphrase of {visible(path)}", hide_input=True, err=True)
@@ -214,11 +215,8 @@ def _schema(source: Source) -> object:
         return whole.field("schema").value
     except SchemaError as error:
         fail(
-            Diagnostic(
-                Code.BAD_EVIDENCE,
-                f"`{source.name}` is nothing that fretc signs: {error}",
-                Source(source.name, "").span(),
-                help="name a file that `fretc audit`, `verify`, `analyze` or `report` has written",
+            diagnostic(
+                "not_signable", Source(source.name, "").span(), source=source.name, error=error
             )
         )
 
@@ -309,14 +307,7 @@ def _same_bytes(path: str, sha256: str) -> None:
     from compiler.files.text_files import file_sha256
 
     if file_sha256(path) != sha256:
-        fail(
-            Diagnostic(
-                Code.UNREADABLE,
-                f"`{path}` is not UTF-8 text without a byte order mark, or it is being written",
-                Source(path, "").span(),
-                help="wait until it is complete, or create it again",
-            )
-        )
+        fail(diagnostic("not_same_bytes", Source(path, "").span(), path=path))
 
 
 def _report(path: str) -> Signable:
@@ -457,9 +448,4 @@ def require(evidence: EvidenceSource, by: str, others: Mapping[str, str | None])
 
 def _unsigned(path: str, by: str, why: str) -> Diagnostic:
     """F558."""
-    return Diagnostic(
-        Code.NOT_SIGNED,
-        f"`{path}` is not signed as `{by}` asks for: {why}",
-        Source(path, "").span(),
-        help=f"sign its present content: `fretc sign {path} --key KEY`",
-    )
+    return diagnostic("not_signed", Source(path, "").span(), path=path, by=by, why=why)

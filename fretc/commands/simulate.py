@@ -30,8 +30,9 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretc.terminal.progress import progress
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import missing_extra
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 
 if TYPE_CHECKING:
@@ -181,12 +182,7 @@ def _place(name: str, why: str) -> Span | None:
 
 def _bad_scenario(name: str, why: str) -> Diagnostic:
     """F914."""
-    return Diagnostic(
-        Code.BAD_SCENARIO,
-        f"the scenario `{name}` cannot be run: {why}",
-        _place(name, why),
-        help="`fretc simulate --list` lists the scenarios that come with fretc",
-    )
+    return diagnostic("bad_scenario", _place(name, why), name=name, why=why)
 
 
 def _file(out: str) -> Path:

@@ -21,14 +21,14 @@ from fretc.terminal.output import (
     print_diagnostics,
 )
 from fretish.bindings.amounts import count_of
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 
 def print_summary(paths: Sequence[str], query: str | None, output_format: str) -> NoReturn:
     """Print a summary of evidence, or the result of a query; exit with the status of the audit."""
     if output_format not in ("text", "json"):
-        fail(_no_form(output_format))
+        fail(diagnostic("unknown_summary_format", output_format=output_format))
     table = or_fail(read(paths))
     if query is not None:
         answer = or_fail(run_query(table, query))
@@ -39,14 +39,6 @@ def print_summary(paths: Sequence[str], query: str | None, output_format: str) -
     click.echo(_json(summary.as_record) if output_format == "json" else _text(summary), nl=False)
     raise SystemExit(
         EXIT_VIOLATION if summary.violated else EXIT_OK if summary.shown else EXIT_INCONCLUSIVE
-    )
-
-
-def _no_form(output_format: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"a summary has no output format `{output_format}`",
-        help="use `text` or `json`",
     )
 
 

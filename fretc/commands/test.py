@@ -24,7 +24,8 @@ from fretc.terminal.options import (
     requirements_option,
 )
 from fretc.terminal.output import fail
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import did_you_mean
+from fretish.diagnostics.messages import diagnostic
 
 
 @click.command(
@@ -119,12 +120,10 @@ def test(
         _check_shown(show, [requirement.id for requirement in checked.requirements])
     protected = input_files(checked.project, bindings, saved)
     if options["languages"] and emitted != "pytest":
-        why = "`--language` needs `--emit pytest`"
-        fail(Diagnostic(Code.BAD_USAGE, why, help="add `--emit pytest`, or remove `--language`"))
+        fail(diagnostic("language_without_pytest"))
     if against is not None:
         if emitted is not None or show is not None:
-            clash = "`--against` tests a program; it cannot be combined with `--emit` or `--show`"
-            fail(Diagnostic(Code.BAD_USAGE, clash, help="remove one of them"))
+            fail(diagnostic("against_with_emit"))
         from fretc.commands.test_against import ProgramOptions, test_program
 
         program = grouped(ProgramOptions, {**options, "command": against, "line_time": line_time})
@@ -136,6 +135,5 @@ def test(
 
 def _check_shown(id: str, known: list[str]) -> None:
     if id not in known:
-        near = suggestion(id, known)
-        hint = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
-        fail(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=hint))
+        hint = did_you_mean(id, known, f"there are {', '.join(known)}")
+        fail(diagnostic("unknown_requirement", id=id, help=hint))

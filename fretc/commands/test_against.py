@@ -34,7 +34,8 @@ from fretc.testing.conformance.conformance_run import ConformanceRun
 from fretc.testing.conformance.findings import Conformance
 from fretc.testing.conformance.program import Program, ProgramError
 from fretc.testing.conformance.text_output import lines
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,11 +80,7 @@ def test_program(checked: RequirementSet, options: ProgramOptions, protected: It
         except KeyboardInterrupt:
             stopped = True
     except (UnsupportedError, OutOfTimeError) as error:
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE, f"no program can be tested against these requirements: {error}"
-            )
-        )
+        fail(diagnostic("no_conformance_test", error=error))
     found = campaign.findings(words)
     evidence = f"{to_json(plain(found))}\n"
     if output == "-" or options.output_format == "json":
@@ -110,12 +107,7 @@ def _words(command: str) -> list[str]:
 
 def _no_command(command: str, why: str) -> Diagnostic:
     """F907."""
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`--against {shlex.quote(command)}` names no program: {why}",
-        help='put the program and its arguments into one pair of quotes: `--against "python3 '
-        'program.py"`',
-    )
+    return diagnostic("no_program_named", command=shlex.quote(command), why=why)
 
 
 def _status(found: Conformance, wrong: Diagnostic | None) -> int:

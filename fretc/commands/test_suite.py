@@ -36,7 +36,7 @@ from fretc.testing.requirement_model import demands
 from fretc.testing.suite import Suite
 from fretc.testing.text_output import lines, lines_of_file, shown
 from fretish.bindings.declarations import Role
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 ON_STAGE = ("mcap", "scenario")
@@ -99,8 +99,7 @@ def make_tests(checked: RequirementSet, options: SuiteOptions, protected: Sequen
 def _check_stage(emitted: str, emit_to: str) -> None:
     """Exit if the files cannot be written: without the packages, or to standard output."""
     if emit_to == "-":
-        message = f"`--emit {emitted}` writes several files, which cannot be printed with `-`"
-        fail(Diagnostic(Code.BAD_USAGE, message, help="name a folder"))
+        fail(diagnostic("several_files_printed", form=emitted))
     require_simulation()
 
 
@@ -111,13 +110,12 @@ def _saved(path: str, requirements: Sequence[FormalizedRequirement]) -> Suite:
     try:
         found = saved(suite, requirements)
     except WrongError as error:
-        fail(Diagnostic(Code.BAD_EVIDENCE, f"`{path}`: {error}", help=again))
+        fail(diagnostic("bad_test_evidence", path=path, error=error, help=again))
     if found.others:
         others = ", ".join(found.others)
         print_status(visible(f"left out, because the requirements have changed: {others}"))
     if not found.suite.tests:
-        why = f"`{path}` has no test of a current requirement"
-        fail(Diagnostic(Code.NOTHING_TO_DO, why, help=again))
+        fail(diagnostic("no_current_test", path=path, help=again))
     return found.suite
 
 

@@ -41,7 +41,8 @@ from fretc.terminal.output import (
 from fretc.terminal.progress import print_activity
 from fretc.verification.layers.languages import language_of
 from fretc.verification.layers.table import OF_MONITOR, in_words
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -233,18 +234,14 @@ def _ajpf_proofs(project: Project, results: Sequence[str]) -> Sequence[Proof]:
 def _half_an_agent(agent: str | None) -> Diagnostic:
     """F907: `--agent` without `--properties`, or the other way round."""
     present, missing = ("properties", "agent") if agent is None else ("agent", "properties")
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`--{present}` needs `--{missing}`",
-        help="name both: `--agent FILE.gwen --properties FILE.psl`",
-    )
+    return diagnostic("agent_option_missing", present=present, missing=missing)
 
 
 def _project(files: Sequence[str], requirements: str, bindings: str | None) -> Project:
     """The usable part of the project; exits if it has no requirement."""
     project, _ = project_of(files, requirements, bindings, ("interceptor", "assume"))
     if not project.formalized:
-        fail(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to verify"))
+        fail(diagnostic("no_requirement_to_verify"))
     return project
 
 
@@ -264,25 +261,12 @@ def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
         return None
     others = [name for name in layers if name in OF_MONITOR and name != Layer.MONITOR]
     if others:
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"`--layer {others[0]}` needs a monitor in Python",
-                help=f"verify `{monitor.name}` with `--layer monitor`",
-            )
-        )
+        fail(diagnostic("layer_needs_python", layer=others[0], monitor=monitor.name))
     if language.name != "C":
         return None
     included = re.search(r'^#include "(\w+\.h)"$', monitor.text, re.MULTILINE | re.ASCII)
     if included is None:
-        fail(
-            Diagnostic(
-                Code.BAD_MONITOR,
-                f"`{monitor.name}` is not a generated monitor: it does not include its header",
-                monitor.span(0, 0),
-                help="name a file that `--emit c` wrote",
-            )
-        )
+        fail(diagnostic("monitor_without_header", monitor.span(0, 0), monitor=monitor.name))
     return _read(str(Path(monitor.name).with_name(included[1])))
 
 
@@ -297,11 +281,12 @@ def _proofs(project: Project, request: Request) -> Sequence[Proof]:
         assert request.monitor is not None
         language = language_of(request.monitor.name)
         fail(
-            Diagnostic(
-                Code.BAD_MONITOR,
-                f"`{request.monitor.name}` is not a generated monitor: {error}",
+            diagnostic(
+                "not_a_monitor",
                 request.monitor.span(0, 0),
-                help=f"name a file that `--emit {language.emit if language else 'monitor'}` wrote",
+                monitor=request.monitor.name,
+                error=error,
+                target=language.emit if language else "monitor",
             )
         )
     if isinstance(proofs, Diagnostic):

@@ -38,12 +38,10 @@ from fretc.terminal.output import (
 )
 from fretc.terminal.progress import print_activity
 from fretish.diagnostics.diagnostic import (
-    Code,
-    Diagnostic,
-    Severity,
+    did_you_mean,
     has_errors,
-    suggestion,
 )
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
@@ -213,7 +211,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
     for folder in folders:
         if not Path(folder).is_dir():
             fix = "name the folder of the logs"
-            fail(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=fix))
+            fail(diagnostic("no_folder", folder=folder, help=fix))
     places: dict[str, str] = {}
     for folder in folders:
         places = {**located(runs, folder), **places}
@@ -224,12 +222,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
     fix = "if you trust it, name its folder or URL prefix with `--logs`"
     print_diagnostics(
         [
-            Diagnostic(
-                Code.FOREIGN_PLACE,
-                f"`{name_of(places[run])}` is not opened: {why}",
-                help=fix,
-                severity=Severity.WARNING,
-            )
+            diagnostic("log_not_opened", log=name_of(places[run]), why=why, help=fix)
             for run, why in refusals.items()
         ]
     )
@@ -248,9 +241,8 @@ def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
     ids = tuple(dict.fromkeys(name.strip() for name in only.split(",")))
     for name in ids:
         if name not in claims:
-            near = suggestion(name, claims)
-            fix = f"did you mean `{near}`?" if near else f"there are {', '.join(claims)}"
-            fail(Diagnostic(Code.BAD_USAGE, f"no requirement `{name}` is in force", help=fix))
+            fix = did_you_mean(name, claims, f"there are {', '.join(claims)}")
+            fail(diagnostic("requirement_not_in_force", name=name, help=fix))
     return Scope(ids, _lock(requirements), part=True)
 
 

@@ -23,7 +23,8 @@ from fretc.terminal.output import (
     protect,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -111,7 +112,7 @@ def watch(
     from fretc.watch.watch import Watch
 
     if evidence is not None and record is None:
-        fail(_needs_recording())
+        fail(diagnostic("evidence_needs_recording"))
     reaction = None if command is None else Reaction(notify.words(command, "--on-violation"))
     source = or_fail(chosen(words, follow=follow))
     project, plan, inputs = _planned(requirements, bindings)
@@ -175,7 +176,7 @@ def _audited(
     from fretc.commands.audit_logs import audit_in_memory
 
     if not logs:
-        fail(Diagnostic(Code.NOTHING_TO_DO, "nothing was recorded: there is no evidence"))
+        fail(diagnostic("nothing_recorded"))
     result = audit_in_memory(plan, logs, local_executor(1))
     print_diagnostics_below(project.answered(result.diagnostics), ())
     write_outputs({Path(evidence): result.evidence}, [*inputs, *logs])
@@ -185,18 +186,8 @@ def _audited(
 def _needs_lateness(plan: Plan) -> Diagnostic:
     source = plan.declarations.source
     start = source.text.find("[clock]")
-    return Diagnostic(
-        Code.NO_LATENESS,
-        f"the clock uses `{plan.declarations.clock.time}`, but the bindings do not say how late "
-        "messages may arrive",
+    return diagnostic(
+        "lateness_missing",
         source.span(start, start + len("[clock]")) if start >= 0 else None,
-        'add `lateness = "50 ms"` under `[clock]`: the longest delay of a message',
-    )
-
-
-def _needs_recording() -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        "`--evidence` needs a recording, and nothing is recorded",
-        help="add `--record run.mcap`",
+        time=plan.declarations.clock.time,
     )

@@ -14,7 +14,8 @@ from click.shell_completion import CompletionItem
 
 from fretc.terminal.options import PATH
 from fretc.terminal.output import fail
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, suggestion
+from fretish.diagnostics.messages import diagnostic
 
 _OWN = ("-h", "--help", "--version", "--parents")
 """Options of `fretc` itself."""
@@ -111,15 +112,11 @@ def _is_path(word: str) -> bool:
 
 def _unknown_command(word: str, commands: Sequence[str]) -> Diagnostic:
     if is_sentence(word):
-        return Diagnostic(
-            Code.UNKNOWN_COMMAND,
-            "the argument is a sentence, not a command or a file",
-            help=f"use `fretc explain {quote(word)}`, or pipe the sentence into `fretc -`",
-        )
+        return diagnostic("sentence_as_command", word=quote(word))
     near = suggestion(word, [c for c in commands if c != DEFAULT])
     names = ", ".join(c for c in commands if c != DEFAULT)
-    return Diagnostic(
-        Code.UNKNOWN_COMMAND,
-        f"`{word}` is neither a command of fretc nor a file",
+    return diagnostic(
+        "unknown_command",
+        word=word,
         help=f"did you mean `fretc {near}`?" if near else f"commands: {names}; or name a file",
     )

@@ -11,7 +11,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE, fail
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 T = TypeVar("T")
 Command = Callable[..., Any]
@@ -118,14 +118,7 @@ def evidence_path(named: str | None) -> str:
     if named is not None:
         return named
     if os.path.lexists(EVIDENCE) and os.path.lexists(STORE):
-        fail(
-            Diagnostic(
-                Code.TWO_EVIDENCES,
-                f"evidence is in `{EVIDENCE}` and in `{STORE}`: one of them is from an earlier "
-                "audit",
-                help="remove the old one, or name the one to use",
-            )
-        )
+        fail(diagnostic("two_evidences", evidence=EVIDENCE, store=STORE))
     return STORE if os.path.lexists(STORE) else EVIDENCE
 
 
@@ -183,11 +176,5 @@ def is_given(name: str) -> bool:
 def places(arguments: Sequence[str], requirements: str) -> list[str]:
     """Paths of requirements: the arguments, or else `--requirements`; F907 for both."""
     if arguments and is_given("requirements"):
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"requirements are named twice: `{arguments[0]}` and `--requirements`",
-                help="keep one of them",
-            )
-        )
+        fail(diagnostic("requirements_named_twice", argument=arguments[0]))
     return [*arguments] or [requirements]

@@ -13,7 +13,8 @@ from typing import Any, NoReturn, TextIO, TypeVar
 
 import click
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import Part, plain, render_all, visible
 from fretish.reading.natural_order import by_place
 
@@ -220,6 +221,4 @@ def _styled(text: str, colour: str | None) -> str:
 
 def not_written(path: str, why: str) -> Diagnostic:
     """F905: a file cannot be written."""
-    return Diagnostic(
-        Code.NOT_WRITTEN, f"`{path}` cannot be written: {why}", help="name another file"
-    )
+    return diagnostic("output_not_written", path=path, why=why)

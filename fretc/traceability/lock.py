@@ -38,6 +38,7 @@ from fretc.traceability.texts import ReviewedTexts, as_table
 from fretc.traceability.texts import read as read_texts
 from fretish.bindings.canonical import digest
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
 from fretish.reading.natural_order import natural
@@ -165,11 +166,7 @@ def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tup
         if c.answer is not None and c.answer.verdict is Verdict.UNREALIZABLE
     } | violations
     return tuple(
-        Diagnostic(
-            Code.UNREVIEWED_VIOLATION,
-            f"{id} is {verdicts}",
-            help="fix it, or accept the violation: add `--accept-violations`",
-        )
+        diagnostic("violation_not_named", id=id, verdicts=verdicts)
         for id, verdicts in violations.items()
     )
 
@@ -237,20 +234,11 @@ def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
         if causes:
             what = ", ".join(f"{cause.kind} {cause.name}" for cause in causes)
             diagnostics.append(
-                Diagnostic(
-                    Code.OUTDATED_RESULT,
-                    f"the evidence for {chain.requirement} is about another version: {what}",
-                    help="run `fretc audit`, `verify` or `analyze` again, then lock",
-                )
+                diagnostic("outdated_result", requirement=chain.requirement, what=what)
             )
         if chain.unhashed:
             diagnostics.append(
-                Diagnostic(
-                    Code.UNKNOWN_LOG,
-                    f"the evidence does not identify the log `{chain.unhashed[0]}` of "
-                    f"{chain.requirement}, because it has no SHA-256",
-                    help="audit again on a machine that can read the log, then lock",
-                )
+                diagnostic("log_without_hash", log=chain.unhashed[0], requirement=chain.requirement)
             )
     return tuple(diagnostics)
 
@@ -290,12 +278,7 @@ def read(path: str) -> Lock | Diagnostic:
 
 
 def _none_yet(path: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NO_SUCH_FILE,
-        f"no requirement is reviewed: there is no `{path}`",
-        help="accept the present state: `fretc lock --reviewer NAME --role ROLE --comment TEXT`",
-        severity=Severity.NOTE,
-    )
+    return diagnostic("nothing_reviewed", path=path)
 
 
 def _reviews(tables: Tables) -> Iterable[tuple[str, Any]]:

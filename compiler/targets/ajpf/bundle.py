@@ -29,7 +29,8 @@ from compiler.targets.ajpf.safety_function import Reaction, Sif, sif
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Modality
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.expressions import MIRRORED
 from fretish.reading.recursion import with_recursion_limit
 
@@ -109,12 +110,11 @@ def _not_kept(requirement: FormalizedRequirement, evidence: Sequence[Proof]) -> 
     for line in evidence:
         if line.result is Result.PROVED:
             continue
-        return Diagnostic(
-            Code.NOT_KEPT,
-            f"the agent generated from {requirement.id} is not shown to satisfy it: {line.detail}",
+        return diagnostic(
+            "agent_not_shown",
             requirement.entry.wording,
-            help="an agent needs time to react: use `eventually`, no scope or stop condition that "
-            "may come first, and few triggers",
+            requirement=requirement.id,
+            detail=line.detail,
         )
     return None
 
@@ -321,16 +321,12 @@ def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Di
     agent = checked_agent(requirement, options) if warning is None else warning
     if not isinstance(agent, CheckedAgent) or not agent.sif.over_responds:
         return warning
-    return Diagnostic(
-        Code.OVER_RESPONDS,
-        f"the agent of {requirement.id} responds to every event of its condition, even if the "
-        "rest of the condition does not hold",
+    return diagnostic(
+        "agent_over_responds",
         requirement.sentence.condition.span
         if requirement.sentence.condition
         else requirement.entry.wording,
-        "percepts are believed one after the other, so an agent that also checks the rest may "
-        "miss its trigger; if it responds too often, bind the whole condition to one proposition",
-        Severity.WARNING,
+        requirement=requirement.id,
     )
 
 

@@ -37,7 +37,8 @@ from fretish import syntax as s
 from fretish.bindings.comparisons import FUNCTIONS
 from fretish.bindings.declarations import Modality
 from fretish.checking import LOOK_AHEAD, LOOK_BACK, NUMBERS_BACK, calls, conditions
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.expressions import Comparison
 from fretish.expressions import names as names_of
 from fretish.printer import timing as printing_of
@@ -191,11 +192,11 @@ def _refused_form(
     requirement: FormalizedRequirement, formula: f.Formula | None
 ) -> Diagnostic | None:
     if formula is None:
-        return Diagnostic(
-            Code.NOT_PROVED,
-            f"the AJPF property of {requirement.id} is not proved equivalent to the requirement",
+        return diagnostic(
+            "ajpf_property_not_proved",
             requirement.entry.wording,
-            help=f"this is a fault of fretc: report it, and {_MONITOR}",
+            requirement=requirement.id,
+            monitor=_MONITOR,
         )
     if isinstance(formula, f.Const):
         return _not(requirement, "a formula that is constant", "it says nothing")
@@ -278,36 +279,17 @@ def _key(id: str) -> str:
 
 def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
     """F605, F606, F607: limits of AJPF's verdict on the property."""
+    place = requirement.sentence.timing_span or requirement.entry.wording
     loss = weakened(requirement, options)
     if loss is not None:
-        message = f"the property of {requirement.id} is weaker than the requirement: {loss}"
-        return _warning(
-            requirement, Code.WEAKENED, message, "check the bound with `--emit monitor`"
-        )
+        return diagnostic("weakened_property", place, requirement=requirement.id, loss=loss)
     sentence = requirement.sentence
     scope = sentence.scope.kind if sentence.scope else None
     if not _begins_at_once(sentence.timing) or (scope is not None and scope.negates):
         return None
     if sentence.condition is None and scope in (None, s.ScopeKind.NOT_IN, s.ScopeKind.BEFORE):
-        return _warning(
-            requirement,
-            Code.STATE_ZERO,
-            f"{requirement.id} demands its response in the first state, where no percept is "
-            "believed yet",
-            "make the response an initial belief, or state it with a condition and `eventually`",
-        )
-    return _warning(
-        requirement,
-        Code.NO_TIME_TO_REACT,
-        f"{requirement.id} demands its response in the very state of its trigger: it is false of "
-        "every agent that has to react",
-        "an agent needs some nine states from a percept to its answer: state it with `eventually`",
-    )
-
-
-def _warning(requirement: FormalizedRequirement, code: Code, message: str, fix: str) -> Diagnostic:
-    place = requirement.sentence.timing_span or requirement.entry.wording
-    return Diagnostic(code, message, place, fix, Severity.WARNING)
+        return diagnostic("state_zero", place, requirement=requirement.id)
+    return diagnostic("no_time_to_react", place, requirement=requirement.id)
 
 
 def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:

@@ -39,7 +39,8 @@ from compiler.targets.target import DEFAULT, Options, Target, not_expressible, s
 from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, calls, conditions
 from fretish.clock import assumed_ticks
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.expressions import depth
 from fretish.reading.recursion import with_recursion_limit
 from monitors.source_text import kernel, kernel_of_variables
@@ -90,11 +91,8 @@ def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | N
         )
     if assumed_ticks(requirement.sentence, requirement.clock) is None:
         return None
-    return Diagnostic(
-        Code.NO_CLOCK,
-        f"no clock says how many ticks the duration of {requirement.id} is",
-        requirement.sentence.timing_span,
-        help='declare `[clock]` with `tick = "100 ms"` in bindings.toml, or write ticks',
+    return diagnostic(
+        "no_clock_for_duration", requirement.sentence.timing_span, requirement=requirement.id
     )
 
 
@@ -121,12 +119,10 @@ def remark(requirement: FormalizedRequirement) -> Diagnostic | None:
     later = Trait.UNMET in owed and Trait.LAST not in owed
     if sentence.condition is None or not later or not s.ends_with_run(scope):
         return None
-    return Diagnostic(
-        Code.NEVER_DECIDED,
-        f"no run, however long, can violate {requirement.id} or confirm it: it sets no bound",
+    return diagnostic(
+        "never_decided",
         sentence.timing_span or requirement.entry.wording,
-        help="state a bound: `within ...` instead of `eventually`",
-        severity=Severity.WARNING,
+        requirement=requirement.id,
     )
 
 

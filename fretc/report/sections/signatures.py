@@ -13,7 +13,8 @@ from fretc.report.model.views import Signatures, SignatureView, Signed
 from fretc.traceability.lock import Review
 from fretc.traceability.waivers import Waiver
 from fretish.diagnostics import status_symbols as signs
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 _SIGNED = sign_mark("signed", signs.GOOD)
 _UNSIGNED = sign_mark("unauthenticated", signs.OPEN)
@@ -101,10 +102,4 @@ def idle_signatures(book: SignatureBook, assessments: Sequence[Assessment]) -> I
 
 def _idle(what: str, signing: Signing) -> Iterator[Diagnostic]:
     if signing.state in (State.ANOTHER, State.UNKNOWN, State.CHANGED):
-        yield Diagnostic(
-            Code.IDLE_SIGNATURE,
-            f"{what} is unauthenticated: {signing.text}",
-            help="ask the reviewer to sign: `fretc sign FILE --key KEY`; `allowed_signers` "
-            "lists the valid keys",
-            severity=Severity.WARNING,
-        )
+        yield diagnostic("unauthenticated", what=what, signing=signing.text)

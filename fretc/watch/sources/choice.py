@@ -10,7 +10,8 @@ from fretc.watch.sources.foxglove_protocol import address
 from fretc.watch.sources.log import Log
 from fretc.watch.sources.ros1 import Ros1
 from fretc.watch.sources.source import Source
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 
 def chosen(words: Sequence[str], *, follow: bool) -> Source | Diagnostic:
@@ -23,11 +24,7 @@ def chosen(words: Sequence[str], *, follow: bool) -> Source | Diagnostic:
     name, *more = words
     middleware = _MIDDLEWARE.get(name)
     if middleware is not None and follow:
-        return Diagnostic(
-            Code.BAD_USAGE,
-            "`--follow` is for a log that is being recorded; a middleware is always followed",
-            help=f"leave it out, or name the log `./{name}`",
-        )
+        return diagnostic("follow_needs_log", name=name)
     if middleware is not None:
         most, source_of = middleware
         return source_of(*more) if len(more) <= most else _one_name_too_many(more[most])
@@ -48,8 +45,4 @@ _MIDDLEWARE: Mapping[str, tuple[int, Callable[..., Source | Diagnostic]]] = {
 
 
 def _one_name_too_many(name: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`{name}` is a second source: a watch has only one",
-        help="run one watch for each robot",
-    )
+    return diagnostic("second_source", name=name)
