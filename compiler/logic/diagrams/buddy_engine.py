@@ -30,7 +30,6 @@ class BuddyEngine:
         self.false = buddy.bddfalse
         self.ite = buddy.bdd_ite
         self.exists = buddy.bdd_exist
-        self.forall = buddy.bdd_forall
         self.at = buddy.bdd_restrict
 
     def variable(self, number: int) -> Any:

@@ -86,11 +86,6 @@ def exists(function: Function, variables: Function) -> Function:
     return engine().exists(function, variables)
 
 
-def forall(function: Function, variables: Function) -> Function:
-    """Universal quantification over the variables of a cube."""
-    return engine().forall(function, variables)
-
-
 def and_exists(left: Function, right: Function, variables: Function) -> Function:
     """`exists(left & right, variables)`, without the conjunction ever being built."""
     return engine().and_exists(left, right, variables)

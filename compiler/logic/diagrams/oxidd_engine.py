@@ -62,7 +62,6 @@ class OxiddEngine:
         self.false: Any = self._manager.false()
         self.ite = BDDFunction.ite
         self.exists = BDDFunction.exists
-        self.forall = BDDFunction.forall
         self._variables_of_cube = lru_cache(maxsize=1024)(self._cube_variables)
         self._substitution = lru_cache(maxsize=256)(_substitution)
 

@@ -19,7 +19,8 @@ from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.arithmetic.course import SolvedNumericTrace
 from fretc.analysis.arithmetic.durations import Duration, DurationValue, held
-from fretc.analysis.arithmetic.groups import Group, choice, linked, owners
+from fretc.analysis.arithmetic.group_content import choice, linked, owners
+from fretc.analysis.arithmetic.groups import Group
 from fretc.analysis.arithmetic.past import Remembered, remembered
 from fretc.analysis.arithmetic.projection import Limit
 from fretish.bindings.declarations import Role

@@ -24,7 +24,7 @@ MOST_NODES = 10_000
 """Maximum number of nodes of a relation; larger ones cost more than single ticks."""
 
 
-class TooLargeError(Exception):
+class RelationTooLargeError(Exception):
     """The relation has no small diagram."""
 
 
@@ -57,7 +57,7 @@ class IterativeSquaring:
         """Try a squaring; if a relation is too large, there is no result and no later try."""
         try:
             yield
-        except TooLargeError:
+        except RelationTooLargeError:
             self._wait = None
 
 
@@ -87,7 +87,7 @@ class Relation:
         """States from which a path never ends.
 
         Raises:
-            TooLargeError: the diagrams grow too large.
+            RelationTooLargeError: the diagrams grow too large.
             OutOfTimeError: it takes too long.
         """
         relation, after = self.function, bdd.cube(bit.after for bit in self.bits)
@@ -103,7 +103,7 @@ class Relation:
         """States with a path into the goal, including those of the goal.
 
         Raises:
-            TooLargeError: the diagrams grow too large.
+            RelationTooLargeError: the diagrams grow too large.
             OutOfTimeError: it takes too long.
         """
         after = bdd.cube(bit.after for bit in self.bits)
@@ -120,7 +120,7 @@ class Relation:
         The relation must be a function, and the path must end.
 
         Raises:
-            TooLargeError: the diagrams grow too large.
+            RelationTooLargeError: the diagrams grow too large.
             OutOfTimeError: it takes too long.
         """
         powers = [self.function]
@@ -139,7 +139,7 @@ class Relation:
         """The relation composed with itself."""
         self.budget.check()
         if bdd.size(relation) > MOST_NODES:
-            raise TooLargeError
+            raise RelationTooLargeError
         later = [(bit, bdd.variable(bit.later)) for bit in self.bits]
         first = bdd.substitute(relation, {bit.after: variable for bit, variable in later})
         then = bdd.substitute(relation, {bit.now: variable for bit, variable in later})

@@ -10,7 +10,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from monitors import kernel
 
 if TYPE_CHECKING:
@@ -156,10 +157,10 @@ def run_query(known: EvidenceTables, query: str) -> Answer | Diagnostic:
     with _asked(known) as ask:
         try:
             if not ask.extract_statements(query):
-                return _bad_query("it is empty")
+                return diagnostic("query_fails", message="it is empty")
             return _answer(ask, query)
         except duckdb.Error as error:
-            return _bad_query(str(error).strip().splitlines()[0])
+            return diagnostic("query_fails", message=str(error).strip().splitlines()[0])
 
 
 def _answer(ask: duckdb.DuckDBPyConnection, query: str) -> Answer:
@@ -187,13 +188,7 @@ def _asked(known: EvidenceTables, *more: str) -> Iterator[duckdb.DuckDBPyConnect
 
 
 def _mixed(requirement: str, kinds: int) -> Diagnostic:
-    return Diagnostic(
-        Code.STALE_EVIDENCE,
-        f"{requirement} was audited as {kinds} different requirements: its sentence, its bindings "
-        "or its monitor have changed between these runs",
-        help="audit the runs again, or select one version: `--query` with `sentence_sha256`",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("audited_differently", requirement=requirement, kinds=kinds)
 
 
 def _torn(rows_of_all: Sequence[Mapping[str, Any]]) -> Iterator[Diagnostic]:
@@ -204,19 +199,10 @@ def _torn(rows_of_all: Sequence[Mapping[str, Any]]) -> Iterator[Diagnostic]:
     for requirement, rows in of_requirement.items():
         first = rows[0]
         others = "" if len(rows) == 1 else f", and so it is with {len(rows) - 1:,} more"
-        yield Diagnostic(
-            Code.SEVERAL_VERDICTS,
-            f"{requirement} has several verdicts of the log of {first['run']}: "
-            f"{' and '.join(first['verdicts'])}{others}; the worst of each log counts",
-            help="audit these logs again, and summarize that table alone",
-            severity=Severity.WARNING,
+        yield diagnostic(
+            "several_verdicts",
+            requirement=requirement,
+            log=first["run"],
+            verdicts=" and ".join(first["verdicts"]),
+            others=others,
         )
-
-
-def _bad_query(message: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_QUERY,
-        f"the query fails: {message}",
-        help="write DuckDB SQL on the tables `results`, `violations`, `runs`: "
-        "`SELECT run, reason FROM results WHERE verdict = 'violated'`",
-    )

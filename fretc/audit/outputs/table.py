@@ -11,7 +11,8 @@ from compiler.files.text_files import open_regular, unreadable
 from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Result
 from fretc.audit.store.anywhere import required_source
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ def _read(path: str) -> EvidenceTables | Diagnostic:
             rows = _read_parquet(path)
             return rows if isinstance(rows, Diagnostic) else _alone(rows)
         if not start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
-            return _neither(path)
+            return diagnostic("neither_table_nor_evidence", Source(path, "").span(), path=path)
     evidence = required_source(path)
     return evidence if isinstance(evidence, Diagnostic) else _known(evidence)
 
@@ -167,21 +168,7 @@ def _read_parquet(path: str) -> Table | Diagnostic:
 
 
 def _no_table(path: str, what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EVIDENCE,
-        f"`{path}` {what}",
-        Source(path, "").span(),
-        help=f"audit again: `fretc audit LOG... --parquet {path}`",
-    )
-
-
-def _neither(path: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EVIDENCE,
-        f"`{path}` is neither a table nor evidence",
-        Source(path, "").span(),
-        help="name what `fretc audit LOG... --parquet FILE` or `-o FILE` wrote",
-    )
+    return diagnostic("bad_table", Source(path, "").span(), path=path, what=what)
 
 
 def _schema() -> pyarrow.Schema:

@@ -28,6 +28,7 @@ from fretc.audit.many_logs import (
 from fretc.audit.plan import Plan
 from fretc.audit.store import parts
 from fretc.audit.store.reader import Store, evidence, opened
+from fretc.logs.signals.integrity import Integrity
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc, untimed
 from tests.effort import some
@@ -258,11 +259,11 @@ def test_another_requirement_or_binding_makes_all_of_it_new(
 
 
 @pytest.mark.slow
-def test_another_fretc_or_evaluation_makes_all_of_it_new(
+def test_another_fretc_or_integrity_makes_all_of_it_new(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stored()
-    with session(own=plan("online")) as one:
+    with session(own=plan(Integrity.FULL)) as one:
         assert (one.known, one.earlier.stale) == ({}, True)
     monkeypatch.setattr("fretc.audit.plan.build_id", lambda: "another")
     assert known() == {}
