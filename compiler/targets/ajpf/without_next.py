@@ -20,7 +20,7 @@ from typing import assert_never
 
 from compiler.files.text_files import sha256
 from compiler.formalization.future import future
-from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait
+from compiler.formalization.obligation import TRAITS, Demand, Obligation, ObligationKind, Trait
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.formula import (
@@ -75,13 +75,17 @@ Pair = tuple[Formula, Formula]
 
 
 @cache
-def is_proved(scope: ScopeKind | None, condition: ConditionKind | None, kind: Kind) -> bool:
+def is_proved(
+    scope: ScopeKind | None, condition: ConditionKind | None, kind: ObligationKind
+) -> bool:
     """Whether Spot has proved the shape equal to the formula of `future.py`."""
     pair = exact_pair(scope, condition, kind)
     return pair is not None and digest(pair) in _proved_pairs()
 
 
-def exact_pair(scope: ScopeKind | None, condition: ConditionKind | None, kind: Kind) -> Pair | None:
+def exact_pair(
+    scope: ScopeKind | None, condition: ConditionKind | None, kind: ObligationKind
+) -> Pair | None:
     """The form of a shape, and its formula; None if the demand counts ticks."""
     shape = _shape(scope, condition, kind)
     form = next_free(shape)
@@ -112,11 +116,11 @@ def unbounded(obligation: Obligation) -> Formula | None:
         return None
     interval = _Interval(scope, obligation.mode)
     met = or_(interval.outside, obligation.demand.response)
-    weak = replace(obligation, demand=Demand(Kind.EVENTUALLY, met))
+    weak = replace(obligation, demand=Demand(ObligationKind.EVENTUALLY, met))
     return interval.everywhere(weak, eventually(met))
 
 
-def _has_deadline(kind: Kind) -> bool:
+def _has_deadline(kind: ObligationKind) -> bool:
     """Whether one response up to a deadline is enough."""
     traits = TRAITS[kind]
     return Trait.COUNTS | Trait.WAITS in traits and Trait.OPPOSITES not in traits
@@ -135,7 +139,7 @@ def weaker_pair(scope: ScopeKind | None, condition: ConditionKind | None) -> Pai
     The bounds of the formula are under no negation, so the formula implies its unbounded form for
     any n; and the shape is equal to that form.
     """
-    shape = _shape(scope, condition, Kind.WITHIN, 2)
+    shape = _shape(scope, condition, ObligationKind.WITHIN, 2)
     weak = unbounded(shape)
     return None if weak is None else (weak, _without_bounds(f.endless(future(shape))))
 
@@ -173,7 +177,7 @@ def never_begins(obligation: Obligation) -> Formula | None:
 
 
 def _shape(
-    scope: ScopeKind | None, condition: ConditionKind | None, kind: Kind, ticks: int = 0
+    scope: ScopeKind | None, condition: ConditionKind | None, kind: ObligationKind, ticks: int = 0
 ) -> Obligation:
     """The obligation of a sentence over plain propositions."""
     m, c, r, q = map(f.Atom, ("m", "c", "r", "q"))
@@ -264,19 +268,25 @@ class _Interval:
         """The demand at a trigger at the present tick."""
         r, q = demand.response, demand.stop
         match demand.kind:
-            case Kind.IMMEDIATELY:
+            case ObligationKind.IMMEDIATELY:
                 return r
-            case Kind.EVENTUALLY:
+            case ObligationKind.EVENTUALLY:
                 return self.until(TRUE, r)
-            case Kind.ALWAYS:
+            case ObligationKind.ALWAYS:
                 return self.throughout(r)
-            case Kind.UNTIL:
+            case ObligationKind.UNTIL:
                 return self.release(q, or_(q, r))
-            case Kind.BEFORE:
+            case ObligationKind.BEFORE:
                 return self.release(r, not_(q))
-            case Kind.FINALLY:
+            case ObligationKind.FINALLY:
                 return self._finally(r)
-            case Kind.NEXT | Kind.WITHIN | Kind.FOR | Kind.AFTER | Kind.NOT_AFTER:
+            case (
+                ObligationKind.NEXT
+                | ObligationKind.WITHIN
+                | ObligationKind.FOR
+                | ObligationKind.AFTER
+                | ObligationKind.NOT_AFTER
+            ):
                 raise AssertionError(f"it counts ticks: {demand.kind}")
             case _:
                 assert_never(demand.kind)

@@ -10,7 +10,14 @@ import pytest
 import spot
 
 from compiler.formalization.future import future
-from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait, obligation
+from compiler.formalization.obligation import (
+    TRAITS,
+    Demand,
+    Obligation,
+    ObligationKind,
+    Trait,
+    obligation,
+)
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.spot import same_language
@@ -102,7 +109,11 @@ def proved_pairs() -> str:
     """A line for each shape whose pair of formulas Spot proves equal."""
     shapes = list(product(SCOPES, CONDITIONS))
     pairs = {
-        **{(s, c, kind.name.lower()): exact_pair(s, c, kind) for s, c in shapes for kind in Kind},
+        **{
+            (s, c, kind.name.lower()): exact_pair(s, c, kind)
+            for s, c in shapes
+            for kind in ObligationKind
+        },
         **{(s, c, "without its bound"): weaker_pair(s, c) for s, c in shapes},
     }
     return "".join(
@@ -125,7 +136,7 @@ def test_spot_proves_every_recorded_pair_and_no_other(request: pytest.FixtureReq
 def test_every_shape_that_has_a_form_is_proved() -> None:
     for scope in SCOPES:
         for condition in CONDITIONS:
-            for kind in Kind:
+            for kind in ObligationKind:
                 assert is_proved(scope, condition, kind) is (Trait.STEPS not in TRAITS[kind])
 
 
@@ -134,9 +145,9 @@ def test_a_wrong_form_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
         "compiler.targets.ajpf.without_next.next_free", lambda meant: f.eventually(f.Atom("r"))
     )
     is_proved.cache_clear()
-    assert is_proved(None, None, Kind.EVENTUALLY)
-    assert not is_proved(None, ConditionKind.HOLDING, Kind.EVENTUALLY)
-    assert not is_proved(ScopeKind.IN, None, Kind.EVENTUALLY)
+    assert is_proved(None, None, ObligationKind.EVENTUALLY)
+    assert not is_proved(None, ConditionKind.HOLDING, ObligationKind.EVENTUALLY)
+    assert not is_proved(ScopeKind.IN, None, ObligationKind.EVENTUALLY)
     is_proved.cache_clear()
 
 
@@ -244,9 +255,13 @@ def test_never_begins_is_that_no_demand_is_ever_made(
 ) -> None:
     """That is: even what cannot be met, demanded at once, is met."""
     meant = Obligation(
-        scope, M if scope else f.TRUE, condition, P if condition else f.TRUE, Demand(Kind.ALWAYS, Q)
+        scope,
+        M if scope else f.TRUE,
+        condition,
+        P if condition else f.TRUE,
+        Demand(ObligationKind.ALWAYS, Q),
     )
-    impossible = Demand(Kind.IMMEDIATELY, f.FALSE)
+    impossible = Demand(ObligationKind.IMMEDIATELY, f.FALSE)
     never = never_begins(meant)
     if condition is None and scope is None:
         assert never is None
