@@ -30,7 +30,7 @@ def summarize(paths: Sequence[str], query: str | None, output_format: str) -> No
 
     if output_format not in ("text", "json"):
         fail(_no_form(output_format))
-    table = read(paths)
+    table = read(paths, query)
     if isinstance(table, Diagnostic):
         fail(table)
     if query is not None:

@@ -13,18 +13,32 @@ from operator import attrgetter
 from statistics import median
 from typing import Any, Protocol
 
-from compiler.files.records import UnsetType
+from compiler.files.checked_json import GREATEST, LEAST
+from compiler.files.records import (
+    UNSET,
+    Count,
+    Name,
+    Raw,
+    Record,
+    Seconds,
+    UnsetType,
+    Whole,
+)
+from compiler.files.records import field as record_field
 from fretc.audit.evidence.basis import KINDS
-from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.probabilities import Estimated, Outcomes
 from fretc.audit.evidence.schema import (
     Bindings,
     Hashes,
     Health,
+    Labels,
     Requirement,
     Result,
     Selection,
     Situations,
     Threshold,
+    Verdict,
+    trials_of,
 )
 from fretc.audit.measurements.trials import Trials
 from fretish.bindings.canonical import digest
@@ -297,7 +311,63 @@ _COMMON = tuple(
 _prints, _values = attrgetter(*_PRINTS), attrgetter(*_FIELDS)
 
 
-def brief(result: Result) -> ResultSummary:
+class PartialRecord(Record, frozen=True, forbid_unknown_fields=False):
+    """Some fields of a record of evidence; the others are skipped when it is read."""
+
+
+class _Tick(PartialRecord, frozen=True):
+    tick: Count
+
+
+class _Violation(PartialRecord, frozen=True):
+    first_tick: Count
+    last_tick: Count
+    start_ns: Whole
+    start_s: Seconds
+
+
+_NO_HEALTH = Health(False, None, None, (), (), {})
+
+
+class CountedResult(PartialRecord, frozen=True, kw_only=True):
+    """What is counted of a result; its events are not decoded.
+
+    The facts of its run are read once for all its results, and put in afterwards.
+    """
+
+    run: str = ""
+    health: Health = _NO_HEALTH
+    labels: Labels | UnsetType = UNSET
+    requirement: Name
+    verdict: Verdict
+    finite: bool | None
+    reason: str
+    clock: str
+    ticks: Count
+    start_ns: Whole | None
+    end_ns: Whole | None
+    triggers: tuple[Raw, ...]
+    violations: tuple[_Violation, ...]
+    unknown: tuple[tuple[Count, Count], ...]
+    open: tuple[_Tick, ...]
+    latencies: tuple[Seconds, ...] = record_field(name="latencies_s")
+    fingerprints: Hashes = record_field(name="hashes")
+    assumptions: tuple[str, ...]
+    outcomes: Outcomes | UnsetType = record_field(name="trials", default=UNSET)
+
+    def __post_init__(self) -> None:
+        """Raise ValueError if a time has more than 64 bits."""
+        times = (self.start_ns, self.end_ns, *(each.start_ns for each in self.violations))
+        if not all(time is None or LEAST <= time <= GREATEST for time in times):
+            raise ValueError("Expected a time of 64 bits")
+
+    @property
+    def trials(self) -> Trials | None:
+        """The trials; None: no probability is required, or the log could not be read."""
+        return trials_of(self.outcomes)
+
+
+def brief(result: Result | CountedResult) -> ResultSummary:
     """The summary of a result."""
     violations, latencies = result.violations, result.latencies
     first = violations[0] if violations else None
@@ -329,7 +399,7 @@ def brief(result: Result) -> ResultSummary:
     )
 
 
-def judgement(result: Result) -> str:
+def judgement(result: Result | CountedResult) -> str:
     """SHA-256 of the verdict and its ticks."""
     return judgement_of(
         result.verdict,
@@ -367,7 +437,7 @@ def judgement_of(
     )
 
 
-def run_facts(results: Sequence[Result]) -> RunFacts:
+def run_facts(results: Sequence[Result | CountedResult]) -> RunFacts:
     """The facts of a run.
 
     Args:

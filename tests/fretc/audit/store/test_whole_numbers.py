@@ -102,7 +102,7 @@ def numbers(value: Any, at: Place = ()) -> Iterator[Place]:
             yield at
 
 
-def put(value: Any, at: Place, number: int) -> None:
+def put(value: Any, at: Place, number: Any) -> None:
     """Put a number there; a stretch of time has no length then."""
     for step in at[:-1]:
         value = value[step]
