@@ -26,7 +26,7 @@ from fretc.audit.evidence.schema import Document, Result
 from fretc.audit.outputs.summary import run_query, summarize
 from fretc.audit.outputs.table import read as read_tables
 from fretc.audit.store.anywhere import source
-from fretc.audit.store.container import FILE, check_record, head_of, packed, record_of
+from fretc.audit.store.container import FILE, check_record, packed, record_of
 from fretc.audit.store.container import opened as opened_file
 from fretc.audit.store.reader import Store
 from fretc.audit.store.writer import StoreFile, complete, publish
@@ -127,7 +127,7 @@ def write(path: Path, head: Document, runs: Iterator[list[Result]]) -> None:
     file = StoreFile(path / "unfinished-1.sqlite")
     for place, run in enumerate(runs):
         file.put(*packed(place, run))
-    complete(file.path, head_of(head, None), file.close())
+    complete(file.path, head, file.close())
     publish(file.path)
 
 
@@ -144,7 +144,7 @@ def change(path: Path, fresh: dict[int, list[Result]]) -> None:
         file.connection.execute("COMMIT")
     for place, run in fresh.items():
         file.put(*packed(place, run))
-    complete(file.path, before.facts, file.close())
+    complete(file.path, before.document, file.close())
     publish(file.path)
 
 

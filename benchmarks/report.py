@@ -27,7 +27,7 @@ from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import BINDINGS as BOUND
 from fretc.audit.evidence.basis import of_all
 from fretc.audit.evidence.schema import SCHEMA, Document, Result
-from fretc.audit.store.container import head_of, packed
+from fretc.audit.store.container import packed
 from fretc.audit.store.writer import StoreFile, complete, publish
 from fretc.report.make import make
 
@@ -257,7 +257,7 @@ def written(folder: Path, requirements: int, runs: int, share: float, form: str)
     for place, run in enumerate(of_runs):
         file.put(*packed(place, decoded(run, list[Result])))
     document = decoded({**head(known), "results": []}, Document)
-    complete(file.path, head_of(document, None), file.close())
+    complete(file.path, document, file.close())
     publish(file.path)
 
 

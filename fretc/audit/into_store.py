@@ -35,7 +35,6 @@ from fretc.audit.store.container import (
     FILE,
     Row,
     StoreError,
-    head_of,
     next_unfinished,
     packed,
     record_of,
@@ -330,7 +329,7 @@ class StoreWriter:
         file.put(row, record, text, mark)
 
     def _finish(self, file: StoreFile) -> StoredAudit:
-        head, rows = head_of(document(self._plan, (), ()), self._plan.confidence), file.close()
+        head, rows = document(self._plan, (), ()), file.close()
         store = Store(str(self.folder), "", file.path, head, rows)
         estimates = estimates_of(self._plan, (each for _, each in store.briefs()))
         if self._read:  # a mistyped name must not cost the evidence of the last audit

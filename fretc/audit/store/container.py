@@ -15,7 +15,7 @@ import stat
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import Annotated, Any, Final, Generic, Literal, TypeVar
+from typing import Annotated, Any, Generic, TypeVar
 from urllib.parse import quote
 
 import zstandard
@@ -30,21 +30,16 @@ from compiler.files.records import (
     Record,
     Sha256,
     UnsetType,
-    about,
     decoded,
     decoded_json,
     json_bytes,
-    json_schema,
     plain,
 )
-from compiler.files.templating import to_json
-from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.schema import Bindings, Document, Requirement, Result, Selection
+from fretc.audit.evidence.schema import Result
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
 T = TypeVar("T")
-SCHEMA: Final = "fretc-store-2"
 FILE = "evidence.sqlite"
 """The file in the folder of a store."""
 _UNFINISHED = re.compile(r"unfinished-([1-9]\d{0,8})\.sqlite")
@@ -58,7 +53,8 @@ _TABLES = (
     "CREATE TABLE runs (place INTEGER PRIMARY KEY, results INTEGER, size INTEGER, sha256 TEXT, "
     "packed_sha256 TEXT, entry TEXT, mark TEXT, record BLOB)",
 )
-"""`about` has one row. `place` is the position of a run, `size` that of its JSON in bytes."""
+"""`about` has one row; its head is an evidence file without results. `place` is the position of a
+run, `size` the number of bytes of its JSON."""
 
 
 class StoreError(Exception):
@@ -67,54 +63,6 @@ class StoreError(Exception):
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
         self.diagnostic = diagnostic
-
-
-class Head(Record, frozen=True):
-    """What a store says of the audit as a whole."""
-
-    schema: Literal["fretc-store-2"]
-    fretc: Annotated[str, about("version of the tool")]
-    bindings: Bindings
-    requirements: tuple[Requirement, ...]
-    confidence: Annotated[
-        Annotated[float, Meta(gt=0.5, lt=1)] | None,
-        about("over all runs, for a requirement with a probability; null: it is unknown"),
-    ]
-    probabilities: Annotated[
-        Annotated[tuple[Estimated, ...], Meta(min_length=1)] | UnsetType,
-        about("what all runs together say of each requirement with a probability"),
-    ] = UNSET
-    selection: Annotated[
-        Selection | UnsetType, about("absent: all logs that were named were audited")
-    ] = UNSET
-
-    @property
-    def text(self) -> str:
-        """The JSON of the head: equal values give equal texts."""
-        return to_json(plain(self))
-
-
-def head_of(document: Document, confidence: float | None) -> Head:
-    """The head of a store of this evidence."""
-    return Head(
-        schema=SCHEMA,
-        fretc=document.fretc,
-        bindings=document.bindings,
-        requirements=document.requirements,
-        confidence=confidence,
-        probabilities=document.probabilities,
-        selection=document.selection,
-    )
-
-
-def schema() -> dict[str, Any]:
-    """The JSON Schema of heads."""
-    return json_schema(
-        Head,
-        SCHEMA,
-        "The head of a store of evidence, as `fretc audit` writes it",
-        "It is the column `head` of the table `about` in `evidence.sqlite`.",
-    )
 
 
 class RunRecord(Record, Generic[T], frozen=True):

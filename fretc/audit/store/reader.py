@@ -38,7 +38,6 @@ from fretc.audit.evidence.result_summaries import (
     brief,
     run_facts,
 )
-from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
 from fretc.audit.evidence.schema import (
     Document,
     Health,
@@ -52,7 +51,6 @@ from fretc.audit.measurements.tallies import Tally
 from fretc.audit.store import container, earlier_store
 from fretc.audit.store.container import (
     FILE,
-    Head,
     Row,
     StoreError,
     bad_store,
@@ -102,13 +100,14 @@ class Store(HeadProperties):
     sha256: str
     path: Path
     """The container."""
-    facts: Head
+    document: Document
+    """The evidence without its results."""
     rows: Sequence[Row]
 
     @property
-    def head(self) -> Head:
+    def head(self) -> Document:
         """The facts of the audit as a whole."""
-        return self.facts
+        return self.document
 
     def briefs(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order; the results of a run adjoin."""
@@ -129,6 +128,8 @@ class Store(HeadProperties):
                 shared = {"run": run.run, "health": health}
                 if labels is not UNSET:
                     shared["labels"] = strict(labels, Labels)
+                if any(each.run or each.labels for each in run.results):
+                    raise SchemaError("a result has a fact of its run")
                 results = [replace(each, **shared) for each in run.results]
             yield results
 
@@ -237,8 +238,8 @@ def opened(path: str) -> Store | EvidenceFile | Diagnostic:
             ((text, sha256),) = connection.execute("SELECT head, sha256 FROM about LIMIT 2")
             if text is None:
                 raise SchemaError("its audit was not finished")
-            head, rows = decoded(parsed(text), Head), container.rows(connection)
-            if identity(text, rows) != sha256:
+            head, rows = decoded(parsed(text), Document), container.rows(connection)
+            if identity(text, rows) != sha256 or head.results:
                 raise SchemaError("its runs are not those of its head")
             for row in rows:
                 check_record(row, record_of(connection, row.place))
@@ -254,14 +255,5 @@ def evidence(store: Store) -> EvidenceFile:
     Raises:
         StoreError: the store cannot be read.
     """
-    head = store.facts
-    document = Document(
-        schema=EVIDENCE,
-        fretc=head.fretc,
-        bindings=head.bindings,
-        requirements=head.requirements,
-        results=tuple(store.results()),
-        probabilities=head.probabilities,
-        selection=head.selection,
-    )
+    document = replace(store.document, results=tuple(store.results()))
     return EvidenceFile(store.file, store.sha256, document)

@@ -8,16 +8,15 @@ from contextlib import suppress
 from pathlib import Path
 from sqlite3 import Error as SqliteError
 
-from compiler.files.records import UNSET
+from compiler.files.records import UNSET, replace
 from compiler.files.text_files import destination
 from fretc.audit.evidence.schema import Document, Result
+from fretc.audit.evidence.writer import text
 from fretc.audit.store import earlier_store
 from fretc.audit.store.container import (
     FILE,
-    Head,
     Row,
     closed,
-    head_of,
     identity,
     is_container,
     next_unfinished,
@@ -78,12 +77,19 @@ class StoreFile:
             closed(self.connection)
 
 
-def complete(path: Path, head: Head, found: Sequence[Row]) -> str:
-    """Write the head of a file that was closed; gives the SHA-256 of the evidence."""
-    sha256 = identity(head.text, found)
+def complete(path: Path, document: Document, found: Sequence[Row]) -> str:
+    """Write the head of a file that was closed; gives the SHA-256 of the evidence.
+
+    Args:
+        path: of the file.
+        document: the evidence; its results are not written.
+        found: the row of each run.
+    """
+    head = text(replace(document, results=()))
+    sha256 = identity(head, found)
     connection = written(path)
     try:
-        connection.execute("UPDATE about SET head = ?, sha256 = ?", (head.text, sha256))
+        connection.execute("UPDATE about SET head = ?, sha256 = ?", (head, sha256))
     finally:
         closed(connection)
     return sha256
@@ -132,9 +138,7 @@ def _shared(result: Result) -> tuple[object, ...]:
     return result.run, result.health, result.labels
 
 
-def write_document(
-    folder: Path, document: Document, confidence: float | None = None
-) -> str | Diagnostic:
+def write_document(folder: Path, document: Document) -> str | Diagnostic:
     """Write evidence that is in memory as a store; gives the SHA-256 of the evidence."""
     try:
         destination(folder / FILE)
@@ -144,7 +148,7 @@ def write_document(
         for place, run in enumerate(runs_of(document.results)):
             file.put(*packed(place, run))
         file.connection.execute("COMMIT")
-        sha256 = complete(file.path, head_of(document, confidence), file.close())
+        sha256 = complete(file.path, document, file.close())
         publish(file.path)
     except (OSError, SqliteError) as error:
         return not_written(folder, error)

@@ -64,7 +64,7 @@ def test_an_earlier_store_is_replaced_by_one_of_this_version(store: Path) -> Non
     before = read("store")
     assert not isinstance(before, Diagnostic)
     (store / "own").write_text("precious")
-    assert isinstance(write_document(store, before.document, 0.95), str)
+    assert isinstance(write_document(store, before.document), str)
     assert sorted(os.listdir(store)) == ["evidence.sqlite", "own"]
     assert isinstance(source("store"), Store)
     after = read("store")

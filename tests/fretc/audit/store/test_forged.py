@@ -68,7 +68,7 @@ ALL = [*forgeries(RECORD)]
 def test_no_change_of_a_result_is_hidden(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The store is refused, or all readers give the counts of the changed results."""
     monkeypatch.chdir(tmp_path)
-    assert isinstance(write_document(Path("store"), DOCUMENT, 0.95), str)
+    assert isinstance(write_document(Path("store"), DOCUMENT), str)
     sound, before = Path("store/evidence.sqlite").read_bytes(), text(DOCUMENT)
     assert len(ALL) > 300
     accepted = 0
