@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.audit.evidence.result_summaries import Stretches
 from fretc.report.across.lanes import MOST_LANES, RunStretches, plan
+from fretc.report.across.stretches import Stretches
 from fretc.report.model.across import LaneMark, Lanes
 from fretc.report.model.marks import verdict_mark
 from tests.effort import examples
