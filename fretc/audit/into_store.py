@@ -81,8 +81,8 @@ class _ReusableLog:
     """The file with its results."""
     row: Row
     entry: Entry
-    claims: Collection[str]
-    """The requirements whose results are reusable."""
+    claims: Collection[str] | None
+    """The requirements whose results are reusable; None: all."""
     has_same_labels: bool
     """Whether that audit gave all runs the same labels."""
 
@@ -102,7 +102,8 @@ class _ReusableLog:
             results = [*whole_results(run, range(self.row.results))]
         except SchemaError:
             return ()
-        return tuple(each for each in results if each.requirement in self.claims)
+        claims = self.claims
+        return tuple(each for each in results if claims is None or each.requirement in claims)
 
 
 class ReusableResults:
@@ -143,14 +144,14 @@ class ReusableResults:
         if about is None or not authentic:
             return
         is_same = about.plan == self._plan.key
-        claims: Collection[str] = about.claims.keys()
+        claims: set[str] | None = None
         if not is_same:
             self.stale = True
             now = keys(self._plan)
             claims = {id for id, own in about.claims.items() if now.get(id) == own}
             self.claims |= claims
         has_same_labels = is_same and about.labels == dict(self._plan.labels)
-        for row, entry in authentic if claims else ():
+        for row, entry in authentic if is_same or claims else ():
             log = _ReusableLog(path, row, entry, claims, has_same_labels)
             (self._logs if is_same else self._some)[entry.log] = log
 

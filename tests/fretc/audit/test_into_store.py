@@ -178,6 +178,18 @@ def test_labels_of_the_command_are_those_of_the_last_one(fretc: Fretc) -> None:
 
 
 @pytest.mark.slow
+def test_other_labels_keep_the_results_of_requirements_that_are_not_judged(fretc: Fretc) -> None:
+    Path("requirements/r2.fret").write_text('+++\nid = "R2"\n+++\nthe robot shall')
+    for version in "12":
+        assert fretc("audit", *LOGS, "--label", f"version={version}").status == 2
+        store = opened(str(STORE))
+        assert isinstance(store, Store)
+        labelled = {(one.requirement, str(one.labels)) for one in store.results()}
+        assert labelled == {(id, f"{{'version': '{version}'}}") for id in ("R1", "R2")}
+    assert known_by() == ["stamp"] * 3
+
+
+@pytest.mark.slow
 def test_the_command_says_what_is_known_and_shows_all(fretc: Fretc) -> None:
     whole = fretc("audit", *LOGS)
     again = fretc("audit", *LOGS)
