@@ -267,6 +267,9 @@ class StoreWriter:
             return not_written(self.folder, error)
         except StoreError as error:
             return error.diagnostic
+        finally:  # an interruption may have come after a run was written and before it was counted
+            if self._file is not None and self._file.is_open:
+                self.kept = self._file.reusable() - len(self.known)
 
     def _take_over(self, file: StoreFile) -> None:
         """Reuse the results of all known logs, in one transaction."""
@@ -309,7 +312,6 @@ class StoreWriter:
         self._note(log, first.run, tuple(map(self._one, own.diagnostics)))
         self._read += own.read
         self._pack(file, entry, with_command_labels(self._plan, own), log)
-        self.kept += self._authenticity is not None and entry.size is not None
 
     def _one(self, found: Diagnostic) -> Diagnostic:
         """The diagnostic, or an equal one that is already in memory."""

@@ -6,6 +6,7 @@ import json
 import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from compiler.files.checked_json import LARGEST_COUNT, LEAST
@@ -62,6 +63,14 @@ _TYPES = {
     "log_summary_sha256": "string",
 }
 """Column → its type. The meaning of each is in `docs/audit.md`."""
+_TIMES = ("start_ns", "end_ns", "first_violation_ns")
+_OF_LOG = ("clock", "size", "gaps", "findings", "fretc")
+_HASHED = ("log", "sentence", "bindings", "monitor", "log_summary")
+_SHAS = tuple(f"{name}_sha256" for name in _HASHED)
+_COUNTED = tuple(name for name in _TYPES if name not in (*_TIMES, *_OF_LOG, *_SHAS))
+_counted, _times, _hashes = attrgetter(*_COUNTED), attrgetter(*_TIMES), attrgetter(*_HASHED)
+ROW = (*_COUNTED, *_TIMES, *_OF_LOG, *_SHAS)
+"""The columns of `row_of`, in its order."""
 _SQL = {"string": "TEXT", "bool": "INTEGER", "int64": "INTEGER", "float64": "REAL"}
 _VIOLATION = tuple(name for name in Violation.__struct_fields__ if name != "surroundings")
 _RUN = tuple(name for name in RunFacts.__dataclass_fields__ if name not in ("health", "labels"))
@@ -109,7 +118,7 @@ def _add(connection: sqlite3.Connection, path: str, names: Sequence[str]) -> Dia
             found = _read_parquet(path)
             if isinstance(found, Diagnostic):
                 return found
-            _insert(connection, "given", (tuple(row.values()) for row in found.to_pylist()))
+            _insert(connection, "given", (tuple(map(row.get, ROW)) for row in found.to_pylist()))
             return None
         if not start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
             return _neither(path)
@@ -128,9 +137,10 @@ def _add(connection: sqlite3.Connection, path: str, names: Sequence[str]) -> Dia
 
 
 def _insert(connection: sqlite3.Connection, table: str, found: Iterable[tuple[Any, ...]]) -> None:
-    marks = ",".join("?" * len(TABLES["results" if table == "given" else table]))
+    columns = ROW if table == "given" else TABLES[table]
+    marks = ",".join("?" * len(columns))
     connection.execute("BEGIN")
-    connection.executemany(f"INSERT INTO {table} VALUES ({marks})", found)
+    connection.executemany(f"INSERT INTO {table} ({','.join(columns)}) VALUES ({marks})", found)
     connection.execute("COMMIT")
 
 
@@ -145,26 +155,20 @@ def rows(source: EvidenceSource) -> Iterator[tuple[Any, ...]]:
 
 
 def row_of(result: Result | CountedResult, fretc: str) -> tuple[Any, ...]:
-    """The row of a result.
+    """The row of a result, with the columns of `ROW`.
 
     Args:
         result: a record of evidence.
         fretc: the version of fretc that wrote the result.
     """
     summary, health = brief(result), result.health
-    values = {
-        "clock": result.clock,
-        "start_ns": _held(summary.start_ns),
-        "end_ns": _held(summary.end_ns),
-        "first_violation_ns": _held(summary.first_violation_ns),
-        "size": health.size,
-        "gaps": len(health.gaps),
-        "findings": len(health.findings),
-        "fretc": fretc,
-    }
-    for name in ("log", "sentence", "bindings", "monitor", "log_summary"):
-        values[f"{name}_sha256"] = getattr(summary.fingerprints, name) or None
-    return tuple(values[n] if n in values else getattr(summary, n) for n in _TYPES)
+    prints = summary.fingerprints
+    return (
+        *_counted(summary),
+        *map(_held, _times(summary)),
+        *(result.clock, health.size, len(health.gaps), len(health.findings), fretc),
+        *(each or None for each in _hashes(prints)),
+    )
 
 
 def _held(value: object) -> Any:
@@ -207,8 +211,8 @@ def parquet(found: Iterable[tuple[Any, ...]]) -> bytes:
     from pyarrow.parquet import write_table
 
     schema = _schema()
-    columns = [*zip(*found, strict=True)] or [()] * len(schema)
-    arrays = [pyarrow.array(c, field.type) for c, field in zip(columns, schema, strict=True)]
+    columns = dict(zip(ROW, [*zip(*found, strict=True)] or [()] * len(ROW), strict=True))
+    arrays = [pyarrow.array(columns[field.name], field.type) for field in schema]
     stream = pyarrow.BufferOutputStream()
     write_table(pyarrow.Table.from_arrays(arrays, schema=schema), stream, compression="zstd")
     return bytes(stream.getvalue())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -45,7 +46,7 @@ class StoreFile:
         self.path, self.runs = path, 0
         self.connection = written(path, new=True)
         self.connection.execute("UPDATE about SET plan = ?", (plan,))
-        self._is_open = True
+        self.is_open = True
 
     def put(
         self, row: Row, record: bytes, entry: str | None = None, mark: str | None = None
@@ -64,6 +65,11 @@ class StoreFile:
         self.connection.execute(f"INSERT INTO runs ({columns}) VALUES (?,?,?,?,?,?,?,?)", values)
         self.runs += 1
 
+    def reusable(self) -> int:
+        """The number of runs that a later audit can reuse."""
+        entries = self.connection.execute("SELECT entry FROM runs WHERE mark IS NOT NULL")
+        return sum(json.loads(entry)["size"] is not None for (entry,) in entries)
+
     def close(self) -> list[Row]:
         """Close the file; gives the row of each run."""
         found = rows(self.connection)
@@ -72,8 +78,8 @@ class StoreFile:
 
     def discard(self) -> None:
         """Close the file if it is open."""
-        if self._is_open:
-            self._is_open = False
+        if self.is_open:
+            self.is_open = False
             closed(self.connection)
 
 
