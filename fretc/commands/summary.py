@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
@@ -34,12 +35,14 @@ def summarize(paths: Sequence[str], query: str | None, output_format: str) -> No
     if isinstance(table, Diagnostic):
         fail(table)
     if query is not None:
-        answer = run_query(table, query)
+        with closing(table):
+            answer = run_query(table, query)
         if isinstance(answer, Diagnostic):
             fail(answer)
         click.echo(_json(answer.records) if output_format == "json" else _listed(answer), nl=False)
         raise SystemExit(EXIT_OK)
-    summary = summarize(table)
+    with closing(table):
+        summary = summarize(table)
     print_diagnostics(summary.remarks)
     click.echo(_json(summary.as_record) if output_format == "json" else _text(summary), nl=False)
     raise SystemExit(
