@@ -98,8 +98,7 @@ def head(known: Project) -> dict[str, Any]:
     """The same without its results."""
     known_bases = bases(known)
     bound = {
-        requirement.id: known_bases[id(requirement.entry)][BOUND]
-        for requirement in known.formalized
+        requirement.id: known_bases[requirement.entry][BOUND] for requirement in known.formalized
     }
     texts = [
         {
@@ -121,7 +120,7 @@ def results(known: Project, runs: int, share: float) -> Iterator[list[dict[str, 
             _result(
                 choose,
                 requirement,
-                known_bases[id(requirement.entry)],
+                known_bases[requirement.entry],
                 run,
                 violated=choose.random() < share,
             )

@@ -15,7 +15,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic import decision_diagrams as bdd
+from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.targets.python import monitor as monitors
 from fretc.analysis.arena.budget import Budget
 from fretc.campaigns.experiment import SafetyFunction, interceptor_text, monitor_text

@@ -18,8 +18,7 @@ import click
 from compiler.emit import TARGETS
 from compiler.files.build_id import __version__
 from compiler.files.processes import isolate_imports
-from fretc.api.refusal import too_deep
-from fretc.terminal.completion import answer_query
+from fretc.commands.completion import answer_query
 from fretc.terminal.group import DEFAULT, Commands, Registry
 from fretc.terminal.output import (
     EXIT_INTERRUPTED,
@@ -32,6 +31,7 @@ from fretc.terminal.output import (
     print_status,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.reading.limits import ExceededError, exceeded
 
 _HELP = f"""From FRETish requirements to runtime monitors, audited logs and a traceability report.
@@ -141,7 +141,7 @@ def main() -> None:
         print_diagnostics([exceeded(error)])
         raise SystemExit(EXIT_USAGE) from None
     except RecursionError:
-        print_diagnostics([too_deep()])
+        print_diagnostics([diagnostic("api_expression_too_deep")])
         raise SystemExit(EXIT_USAGE) from None
     except OSError as error:
         _no_output(error)
@@ -165,9 +165,7 @@ Python's default of 700 the collector takes a tenth of the start-up time."""
 def _prepare() -> None:
     """Make streams and signals safe: closed pipes and SIGTERM keep exit status and files intact.
 
-        Nothing in the current folder is executed by accident.
-
-    Nor is anything executed that happens to lie in the current folder.
+    Nothing in the current folder is executed by accident.
     """
     isolate_imports()
     gc.set_threshold(_GARBAGE)

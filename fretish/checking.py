@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from typing import assert_never
 
 from fretish import expressions as e
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.fixes import Fix
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.expressions import depth
 from fretish.keywords import UNUSED
@@ -39,16 +40,7 @@ def check_depth(sentence: Sentence) -> Diagnostic | None:
 
 def too_deep(sentence: Sentence) -> Diagnostic:
     """F115 for the whole sentence."""
-    return _too_deep(sentence.span)
-
-
-def _too_deep(place: Span | None) -> Diagnostic:
-    return Diagnostic(
-        Code.TOO_DEEP,
-        "an expression has too many nested operators",
-        place,
-        help="define names for parts of it",
-    )
+    return diagnostic("expression_too_deep", sentence.span)
 
 
 def calls(expression: e.Expression) -> Iterator[str]:
@@ -66,23 +58,13 @@ def check_names(sentence: Sentence) -> Iterator[Diagnostic]:
     names = [name for expression in conditions(sentence) for name in _names(expression)]
     for _, span in [(sentence.component, sentence.component_span), *names]:
         if span is not None and span.text.lower() in UNUSED:
-            yield key_word_as_name(span)
-
-
-def key_word_as_name(word: Span) -> Diagnostic:
-    """F109 for a key word that is used as a name."""
-    return Diagnostic(
-        Code.RESERVED,
-        f"`{word.text}` is a key word of FRETish and cannot be a name",
-        word,
-        help=f'choose another name, or quote it: `"{word.text}"`',
-    )
+            yield diagnostic("key_word_as_name", span, word=span.text)
 
 
 def check_value(expression: e.Expression, place: Span) -> Iterator[Diagnostic]:
     """Check the value of a variable: F112 and F115."""
     if depth(expression) > MOST:
-        yield _too_deep(place)
+        yield diagnostic("expression_too_deep", place)
         return
     is_truth = _is_boolean(expression, expected=True)
     yield from _check_kinds(expression, place, boolean=is_truth)
@@ -175,10 +157,11 @@ def _wrong_kind(boolean: bool, span: Span | None) -> Diagnostic:
         if boolean
         else "join truth values by `<->`, `&`, `|`; only numbers can be compared"
     )
-    return Diagnostic(
-        Code.WRONG_KIND,
-        f"a {wanted} is needed here, and this is a {actual}",
+    return diagnostic(
+        "wrong_kind",
         span,
+        wanted=wanted,
+        actual=actual,
         help=f"`=>` is an implication: {fix.help}" if fix is not None else words,
         fix=fix,
     )
@@ -220,10 +203,11 @@ def _not_formalized(id: str, span: Span | None) -> Diagnostic:
     else:
         consequence = "the FT formula expresses it, the PT formula keeps it as a proposition"
         fix = "read the FT formula; a monitor cannot look ahead"
-    return Diagnostic(
-        Code.PREDICATE_NOT_FORMALIZED,
-        f"`{id}` looks {'ahead' if id in LOOK_AHEAD else 'back'}: {consequence}",
+    return diagnostic(
+        "predicate_not_formalized",
         span,
+        id=id,
+        direction="ahead" if id in LOOK_AHEAD else "back",
+        consequence=consequence,
         help=fix,
-        severity=Severity.WARNING,
     )

@@ -8,7 +8,8 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import assert_never
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.syntax import (
     SHAPES,
     Duration,
@@ -128,7 +129,7 @@ def in_ticks(sentence: Sentence, clock: Clock | None) -> int | Diagnostic | None
     if bound is None or clock is None or bound.unit == "tick":
         return bound.amount if bound else None
     if clock.period is None:
-        return _no_time(bound, clock)
+        return diagnostic("messages_cannot_count_time", bound.span, clock=clock, unit=bound.unit)
     exact = Fraction(bound.amount * NANOSECONDS[bound.unit], clock.period)
     if exact.denominator == 1:
         return int(exact)
@@ -189,13 +190,8 @@ def assumed_ticks(sentence: Sentence, clock: Clock | None) -> Diagnostic | None:
     bound = duration(sentence.timing)
     if clock is not None or bound is None or bound.unit == "tick":
         return None
-    return Diagnostic(
-        Code.NO_CLOCK,
-        f"no clock says what a tick is: `{duration_text(bound)}` is read as {bound.amount} ticks, "
-        "as FRET does",
-        bound.span,
-        help='declare `[clock]` with `tick = "100 ms"` in bindings.toml, or write ticks',
-        severity=Severity.WARNING,
+    return diagnostic(
+        "assumed_ticks", bound.span, duration=duration_text(bound), amount=bound.amount
     )
 
 
@@ -206,10 +202,12 @@ def duration_text(bound: Duration) -> str:
 
 def _inexact(bound: Duration, clock: Clock, exact: Fraction) -> Diagnostic:
     assert clock.period is not None
-    return Diagnostic(
-        Code.INEXACT_DURATION,
-        f"{duration_text(bound)} is {_exactly(exact)} ticks of {in_words(clock.period)}",
+    return diagnostic(
+        "inexact_duration",
         bound.span,
+        duration=duration_text(bound),
+        ticks=_exactly(exact),
+        period=in_words(clock.period),
         help="use a whole number of ticks, or a finer `tick`"
         if clock.rounding is Rounding.CONSERVATIVE
         else "use a whole number of ticks, a finer `tick`, or "
@@ -227,13 +225,4 @@ def _no_stricter_side(
     inexact = _inexact(bound, clock, exact)
     return replace(
         inexact, message=f"{inexact.message}, and `{part}` has no stricter side to round to"
-    )
-
-
-def _no_time(bound: Duration, clock: Clock) -> Diagnostic:
-    return Diagnostic(
-        Code.MESSAGE_CLOCK,
-        f"the clock ticks with {clock}: it cannot count {bound.unit}s",
-        bound.span,
-        help='count ticks, or declare a period: `tick = "100 ms"`',
     )

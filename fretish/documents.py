@@ -9,6 +9,7 @@ from pathlib import PurePath
 from typing import Any
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.toml_text import Tables, read, unknown_key
 
@@ -51,10 +52,19 @@ class RequirementEntry:
     mistakes: tuple[Diagnostic, ...] = ()
     """The errors of the header; if there are any, its fields are not read."""
 
+    def __hash__(self) -> int:
+        """By identity: two requirements may have one id, and none has two meanings."""
+        return id(self)
+
     @property
     def name(self) -> str:
         """The display name: `No contact (R14)`, or the id if there is no title."""
         return named(self.id, self.title)
+
+    @property
+    def is_in_force(self) -> bool:
+        """Whether the requirement is not retired."""
+        return self.status != "retired"
 
     @property
     def is_free_text(self) -> bool:
@@ -187,12 +197,7 @@ def _mistakes(tables: Tables, *, alone: bool) -> Iterator[Diagnostic]:
         elif not _fits(key, value):
             yield _bad_field(tables, key)
     if "id" not in tables.data and not alone:
-        yield Diagnostic(
-            Code.BAD_FIELD,
-            "each requirement needs an `id` if a file holds several",
-            tables.text.part(0, 0),
-            help='add `id = "R1"`',
-        )
+        yield diagnostic("id_missing", tables.text.part(0, 0))
 
 
 def _fits(key: str, value: Any) -> bool:
@@ -219,18 +224,10 @@ def _bad_field(tables: Tables, key: str) -> Diagnostic:
         "id": "letters, digits, `_`, `-` and `.` in quotes, beginning with a letter or digit",
         "status": f"one of {', '.join(STATUSES)}",
     }
-    return Diagnostic(
-        Code.BAD_FIELD,
-        f"`{key}` has a value of the wrong kind",
-        tables.value(key),
-        help=f"write {wanted.get(key, 'a text in quotes')}",
+    return diagnostic(
+        "bad_field", tables.value(key), key=key, value=wanted.get(key, "a text in quotes")
     )
 
 
 def _unclosed(source: Source, fence: re.Match[str]) -> Diagnostic:
-    return Diagnostic(
-        Code.UNCLOSED_HEADER,
-        "a header begins here and does not end",
-        source.span(fence.start(), fence.start() + 3),
-        help="close the header with a line `+++` before the sentence",
-    )
+    return diagnostic("unclosed_header", source.span(fence.start(), fence.start() + 3))

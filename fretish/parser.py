@@ -21,13 +21,14 @@ from lark.visitors import Transformer_NonRecursive
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import check_depth, check_names, check_response_kinds, check_value
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError
 from fretish.diagnostics.fixes import FixedText
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.error_rules.operators import unknown_character
 from fretish.error_rules.unexpected import Lexeme, Unexpected
 from fretish.reading.grammars import Grammar
-from fretish.syntax_errors import bad_duration, bad_probability, explain, no_sentence
+from fretish.syntax_errors import bad_duration, bad_probability, explain
 from fretish.units import NAMES, number
 from fretish.units import split as split_quantity
 
@@ -115,7 +116,7 @@ def _parse_sentence(text: Span) -> s.Sentence | Diagnostic:
 def _sentence_tree(text: Span) -> ParseTree | Diagnostic:
     """The parse tree of a sentence, or a syntax error."""
     if not text.text.strip():
-        return no_sentence(text)
+        return diagnostic("no_sentence", text.part(0, 0))
     return _parse_tree(text, "start")
 
 
@@ -177,12 +178,8 @@ def _as_unsafe(error: Diagnostic) -> Diagnostic:
     return replace(error, fix=fix, help=fix.help if error.help == error.fix.help else error.help)
 
 
-class _ParseError(Exception):
+class _ParseError(DiagnosticError):
     """Carries a diagnostic out of the parser's callbacks."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 _text: ContextVar[Span] = ContextVar("_text")

@@ -10,9 +10,9 @@ import re
 from collections.abc import Callable
 from fractions import Fraction
 
-from fretish.checking import key_word_as_name
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, suggestion
 from fretish.diagnostics.fixes import Fix, removal
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.error_rules.operators import (
     COMPARISONS,
@@ -33,7 +33,7 @@ from fretish.error_rules.order import (
 )
 from fretish.error_rules.unexpected import STARTS_EXPRESSION, Unexpected, not_fretish
 from fretish.keywords import KEYWORDS
-from fretish.units import number, too_long, unit, unknown_unit
+from fretish.units import number, unit, unknown_unit
 
 _GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
     ("a scope (`in m`, `before m`, ...)", frozenset({"DURING", "EXCEPT", "ONLY", "WHILE"})),
@@ -86,16 +86,6 @@ def explain(unexpected: Unexpected) -> Diagnostic:
     return _does_not_fit(unexpected)
 
 
-def no_sentence(text: Span) -> Diagnostic:
-    """F106 for an empty text."""
-    return Diagnostic(
-        Code.NO_SENTENCE,
-        "there is no sentence here",
-        text.part(0, 0),
-        help="write `the COMPONENT shall eventually satisfy RESPONSE`",
-    )
-
-
 def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
     """F108 for a number that is negative, fractional or in scientific notation.
 
@@ -105,28 +95,13 @@ def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
         whole: the span of the number and its unit.
     """
     if span.text.startswith("-"):
-        return Diagnostic(
-            Code.BAD_DURATION,
-            "a duration cannot be negative",
-            span,
-            help="count from the trigger: 0 is the trigger itself",
-        )
+        return diagnostic("negative_duration", span)
     if span.text.isdigit():
-        return Diagnostic(
-            Code.BAD_DURATION,
-            "a duration has at most 15 digits",
-            span,
-            help="use a larger unit",
-        )
+        return diagnostic("duration_too_long", span)
     fix = _whole(span.text, unit, whole)
-    words = "use a smaller unit, so that the number is whole: 500 milliseconds, not 0.5 seconds"
-    return Diagnostic(
-        Code.BAD_DURATION,
-        f"a duration must be a whole number, and `{span.text}` is not",
-        span,
-        help=fix.help if fix is not None else words,
-        fix=fix,
-    )
+    if fix is not None:
+        return diagnostic("duration_of_smaller_unit", span, text=span.text, fix=fix)
+    return diagnostic("duration_not_whole", span, text=span.text)
 
 
 def _whole(digits: str, unit: str, whole: Span) -> Fix | None:
@@ -145,12 +120,7 @@ def _whole(digits: str, unit: str, whole: Span) -> Fix | None:
 
 def bad_probability(span: Span) -> Diagnostic:
     """F110 for a probability out of range."""
-    return Diagnostic(
-        Code.BAD_PROBABILITY,
-        f"no run can have the probability `{span.text}`",
-        span,
-        help="a probability lies between 0 and 1; `> 1` and `< 0` can never hold",
-    )
+    return diagnostic("impossible_probability", span, text=span.text)
 
 
 # Rules, the most specific first ----------------------------------------------------------------
@@ -159,17 +129,12 @@ def bad_probability(span: Span) -> Diagnostic:
 def _unit(u: Unexpected) -> Diagnostic | None:
     if not u.expects(*_UNITS):
         return None
-    words = "write ticks, microseconds, milliseconds, seconds, minutes or hours: `within 3 seconds`"
     if u.lexeme.kind != "ID":
-        return Diagnostic(Code.BAD_DURATION, "a duration needs a unit", u.lexeme.span, help=words)
+        return diagnostic("duration_without_unit", u.lexeme.span)
     fix = _unit_fix(u.lexeme.span)
-    return Diagnostic(
-        Code.BAD_DURATION,
-        f"a duration needs a unit, and `{u.lexeme.word}` is not one",
-        u.lexeme.span,
-        help=fix.help if fix is not None else words,
-        fix=fix,
-    )
+    if fix is not None:
+        return diagnostic("misspelt_unit", u.lexeme.span, word=u.lexeme.word, fix=fix)
+    return diagnostic("duration_of_unknown_unit", u.lexeme.span, word=u.lexeme.word)
 
 
 def _measured(u: Unexpected) -> Diagnostic | None:
@@ -177,7 +142,7 @@ def _measured(u: Unexpected) -> Diagnostic | None:
     if u.previous is None or u.previous.kind != "NUMBER" or u.lexeme.kind != "ID":
         return None
     if unit(u.lexeme.word) is not None:
-        return too_long(u.previous.span)
+        return diagnostic("number_too_long", u.previous.span)
     return unknown_unit(u.lexeme.word, u.lexeme.span)
 
 
@@ -196,12 +161,7 @@ def _number(u: Unexpected) -> Diagnostic | None:
         return None
     if not u.accepts <= {"NUMBER", "MINUS"}:
         return None
-    return Diagnostic(
-        Code.BAD_DURATION,
-        "a duration must begin with a number in digits",
-        u.lexeme.span,
-        help=f"write, for example, `{u.previous.word} N seconds`",
-    )
+    return diagnostic("duration_without_number", u.lexeme.span, previous=u.previous.word)
 
 
 def _superfluous(u: Unexpected) -> Diagnostic | None:
@@ -231,12 +191,9 @@ def _globally(u: Unexpected) -> Diagnostic | None:
     if not u.expects("SHALL"):
         return None
     comma = u.lexeme.kind == "_COMMA"
-    return not_fretish(
-        f"FRETish has no word for the scope `{u.previous.word}`",
-        u.previous.span,
-        removal(u.previous.span.to(u.lexeme.span) if comma else u.previous.span, is_safe=True),
-        "remove it: without a scope a requirement applies to the whole run",
-    )
+    removed = u.previous.span.to(u.lexeme.span) if comma else u.previous.span
+    fix = removal(removed, is_safe=True)
+    return diagnostic("word_for_no_scope", u.previous.span, word=u.previous.word, fix=fix)
 
 
 def _mode(u: Unexpected) -> Diagnostic | None:
@@ -245,11 +202,7 @@ def _mode(u: Unexpected) -> Diagnostic | None:
         return None
     if not u.expects("MODE") or u.expects("NUMBER"):
         return None
-    return not_fretish(
-        "a mode must be one name",
-        u.lexeme.span,
-        "for an expression, write `while p & q` instead of `in`",
-    )
+    return diagnostic("mode_of_several_names", u.lexeme.span)
 
 
 def _shall(u: Unexpected) -> Diagnostic | None:
@@ -257,13 +210,7 @@ def _shall(u: Unexpected) -> Diagnostic | None:
     if not u.expects("SHALL") or word not in (*_SHALL, *_WEAKER):
         return None
     fix = Fix(u.lexeme.span, "shall", is_safe=word in _SHALL)
-    return Diagnostic(
-        Code.MISSPELT,
-        f"a requirement uses `shall`, not `{u.lexeme.word}`",
-        u.lexeme.span,
-        help=fix.help,
-        fix=fix,
-    )
+    return diagnostic("misspelt_shall", u.lexeme.span, word=u.lexeme.word, fix=fix)
 
 
 def _missing_shall(u: Unexpected) -> Diagnostic | None:
@@ -273,13 +220,7 @@ def _missing_shall(u: Unexpected) -> Diagnostic | None:
     if u.lexeme.kind not in ("SATISFY", *TIMINGS) or re.search(r"\bshall\b", u.rest.text, re.I):
         return None
     fix = Fix(u.lexeme.span.part(0, 0), "shall ", is_safe=u.lexeme.kind == "SATISFY")
-    return Diagnostic(
-        Code.NOT_FRETISH,
-        f"`shall` is missing before `{u.lexeme.word}`",
-        u.lexeme.span,
-        help=f"write `shall {u.lexeme.word}`",
-        fix=fix,
-    )
+    return diagnostic("missing_shall", u.lexeme.span, word=u.lexeme.word, fix=fix)
 
 
 def _component(u: Unexpected) -> Diagnostic | None:
@@ -290,7 +231,7 @@ def _component(u: Unexpected) -> Diagnostic | None:
         return None
     both = u.previous.span.to(u.lexeme.span)
     fix = Fix(both, f"{u.previous.word}_{u.lexeme.word}")
-    return not_fretish("a component must be one name", both, fix)
+    return diagnostic("component_of_several_names", both, fix=fix)
 
 
 def _misspelt(u: Unexpected) -> Diagnostic | None:
@@ -302,13 +243,7 @@ def _misspelt(u: Unexpected) -> Diagnostic | None:
         near = suggestion(suspect.word, KEYWORDS, cutoff=0.72)
         if suspect.kind == "ID" and near is not None:
             fix = Fix(suspect.span, near)
-            return Diagnostic(
-                Code.MISSPELT,
-                f"FRETish does not allow the word `{suspect.word}` here",
-                suspect.span,
-                help=fix.help,
-                fix=fix,
-            )
+            return diagnostic("misspelt_word", suspect.span, word=suspect.word, fix=fix)
     return None
 
 
@@ -317,11 +252,10 @@ def _missing_satisfy(u: Unexpected) -> Diagnostic | None:
         return None
     response = u.rest
     two_words = _TWO_WORDS.match(response.text) is not None
-    return Diagnostic(
-        Code.MISSING_SATISFY,
-        f"missing `satisfy` before `{response.text}`",
+    return diagnostic(
+        "missing_satisfy",
         response,
-        help=f"write `satisfy {response.text}`",
+        response=response.text,
         fix=Fix(response.part(0, 0), "satisfy ", is_safe=not two_words),
     )
 
@@ -333,32 +267,24 @@ def _missing_component(u: Unexpected) -> Diagnostic | None:
     ends = u.follows("SHALL") and u.expects("ID")
     if not starts and not (ends and u.lexeme.word.lower() in KEYWORDS):
         return None
-    return Diagnostic(
-        Code.MISSING_COMPONENT,
-        "there is no component before `shall`",
-        u.lexeme.span if starts or u.previous is None else u.previous.span,
-        help="name what must satisfy the requirement: `the rover shall ...`",
+    return diagnostic(
+        "missing_component", u.lexeme.span if starts or u.previous is None else u.previous.span
     )
 
 
 def _key_word_as_name(u: Unexpected) -> Diagnostic | None:
     if not u.expects("ID") or u.lexeme.word.lower() not in KEYWORDS:
         return None
-    return key_word_as_name(u.lexeme.span)
+    return diagnostic("key_word_as_name", u.lexeme.span, word=u.lexeme.span.text)
 
 
 def _does_not_fit(u: Unexpected) -> Diagnostic:
     own = frozenset({"MODE"}) if u.expects("ID") else frozenset()  # there `mode` is a name, too
     expected = [words for words, kinds in _GROUPS if u.expects(*kinds - own)]
-    message = (
-        "the sentence ends too early" if u.lexeme.at_end else f"`{u.lexeme.word}` does not fit here"
-    )
-    return Diagnostic(
-        Code.NOT_FRETISH,
-        message,
-        u.lexeme.span,
-        help=f"expected {_alternatives(expected)}" if expected else None,
-    )
+    fix = f"expected {_alternatives(expected)}" if expected else None
+    if u.lexeme.at_end:
+        return diagnostic("sentence_ends", u.lexeme.span, help=fix)
+    return diagnostic("misplaced_word", u.lexeme.span, word=u.lexeme.word, help=fix)
 
 
 def _alternatives(words: list[str]) -> str:

@@ -15,7 +15,8 @@ from fractions import Fraction
 from itertools import combinations
 from operator import mul
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, suggestion
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 
 _BASES = ("m", "kg", "s", "A", "K", "rad")
@@ -230,19 +231,9 @@ def unknown_unit(name: str, span: Span) -> Diagnostic:
     """F306, with the nearest unit."""
     near = _SPELT.get(name) or suggestion(name, NAMES)
     examples = "m, cm, s, ms, rad, deg, m/s, rad/s, m/s^2, kg, A, V, Hz, %"
-    return Diagnostic(
-        Code.UNKNOWN_UNIT,
-        f"unknown unit `{name}`",
+    return diagnostic(
+        "unknown_unit",
         span,
+        name=name,
         help=f"did you mean `{near}`?" if near else f"write a unit such as {examples}",
-    )
-
-
-def too_long(span: Span) -> Diagnostic:
-    """F308 for a number with too many digits."""
-    return Diagnostic(
-        Code.BAD_EXPRESSION,
-        "the number has more than 60 digits, or an exponent of more than 3 digits",
-        span,
-        help="write fewer digits",
     )

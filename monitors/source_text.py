@@ -100,7 +100,7 @@ def _collect(tree: ast.Module, imports: dict[str, set[str]]) -> int:
 def _head(imports: dict[str, set[str]]) -> str:
     plain = [f"import {name}" for name in sorted(imports) if name != "sys" and " " not in name]
     some = [
-        _from(name, sorted(names, key=_constants_first))
+        _from(name, sorted(names, key=lambda own: (not own.isupper(), own)))
         for name, names in sorted(imports.items())
         if name.startswith("from ")
     ]
@@ -112,7 +112,3 @@ def _from(module: str, names: list[str]) -> str:
     if len(line) <= 88:
         return line
     return "\n".join([f"{module} import (", *(f"    {name}," for name in names), ")"])
-
-
-def _constants_first(name: str) -> tuple[bool, str]:
-    return not name.isupper(), name

@@ -16,7 +16,7 @@ _SERVER = """
 import gc, json, os, resource, sys, tempfile, traceback
 import compiler.project.folder, mcap_ros2, rosbags.typesys
 import fretc.audit.log_paths, fretc.audit.many_logs, fretc.traceability.analyses
-import fretc.commands.audit, fretc.commands.audit_progress, fretc.commands.audit_text
+import fretc.commands.audit, fretc.commands.audit_run
 import fretc.commands.check, fretc.commands.formalize, fretc.commands.info
 from fretc import cli
 

@@ -17,8 +17,8 @@ ORDER = """
 monitors.kernel  monitors
 fretish.diagnostics  fretish.reading  fretish.error_rules  fretish  fretish.bindings
 fretish.bindings.tables
-compiler.files  compiler.logic.ordering  compiler.logic.spelling  compiler.logic
-compiler.formalization  compiler.formalization.numbers
+compiler.files  compiler.logic.diagrams  compiler.logic.ordering  compiler.logic.spelling
+compiler.logic  compiler.formalization  compiler.formalization.numbers
 compiler.situations  compiler.project  compiler.agents  compiler.program  compiler.signals
 compiler.targets  compiler.targets.python  compiler.targets.c  compiler.targets.rust
 compiler.targets.ros  compiler.targets.javascript  compiler.targets.automata  compiler.targets.ajpf
@@ -64,8 +64,9 @@ DOORS = {
         "fretish/parser.py",
         "fretish/reading/grammars.py",
     },
-    "spot": {"compiler/logic/decision_diagrams.py", "compiler/logic/spot.py"},
-    "buddy": {"compiler/logic/decision_diagrams.py", "compiler/logic/spot.py"},
+    "spot": {"compiler/logic/diagrams/buddy_engine.py", "compiler/logic/spot.py"},
+    "buddy": {"compiler/logic/diagrams/buddy_engine.py", "compiler/logic/spot.py"},
+    "oxidd": {"compiler/logic/diagrams/oxidd_engine.py"},
     "jinja2": {"compiler/files/templating.py"},
     "securesystemslib": {"fretc/attestation/keys.py"},
     "cryptography": {"fretc/attestation/keys.py"},
@@ -109,13 +110,14 @@ DOORS = {
         "fretc/analysis/arithmetic/alphabet.py",
         "fretc/analysis/arithmetic/atoms.py",
         "fretc/analysis/arithmetic/cells.py",
+        "fretc/analysis/arithmetic/group_content.py",
         "fretc/analysis/arithmetic/groups.py",
         "fretc/analysis/arithmetic/past.py",
         "fretc/analysis/arithmetic/projection.py",
         "fretc/analysis/arithmetic/steps.py",
         "fretc/analysis/arithmetic/thresholds.py",
         "fretc/analysis/games/lassos.py",
-        "fretc/verification/loop/bounds.py",
+        "fretc/verification/loop/invariant.py",
     },
     "reqif": {"compiler/project/parents.py", "fretc/report/forms/reqif.py"},
     "yaml": {"fretc/report/forms/gsn.py", "fretish/reading/yaml_text.py"},

@@ -34,8 +34,9 @@ from compiler.logic.claims import (
     refuted,
     vacuous,
 )
-from compiler.logic.kripke import Explored, Lasso, TooManyStatesError, check
+from compiler.logic.kripke import Explored, Lasso, ModelTooLargeError, check
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.recursion import with_recursion_limit
 
@@ -129,7 +130,7 @@ def _checked(
         explored = _ExploredModel.of(Model(read, tuple(drawn)), limit)
         spoilt = broken if isinstance(broken, Agent) else None
         return tuple(_PropertyProofs(props, explored, spoilt, artefacts, limit).all())
-    except TooManyStatesError as error:
+    except ModelTooLargeError as error:
         return _unknown(props, f"the agent has {error}", artefacts)
 
 
@@ -140,23 +141,19 @@ def _percept(name: str) -> str | Diagnostic:
         agent = gwendolen.read(Source("percept", text))
         if isinstance(agent, Agent):
             return agent.beliefs[0]
-    return Diagnostic(
-        Code.BAD_PERCEPT,
-        f"`{name}` cannot be a percept",
-        help="write it as in the agent: a name that begins with a small letter",
-    )
+    return diagnostic("bad_percept", name=name)
 
 
 def _other_agent(prop: Property, agent: Agent) -> Diagnostic | None:
     for atom in f.atoms(prop.formula):
         match = _ATOM.fullmatch(atom)
         if match is not None and match["agent"] != agent.name:
-            return Diagnostic(
-                Code.OTHER_AGENT,
-                f"{prop.key} is about the agent `{match['agent']}`, but this agent is "
-                f"`{agent.name}`",
+            return diagnostic(
+                "property_of_other_agent",
                 prop.span,
-                help="AJPF crashes on an unknown agent: use the name after `:name:`",
+                key=prop.key,
+                other=match["agent"],
+                agent=agent.name,
             )
     return None
 

@@ -21,10 +21,10 @@ from compiler.agents.gwendolen_errors import (
     HEADINGS,
     TrapError,
     beyond,
-    misread,
     unexpected,
 )
 from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.grammars import Grammar
 from fretish.reading.limits import with_budget
@@ -134,9 +134,7 @@ class _Reader:
     def agent(self, start: Tree[Token]) -> Agent:
         first = start.children[0]
         if not (isinstance(first, Token) and first.type == "GWENDOLEN"):
-            raise misread(
-                "the file does not begin with `GWENDOLEN`", self.source.span(0, 0), "write it first"
-            )
+            raise TrapError(diagnostic("gwendolen_missing", self.source.span(0, 0)))
         agents = _trees(start, "agent")
         self.refuse_more(agents)
         (word, *sections) = _trees(agents[0])
@@ -155,11 +153,7 @@ class _Reader:
     def refuse_more(self, agents: list[Tree[Token]]) -> None:
         for token in agents[0].children:
             if isinstance(token, Token) and token.type == "GWENDOLEN":
-                raise misread(
-                    "a second `GWENDOLEN` stands in the file",
-                    self.span(token),
-                    "MCAPL ignores all that follows: begin another agent with `:name:`",
-                )
+                raise TrapError(diagnostic("second_gwendolen", self.span(token)))
         if len(agents) > 1:
             raise beyond("a second agent", self.span(cast(Token, agents[1].children[0])))
 
@@ -171,26 +165,23 @@ class _Reader:
             if token == ":Reasoning Rules:" and expected[:1] == [":Initial Goals:"]:
                 continue
             if not expected or token != expected.pop(0):
-                raise misread(
-                    f"`{token}` stands in the wrong place",
-                    self.span(token),
-                    f"the sections are {', '.join(f'`{h}`' for h in HEADINGS)}, in this order",
+                raise TrapError(
+                    diagnostic(
+                        "misplaced_heading",
+                        self.span(token),
+                        token=token,
+                        headings=", ".join(f"`{h}`" for h in HEADINGS),
+                    )
                 )
         if expected:
             end = self.end()
-            raise misread(
-                f"the section `{expected[0]}` is missing", end, "it may be empty, but not left out"
-            )
+            raise TrapError(diagnostic("section_missing", end, section=expected[0]))
 
     def beliefs(self, section: Tree[Token]) -> list[str]:
         literals: list[str] = []
         for part in section.children[1:]:
             if isinstance(part, Token):
-                raise misread(
-                    "a comma stands between initial beliefs",
-                    self.span(part),
-                    "MCAPL drops the beliefs behind it: separate them by white space",
-                )
+                raise TrapError(diagnostic("comma_between_beliefs", self.span(part)))
             literals.append(self.unnegated(part))
         return literals
 
@@ -198,29 +189,23 @@ class _Reader:
         """The literal below `parent`, where no `~` may stand before it."""
         for part in parent.children:
             if isinstance(part, Token) and part.type == "NOT":
-                raise misread(
-                    "a belief has no `~`",
-                    self.span(part),
-                    "an agent believes something or does not: leave the belief out, or remove it",
-                )
+                raise TrapError(diagnostic("negated_belief", self.span(part)))
         return self.literal(_trees(parent, "literal")[0])
 
     def some_plans(self, section: Tree[Token]) -> list[Tree[Token]]:
         plans = _trees(section, "plan")
         if not plans:
             heading = cast(Token, section.children[0])
-            raise misread("there is no plan", self.span(heading), "an agent needs at least one")
+            raise TrapError(diagnostic("plan_missing", self.span(heading)))
         return plans
 
     def plan(self, plan: Tree[Token]) -> Plan:
         event, guards, *rest = _trees(plan)
         span = self.span(plan)
         if not guards.children:
-            raise misread("the guard is empty", self.span(guards), "write `{True}`")
+            raise TrapError(diagnostic("empty_guard", self.span(guards)))
         if rest and not rest[1].children:
-            raise misread(
-                "no deed follows the `<-`", self.span(rest[0]), "leave the `<-` out: `+b : {True};`"
-            )
+            raise TrapError(diagnostic("deed_missing", self.span(rest[0])))
         return Plan(
             self.change(event),
             tuple(g for guard in _trees(guards) if (g := self.guard(guard)) is not None),
@@ -246,7 +231,7 @@ class _Reader:
             return None
         inner = [t for t in guard.children[negated:] if isinstance(t, Token) and t.type == "NOT"]
         if inner:
-            raise misread("the `~` stands behind `B`", self.span(inner[0]), "write `~B b`")
+            raise TrapError(diagnostic("tilde_behind_b", self.span(inner[0])))
         return Guard(not negated, self.literal(_trees(guard, "literal")[0]))
 
     def deed(self, deed: Tree[Token]) -> Deed:
@@ -263,16 +248,12 @@ class _Reader:
             raise beyond(f"a term of more than {_MOST_LEVELS} levels", self.span(literal))
         functor = cast(Token, literal.children[0])
         if functor.type in ("ACHIEVE", "PERFORM"):
-            raise misread(f"`{functor}` is a reserved word", self.span(functor), "rename it")
+            raise TrapError(diagnostic("reserved_functor", self.span(functor), functor=functor))
         if functor.type == "VAR":
-            raise misread(
-                f"`{functor}` begins with a capital letter",
-                self.span(functor),
-                "MCAPL takes it for a variable, which matches everything: begin with a small one",
-            )
+            raise TrapError(diagnostic("capital_functor", self.span(functor), functor=functor))
         terms = [self.term(term, level + 1) for term in _trees(literal)]
         if not terms and self.span(literal).text.endswith(")"):
-            raise misread("the parentheses are empty", self.span(literal), "leave them out")
+            raise TrapError(diagnostic("empty_parentheses", self.span(literal)))
         return f"{functor}({','.join(terms)})" if terms else str(functor)
 
     def term(self, term: Tree[Token], level: int) -> str:

@@ -6,7 +6,8 @@ import re
 
 from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, DiagnosticError, did_you_mean
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 
 HEADINGS = (":Initial Beliefs:", ":Initial Goals:", ":Plans:")
@@ -14,32 +15,13 @@ HEADINGS = (":Initial Beliefs:", ":Initial Goals:", ":Plans:")
 _ALL_HEADINGS = (":name:", ":Reasoning Rules:", *HEADINGS)
 
 
-class TrapError(Exception):
+class TrapError(DiagnosticError):
     """The text contains something invalid; the exception carries the diagnostic."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
-
-
-def misread(message: str, span: Span, fix: str) -> TrapError:
-    """The exception for F610."""
-    return TrapError(Diagnostic(Code.BAD_AGENT, message, span, fix))
 
 
 def beyond(feature: str, span: Span) -> TrapError:
     """The exception for F611."""
-    return TrapError(_beyond(feature, span))
-
-
-def _beyond(feature: str, span: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.BEYOND_MODEL,
-        f"{feature} is Gwendolen, but not in the model of fretc",
-        span,
-        help="check this agent with AJPF; the model has one agent with beliefs, plans on "
-        "`+b` and `-b`, guards `True`, `B b`, `~B b`, and deeds `+b`, `-b` and actions",
-    )
+    return TrapError(diagnostic("beyond_model", span, feature=feature))
 
 
 _COMMENTS = "comments are `// ...` and `/* ... */` only"
@@ -51,15 +33,15 @@ def unexpected(error: UnexpectedInput, source: Source) -> Diagnostic:
     if token is not None and token.type == "$END":
         length = len(source.text.rstrip())
         end = source.span(length, length)
-        return Diagnostic(Code.BAD_AGENT, "the file ends too early", end, _wanted(error))
+        return diagnostic("agent_file_ends", end, help=_wanted(error))
     at = error.pos_in_stream or 0
     place = source.span(at, at + (len(token) if token is not None else 1))
     if isinstance(error, UnexpectedToken) and _follows_rules(error):
-        return _beyond("a reasoning rule", place)
+        return diagnostic("beyond_model", place, feature="a reasoning rule")
     return (
         _sign_of_more(source, at)
         or _mistake(source, at)
-        or Diagnostic(Code.BAD_AGENT, f"`{place.text}` does not fit here", place, _wanted(error))
+        or diagnostic("unexpected_in_agent", place, place=place.text, help=_wanted(error))
     )
 
 
@@ -77,7 +59,7 @@ def _sign_of_more(source: Source, at: int) -> Diagnostic | None:
     if match is None:
         return None
     feature = str(match.lastgroup).replace("_", " ")
-    return _beyond(feature, source.span(at, match.end()))
+    return diagnostic("beyond_model", source.span(at, match.end()), feature=feature)
 
 
 _NAME_SECTION = re.compile(r":name:\s*\w+\Z")
@@ -89,21 +71,20 @@ def _mistake(source: Source, at: int) -> Diagnostic | None:
     rest = source.text[at:]
     place = source.span(at, at + 1)
     if rest.startswith(("#", "%")):
-        return Diagnostic(Code.BAD_AGENT, f"`{rest[0]}` does not begin a comment", place, _COMMENTS)
+        return diagnostic("bad_comment", place, character=rest[0], help=_COMMENTS)
     if rest.startswith("/*"):
-        return Diagnostic(Code.BAD_AGENT, "the comment has no end", place, "close it with `*/`")
+        return diagnostic("unclosed_comment", place)
     if rest.startswith("-") and _NAME_SECTION.search(source.text[:at]):
         fix = "an agent's name has letters, digits and `_` only"
-        return Diagnostic(Code.BAD_AGENT, "a `-` stands in the agent's name", place, fix)
+        return diagnostic("hyphen_in_agent_name", place, help=fix)
     heading = _HEADING.match(rest)
     if heading is None or heading[0] in _ALL_HEADINGS:
         return None
-    near = suggestion(heading[0], _ALL_HEADINGS)
-    return Diagnostic(
-        Code.BAD_AGENT,
-        f"`{heading[0]}` is not a heading",
+    return diagnostic(
+        "unknown_heading",
         source.span(at, at + heading.end()),
-        f"did you mean `{near}`?" if near else f"headings are {', '.join(HEADINGS)}",
+        heading=heading[0],
+        help=did_you_mean(heading[0], _ALL_HEADINGS, f"headings are {', '.join(HEADINGS)}"),
     )
 
 

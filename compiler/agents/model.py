@@ -130,7 +130,7 @@ class Model:
         """All states, breadth first.
 
         Raises:
-            TooManyStatesError: there are more than the limit.
+            ModelTooLargeError: there are more than the limit.
         """
         return explore(
             self.initial,

@@ -13,9 +13,10 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from compiler.agents.psl_grammar import AjpfDivergenceError, JoinedText, formula, misread
+from compiler.agents.psl_grammar import AjpfDivergenceError, JoinedText, formula
 from compiler.logic.formula import Formula
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import with_budget
 from fretish.reading.recursion import with_recursion_limit
@@ -56,10 +57,8 @@ def _read(source: Source) -> tuple[Property, ...] | Diagnostic:
         first: dict[str, Span] = {}
         for key, _ in keyed:
             if first.setdefault(key.text, key) is not key:
-                raise misread(
-                    f"the key `{key.text}` comes twice",
-                    key,
-                    f"AJPF takes the last one; the first is in line {first[key.text].line}",
+                raise AjpfDivergenceError(
+                    diagnostic("key_twice", key, key=key.text, line=first[key.text].line)
                 )
         return tuple(_property(key, text) for key, text in keyed)
     except AjpfDivergenceError as error:
@@ -69,14 +68,7 @@ def _read(source: Source) -> tuple[Property, ...] | Diagnostic:
 def _property(key: Span, text: JoinedText) -> Property:
     tree, strings = formula(text)
     remarks = tuple(
-        Diagnostic(
-            Code.BAD_PROPERTY,
-            f"the string {string.text} matches no belief, not even one with the same string",
-            string,
-            help="use a name that begins with a small letter",
-            severity=Severity.WARNING,
-        )
-        for string in strings
+        diagnostic("string_matches_no_belief", string, string=string.text) for string in strings
     )
     return Property(key.text, tree, key.to(text.span(0, len(text.text))), remarks)
 
@@ -100,9 +92,7 @@ def _keyed(source: Source) -> Iterator[tuple[Span, JoinedText]]:
         elif key is not None:
             pieces.append(line)
         elif line.text.strip():
-            raise misread(
-                "the text stands before the first key", line, "write `KEY: formula` on one line"
-            )
+            raise AjpfDivergenceError(diagnostic("text_before_key", line))
     if key is not None:
         yield key, JoinedText(source, pieces)
 
@@ -118,12 +108,9 @@ def _key(line: Span) -> Span:
     if KEY.fullmatch(key.text):
         return key
     if key.text.lstrip().startswith("#"):
-        raise misread("the `#` is not in column 1", key, "a comment begins in the first column")
-    raise misread(
-        f"`{key.text}` is no key",
-        key if key.text else line,
-        "a key is letters, digits, `_`, `.` and `-`, from the first column to the `:`, "
-        "and a `:` stands nowhere else",
+        raise AjpfDivergenceError(diagnostic("misplaced_property_comment", key))
+    raise AjpfDivergenceError(
+        diagnostic("bad_property_key", key if key.text else line, key=key.text)
     )
 
 
@@ -132,23 +119,15 @@ def _formula_text(line: Span) -> Span:
     start = line.text.index(":") + 1
     second = line.text.find(":", start)
     if second >= 0:
-        raise misread(
-            "AJPF drops what stands behind a second `:`",
-            line.part(second, len(line.text)),
-            "a formula has no `:`",
-        )
+        raise AjpfDivergenceError(diagnostic("second_colon", line.part(second, len(line.text))))
     if start == len(line.text):
-        raise misread(
-            "nothing stands behind the `:`", line, "AJPF crashes: write the formula on this line"
-        )
+        raise AjpfDivergenceError(diagnostic("formula_missing_behind_colon", line))
     return line.part(start, len(line.text))
 
 
 def _refuse_beyond_ascii(line: Span) -> None:
     for i, character in enumerate(line.text):
         if not character.isascii():
-            raise misread(
-                f"`{character}` is not ASCII",
-                line.part(i, i + 1),
-                "how AJPF reads it depends on the machine: use ASCII",
+            raise AjpfDivergenceError(
+                diagnostic("not_ascii", line.part(i, i + 1), character=character)
             )

@@ -23,7 +23,8 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 
 from compiler.logic import formula as f
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import DiagnosticError
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 
 KEY_WORDS = frozenset("A E U R B G F I D P T ItD".split())
@@ -72,17 +73,8 @@ _DROPPED = {
 }
 
 
-class AjpfDivergenceError(Exception):
+class AjpfDivergenceError(DiagnosticError):
     """AJPF would misread the text."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
-
-
-def misread(message: str, span: Span, fix: str) -> AjpfDivergenceError:
-    """The exception for F603."""
-    return AjpfDivergenceError(Diagnostic(Code.BAD_PROPERTY, message, span, fix))
 
 
 class JoinedText:
@@ -124,7 +116,7 @@ def formula(text: JoinedText) -> tuple[f.Formula, tuple[Span, ...]]:
         tail = reader.tokens[0]
         fix = _DROPPED.get(tail.text, "a property ends with its formula")
         word = tail.text
-        raise misread(f"AJPF drops `{word}` and all that follows it in silence", tail.span, fix)
+        raise AjpfDivergenceError(diagnostic("dropped_by_ajpf", tail.span, word=word, help=fix))
     return tree, tuple(reader.strings)
 
 
@@ -137,18 +129,20 @@ def _tokens(text: JoinedText) -> Iterator[_Token]:
         if kind == "rest" and not broken:
             continue
         if kind == "rest":
-            raise misread(
-                "`//` swallows all lines of the property that follow",
-                span.part(0, 2),
-                "a comment is a line that begins with `#`",
-            )
+            raise AjpfDivergenceError(diagnostic("slashes_in_property", span.part(0, 2)))
         if broken:
-            raise misread(
-                f"two lines become one word: `{match[0]}`",
-                span,
-                "AJPF puts lines together without a space: write a property on one line",
-            )
+            raise AjpfDivergenceError(diagnostic("lines_become_one_word", span, word=match[0]))
         yield _Token(kind, match[0], span)
+
+
+_BINARY: tuple[tuple[str, Callable[[f.Formula, f.Formula], f.Formula]], ...] = (
+    ("U", f.Until),
+    ("R", f.Release),
+    ("->", f.Implies),
+    ("&", lambda left, right: f.And((left, right))),
+    ("||", lambda left, right: f.Or((left, right))),
+)
+"""The binary operators, the loosest first."""
 
 
 class _Reader:
@@ -177,36 +171,29 @@ class _Reader:
             place = f"before `{self.next.text}`" if self.tokens else "at the end"
             fix = _DROPPED.get(self.next.text, "")
             effect = "AJPF supplies it, or drops what stands there, in silence"
-            raise misread(
-                f"`{sign}` is missing {place}", self.next.span, f"{effect}{'; ' * bool(fix)}{fix}"
+            raise AjpfDivergenceError(
+                diagnostic(
+                    "sign_missing",
+                    self.next.span,
+                    sign=sign,
+                    place=place,
+                    help=f"{effect}{'; ' * bool(fix)}{fix}",
+                )
             )
 
     # Operators
 
     def formula(self) -> f.Formula:
-        return self._chain(self._rel, "U", f.Until)
+        return self._chain(0)
 
-    def _rel(self) -> f.Formula:
-        return self._chain(self._imp, "R", f.Release)
-
-    def _imp(self) -> f.Formula:
-        return self._chain(self._conj, "->", f.Implies)
-
-    def _conj(self) -> f.Formula:
-        return self._chain(self._disj, "&", lambda left, right: f.And((left, right)))
-
-    def _disj(self) -> f.Formula:
-        return self._chain(self._alw, "||", lambda left, right: f.Or((left, right)))
-
-    def _chain(
-        self,
-        operand: Callable[[], f.Formula],
-        operator: str,
-        build: Callable[[f.Formula, f.Formula], f.Formula],
-    ) -> f.Formula:
-        left = operand()
+    def _chain(self, level: int) -> f.Formula:
+        """A chain of the operator of this level, over chains of the next one."""
+        if level == len(_BINARY):
+            return self._alw()
+        operator, build = _BINARY[level]
+        left = self._chain(level + 1)
         while self.take(operator):
-            left = build(left, operand())
+            left = build(left, self._chain(level + 1))
         return left
 
     def _alw(self) -> f.Formula:
@@ -243,19 +230,19 @@ class _Reader:
     def _deeper(self) -> None:
         self.level += 1
         if self.level > _MOST_LEVELS:
-            raise misread(
-                f"more than {_MOST_LEVELS} parentheses within each other",
-                self.next.span,
-                "leave out those that are not needed",
+            raise AjpfDivergenceError(
+                diagnostic("too_many_parentheses", self.next.span, most=_MOST_LEVELS)
             )
 
     def _no_formula(self, token: _Token) -> AjpfDivergenceError:
         if token.kind == "end":
-            return misread("a formula is missing", token.span, "write it behind the operator")
+            return AjpfDivergenceError(diagnostic("formula_missing", token.span))
         fix = _DROPPED.get(token.text, "an atom is `B(agent,belief)`")
         if token.text[0] in "URAE" and token.text[1:] in MODALITIES:
             fix = f"put a space between: `{token.text[0]} {token.text[1:]}`"
-        return misread(f"`{token.text}` cannot begin a formula", token.span, fix)
+        return AjpfDivergenceError(
+            diagnostic("bad_formula_start", token.span, token=token.text, help=fix)
+        )
 
     # Atoms
 
@@ -271,10 +258,8 @@ class _Reader:
             self.tokens.popleft()
             return token.text
         subject = f"`{token.text}` is" if self.tokens else "there is"
-        raise misread(
-            f"{subject} no name of {kind}",
-            token.span,
-            f"AJPF repairs it or crashes: use {allowed}, and no key word of AJPF",
+        raise AjpfDivergenceError(
+            diagnostic("bad_property_name", token.span, what=subject, kind=kind, allowed=allowed)
         )
 
     def _literal(self) -> str:

@@ -175,17 +175,14 @@ _UNDECIDED = "decided at the end only"
 def text(explained: Explanation) -> str:
     """The explanation as text for a terminal."""
     requirement = explained.requirement
-    blocks = [visible_lines(ltl.text(requirement)), drawing.text(explained.picture, "    ")]
+    # Control characters are made visible: no user's text can hide another.
+    lines = "".join(f"{visible(line)}\n" for line in ltl.text(requirement).splitlines())
+    blocks = [lines, drawing.text(explained.picture, "    ")]
     blocks[1] = f"  one run, drawn\n{blocks[1]}\n"
     blocks.extend(_table(explained, shown) for shown in explained.traces)
     if explained.notes:
         blocks.append("".join(f"  note: {visible(note)}\n" for note in explained.notes))
     return "\n".join(blocks)
-
-
-def visible_lines(block: str) -> str:
-    """The lines with control characters made visible: no user's text can hide another."""
-    return "".join(f"{visible(line)}\n" for line in block.splitlines())
 
 
 def _table(explained: Explanation, shown: ExplainedTrace) -> str:

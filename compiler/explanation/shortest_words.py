@@ -10,7 +10,15 @@ from itertools import groupby
 from typing import NamedTuple
 
 from compiler.formalization import reference as counters
-from compiler.formalization.reference import BROKEN, Automaton, Letter, State, accepts
+from compiler.formalization.reference import (
+    BROKEN,
+    Automaton,
+    Letter,
+    State,
+    accepts,
+    reachable,
+    reversed_edges,
+)
 from fretish import syntax as s
 
 
@@ -119,7 +127,8 @@ class ShortestWords:
             return run  # an interval that never ends has no last tick
         for first in self._moves(start):
             second = self._after(first)
-            if second is not None and self._stays(first, second, accepted=accepted):
+            stays = second is not None and first.target == second.target
+            if stays and self.final[first.target] is accepted:
                 return Run(run.moves, (first,))
         return run
 
@@ -128,10 +137,6 @@ class ShortestWords:
         if move.target == BROKEN:
             return None
         return next(again for again in self._moves(move.target) if again.letter == move.letter)
-
-    def _stays(self, first: Move, second: Move, *, accepted: bool) -> bool:
-        """Whether repeating the letter stays in a loop with that verdict."""
-        return first.target == second.target and self.final[first.target] is accepted
 
     @property
     def needs_end(self) -> bool:
@@ -157,19 +162,11 @@ class ShortestWords:
     @cached_property
     def _may_fail(self) -> set[int]:
         """The states from which a run can reach an end that FRET judges as violated."""
-        before: list[list[int]] = [[] for _ in self.automaton.moves]
-        for state, row in enumerate(self.automaton.moves):
-            for after in set(row) - {BROKEN}:
-                before[after].append(state)
-        rows = enumerate(self.automaton.moves)
-        waiting = [state for state, row in rows if BROKEN in row or not self.final[state]]
-        states = set(waiting)
-        while waiting:
-            for state in before[waiting.pop()]:
-                if state not in states:
-                    states.add(state)
-                    waiting.append(state)
-        return states
+        moves = self.automaton.moves
+        failing = [
+            state for state, row in enumerate(moves) if BROKEN in row or not self.final[state]
+        ]
+        return reachable(reversed_edges(moves), failing)
 
 
 def _path(origins: Mapping[_Place, tuple[_Place, Move] | None], place: _Place) -> list[Move]:

@@ -28,7 +28,7 @@ def build_id() -> str:
     for room in _ROOMS:
         root = _SITE / room
         for path in sorted(root.rglob("*")):
-            if path.suffix in (".py", ".lark", ".gz"):
+            if path.suffix in (".py", ".lark", ".toml", ".gz"):
                 text = path.read_bytes()
                 digest.update(f"\n{room}/{path.relative_to(root)} {len(text)}\n".encode())
                 digest.update(text)

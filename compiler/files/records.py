@@ -5,6 +5,7 @@ The only module that imports msgspec.
 
 from __future__ import annotations
 
+import json
 from typing import Annotated, Any, TypeVar
 
 import msgspec
@@ -16,7 +17,11 @@ from msgspec import UnsetType as UnsetType
 from msgspec import field as field
 from msgspec.structs import replace as replace
 
-from compiler.files.checked_json import GREATEST, LARGEST_COUNT, LEAST, SchemaError
+from compiler.files.checked_json import GREATEST, LARGEST_COUNT, LEAST, SchemaError, parsed
+from compiler.files.text_files import read as read_text
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
+from fretish.diagnostics.source import Source
 
 types = msgspec.inspect
 """msgspec's description of types."""
@@ -88,6 +93,35 @@ def decoded_json(data: bytes | Raw, kind: type[R]) -> R:
 def json_bytes(record: object) -> bytes:
     """The shortest JSON text of a record: equal values give equal bytes."""
     return msgspec.json.encode(record)
+
+
+def read(path: str, kind: type[R], command: str, again: str) -> tuple[Source, R] | Diagnostic:
+    """Read and check a file that fretc writes; F503.
+
+    Args:
+        path: the file.
+        kind: the type of its content.
+        command: the command that writes it: `fretc verify`.
+        again: the help text, which says how to make the file again.
+
+    Returns:
+        The text of the file, and its content.
+    """
+    source = read_text(path)
+    if isinstance(source, Diagnostic):
+        return source
+    try:
+        return source, decoded(parsed(source.text).value, kind)
+    except json.JSONDecodeError as error:
+        what = f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}"
+    except SchemaError as error:
+        what = f"is not what `{command}` writes: {error}"
+    except RecursionError:
+        what = "is not JSON that fretc can read: it is nested too deeply"
+    except ValueError as error:
+        what = f"is not JSON that fretc can read: {error}"
+    place = Source(source.name, "").span()
+    return diagnostic("bad_result_file", place, path=source.name, what=what, help=again)
 
 
 def plain(record: object) -> Any:

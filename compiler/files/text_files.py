@@ -14,7 +14,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO, Literal
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, suggestion
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 
 MOST = 2**30
@@ -37,7 +38,7 @@ def read(path: str, errors: Literal["strict", "surrogateescape"] = "strict") -> 
                 return Source("<stdin>", stdin.read().decode("utf-8-sig", errors))
         return Source(path, content(path).decode("utf-8-sig", errors))
     except UnicodeDecodeError as error:
-        return not_text(path, error.start)
+        return diagnostic("not_text", Source(path, "").span(), path=path, at=error.start)
     except OSError as error:
         return unreadable(path, error)
 
@@ -76,34 +77,14 @@ def open_regular(path: str | Path) -> BinaryIO:
     raise OSError(None, "it is not a regular file")
 
 
-def not_text(path: str, at: int) -> Diagnostic:
-    """F904 for a file that is not UTF-8."""
-    return Diagnostic(
-        Code.NOT_TEXT,
-        f"`{path}` is not UTF-8 text: byte {at} does not fit",
-        Source(path, "").span(),
-        help="name a text file, in UTF-8",
-    )
-
-
 def unreadable(path: str, error: OSError) -> Diagnostic:
     """F901, F902 or F903, depending on the error of the operating system."""
     span = Source(path, "").span()
     if isinstance(error, FileNotFoundError):
-        return Diagnostic(Code.NO_SUCH_FILE, f"there is no file `{path}`", span, _nearest(path))
+        return diagnostic("no_file", span, path=path, help=_nearest(path))
     if isinstance(error, IsADirectoryError):
-        return Diagnostic(
-            Code.IS_A_DIRECTORY,
-            f"`{path}` is a directory",
-            span,
-            help="name a file",
-        )
-    return Diagnostic(
-        Code.UNREADABLE,
-        f"`{path}` cannot be read: {error.strerror or error}",
-        span,
-        help="check that it is a regular file, and its permissions",
-    )
+        return diagnostic("path_is_directory", span, path=path)
+    return diagnostic("file_unreadable", span, path=path, reason=error.strerror or error)
 
 
 def _nearest(path: str) -> str:
@@ -141,11 +122,7 @@ def write(files: Mapping[Path, str | bytes | Iterable[str]]) -> Diagnostic | Non
         for temporary, path in waiting:
             temporary.replace(path)
     except OSError as error:
-        return Diagnostic(
-            Code.NOT_WRITTEN,
-            f"`{path}` cannot be written: {error.strerror or error}",
-            help="write to another path, or fix this one",
-        )
+        return diagnostic("file_not_written", path=path, reason=error.strerror or error)
     finally:
         for temporary, _ in waiting:
             with suppress(OSError):  # the disk is read-only: it was never made

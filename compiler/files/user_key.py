@@ -8,7 +8,8 @@ import stat
 from contextlib import suppress
 from pathlib import Path
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 _LENGTH = 32
 """Length of the key in bytes."""
@@ -26,12 +27,7 @@ def user_key() -> bytes | Diagnostic:
             _make(path)
         return _read(path)
     except OSError as error:
-        return Diagnostic(
-            Code.NO_KEY,
-            f"`{path}` cannot be used: {error.strerror or error}",
-            help="remove it, or set XDG_STATE_HOME to a folder that only you can write",
-            severity=Severity.WARNING,
-        )
+        return diagnostic("unusable_user_key", path=path, reason=error.strerror or error)
 
 
 def _folder() -> Path:

@@ -18,7 +18,8 @@ from fretish import units
 from fretish.bindings.canonical import expression as meaning
 from fretish.bindings.comparisons import FUNCTIONS, bound, is_measured
 from fretish.bindings.declarations import Declarations, Proposition, Signal
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.printer import identifier
 from fretish.reading.toml_text import as_key
@@ -164,12 +165,13 @@ def _drifted(
     inside = place is not None and place.source is requirement.entry.wording.source
     assert bound.span is not None
     where = f"{bound.span.source.name}:{bound.span.line}:{bound.span.column}"
-    return Diagnostic(
-        Code.NUMBER_DRIFT,
-        f"`{name}` of {requirement.id} is bound to another comparison: {bound.span.text} ({where})",
+    return diagnostic(
+        "other_comparison_bound",
         place if inside else requirement.entry.wording,
-        help="state the operator and the number of the sentence in the binding, the number with "
-        "its unit, or give the proposition a name without a number",
+        name=name,
+        requirement=requirement.id,
+        text=bound.span.text,
+        where=where,
     )
 
 
@@ -189,10 +191,12 @@ def unbound_propositions(
         yield from mistakes
         if mistakes or name in declarations.propositions:
             continue
-        yield Diagnostic(
-            Code.UNBOUND,
-            f"`{name}` of {requirement.id} has no binding in {declarations.source.name}",
+        yield diagnostic(
+            "unbound_proposition",
             first_use(requirement, name),
+            name=name,
+            requirement=requirement.id,
+            source=declarations.source.name,
             help=binding_fix(requirement, name, declarations),
         )
 

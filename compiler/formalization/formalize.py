@@ -25,7 +25,8 @@ from fretish.bindings.definitions import Definitions, expanded, used_definitions
 from fretish.bindings.types import type_errors, value_type_errors
 from fretish.checking import check_response_kinds, conditions, temporal_predicates, too_deep
 from fretish.clock import Clock, assumed_ticks, in_ticks
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.documents import RequirementEntry
 from fretish.expressions import Comparison, Expression, Truth, with_comparisons
@@ -54,7 +55,7 @@ def _formalized(
     entry: RequirementEntry, declarations: Declarations | None
 ) -> tuple[FormalizedRequirement | None, tuple[Diagnostic, ...]]:
     if entry.is_free_text:
-        return None, (_free_text(entry),)
+        return None, (diagnostic("free_text", entry.wording, requirement=entry.id),)
     written = parse(entry.wording)
     if isinstance(written, Diagnostic):
         return None, find_errors(entry.wording)
@@ -141,12 +142,12 @@ def name_collisions(requirements: Sequence[FormalizedRequirement]) -> Iterator[D
         for name in requirement.variables:
             first = spelt.setdefault(identifier(name), name)
             if first != name:
-                yield Diagnostic(
-                    Code.NAME_CLASH,
-                    f"`{first}` and `{name}` would have the same name in formulas: "
-                    f"`{identifier(name)}`",
+                yield diagnostic(
+                    "same_name_in_formulas",
                     first_use(requirement, name),
-                    help="rename one of them",
+                    first=first,
+                    name=name,
+                    identifier=identifier(name),
                 )
 
 
@@ -217,16 +218,6 @@ def _with_bound(variable: Variable, bound: Variable) -> Variable:
     return replace(variable, modality=modality, action=action, role=role)
 
 
-def _free_text(requirement: RequirementEntry) -> Diagnostic:
-    return Diagnostic(
-        Code.FREE_TEXT,
-        f"{requirement.id} is free text: it is kept, and not formalized",
-        requirement.wording,
-        help="write it in FRETish, without quotes around the whole, to formalize it",
-        severity=Severity.NOTE,
-    )
-
-
 def _clock(declarations: Declarations | None) -> Clock | None:
     return declarations.clock if declarations and declarations.clock.declared else None
 
@@ -250,23 +241,26 @@ def _without_signals(sentence: Sentence, declarations: Declarations | None) -> S
     return with_expressions(sentence, partial(with_comparisons, rewrite=answered))
 
 
-def duplicate_ids(requirements: Sequence[RequirementEntry]) -> Mapping[int, Diagnostic]:
+def duplicate_ids(
+    requirements: Sequence[RequirementEntry],
+) -> Mapping[RequirementEntry, Diagnostic]:
     """F201 for every repeated id; case, `-`, `_` and `.` do not distinguish ids.
 
     Returns:
-        The diagnostic by the `id()` of each requirement with a repeated id, the first one included.
+        The diagnostic of each requirement with a repeated id, the first one included.
     """
     first: dict[str, RequirementEntry] = {}
-    diagnostics: dict[int, Diagnostic] = {}
+    diagnostics: dict[RequirementEntry, Diagnostic] = {}
     for requirement in requirements:
         earlier = first.setdefault(re.sub(r"[-.]", "_", requirement.id.lower()), requirement)
         if earlier is not requirement:
             place = earlier.place("id")
-            diagnostics[id(requirement)] = Diagnostic(
-                Code.DUPLICATE_ID,
-                f"the id `{requirement.id}` is taken: {place.source.name}:{place.line}",
+            diagnostics[requirement] = diagnostic(
+                "duplicate_id",
                 requirement.place("id"),
-                help="give each requirement another id; case, `-`, `_` and `.` do not count",
+                requirement=requirement.id,
+                source=place.source.name,
+                line=place.line,
             )
-            diagnostics.setdefault(id(earlier), diagnostics[id(requirement)])
+            diagnostics.setdefault(earlier, diagnostics[requirement])
     return diagnostics

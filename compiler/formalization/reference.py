@@ -404,9 +404,9 @@ def _verdicts(moves: Sequence[Sequence[int]], accepted: Sequence[bool]) -> Itera
     ]
     kept = {state for state in _on_cycles(edges) if accepted[state]}
     breaking = {state for state, row in enumerate(moves) if BROKEN in row}
-    before = _reversed(edges)
-    satisfiable = _reachable(before, kept)
-    violable = _reachable(before, breaking.union(_on_cycles(rejecting)))
+    before = reversed_edges(moves)
+    satisfiable = reachable(before, kept)
+    violable = reachable(before, breaking.union(_on_cycles(rejecting)))
     for state in range(len(moves)):
         if state not in satisfiable:
             yield "violated"
@@ -414,15 +414,16 @@ def _verdicts(moves: Sequence[Sequence[int]], accepted: Sequence[bool]) -> Itera
             yield "pending" if state in violable else "satisfied"
 
 
-def _reversed(edges: Sequence[Sequence[int]]) -> list[list[int]]:
-    back: list[list[int]] = [[] for _ in edges]
-    for state, row in enumerate(edges):
-        for after in row:
+def reversed_edges(moves: Sequence[Sequence[int]]) -> list[list[int]]:
+    """For each state the states with a move to it, each once."""
+    back: list[list[int]] = [[] for _ in moves]
+    for state, row in enumerate(moves):
+        for after in {*row} - {BROKEN}:
             back[after].append(state)
     return back
 
 
-def _reachable(edges: Sequence[Sequence[int]], starts: Collection[int]) -> set[int]:
+def reachable(edges: Sequence[Sequence[int]], starts: Collection[int]) -> set[int]:
     """The starts and all states that are reachable from them."""
     seen = set(starts)
     waiting = list(starts)

@@ -20,7 +20,8 @@ from fretish.bindings.definitions import expanded
 from fretish.bindings.expressions import ticks_back
 from fretish.bindings.words import resolve_words
 from fretish.checking import conditions
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.printer import expression as printed
 from fretish.syntax import Sentence
@@ -117,12 +118,7 @@ def _aggregate(
     kinds = {signal.aggregate for signal in read} or {Aggregate.LAST}
     if len(kinds) > 1 or (ticks_back(expression) and kinds != {Aggregate.LAST}):
         names = ", ".join(dict.fromkeys(f"`{signal.name}`" for signal in read))
-        return Diagnostic(
-            Code.SEVERAL_AGGREGATES,
-            f"nothing says which samples of a tick count for {names} together",
-            place,
-            help="give these signals the same `agg`, which is `last` beside an earlier tick",
-        )
+        return diagnostic("several_aggregates", place, names=names)
     return kinds.pop()
 
 

@@ -50,7 +50,7 @@ class Lasso:
         return self.prefix + self.cycle
 
 
-class TooManyStatesError(Exception):
+class ModelTooLargeError(Exception):
     """The model has more states than was allowed."""
 
     def __init__(self, limit: int) -> None:
@@ -82,7 +82,7 @@ def explore(
         limit: the maximum number of states.
 
     Raises:
-        TooManyStatesError: there are more states.
+        ModelTooLargeError: there are more states.
     """
     numbers = {initial: 0}
     states = [initial]
@@ -93,7 +93,7 @@ def explore(
             number = numbers.setdefault(state, len(states))
             if number == len(states):
                 if number >= limit:
-                    raise TooManyStatesError(limit)
+                    raise ModelTooLargeError(limit)
                 states.append(state)
             following[number] = None
         edges.append(tuple(following))
@@ -139,29 +139,3 @@ def _is_run(kripke: Kripke, lasso: Lasso) -> bool:
     states = (*lasso.states, lasso.cycle[0])
     steps = pairwise(states)
     return states[0] == kripke.initial and all(b in kripke.successors(a) for a, b in steps)
-
-
-def way_to(kripke: Kripke, goal: Callable[[frozenset[str]], bool]) -> tuple[int, ...] | None:
-    """A shortest path to a state whose atoms the goal accepts.
-
-    Returns:
-        The states from the initial one to that state; None if no run reaches one.
-    """
-    came: dict[int, int | None] = {kripke.initial: None}
-    waiting = [kripke.initial]
-    for state in waiting:
-        if goal(kripke.labels[state]):
-            return _way(came, state)
-        for following in kripke.successors(state):
-            if following not in came:
-                came[following] = state
-                waiting.append(following)
-    return None
-
-
-def _way(came: dict[int, int | None], state: int | None) -> tuple[int, ...]:
-    way: list[int] = []
-    while state is not None:
-        way.append(state)
-        state = came[state]
-    return tuple(reversed(way))

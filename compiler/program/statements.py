@@ -10,10 +10,10 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Self, assert_never
+from typing import Any, ClassVar, Self, assert_never
 
 from compiler.program.instructions import Advance, Assign, Choose, Count, Shift
-from compiler.program.rails import Cell, Delay, Rail, Ring, StatementGroup, Step
+from compiler.program.rails import Cell, Deadline, Delay, Rail, Ring, Step
 from compiler.program.values import Age, And, Constant, Literal, Not, Or, Value, Variable
 
 
@@ -52,6 +52,32 @@ class Statements(ABC):
     @abstractmethod
     def delay(self, name: str, ring: Ring, value: str) -> Iterator[str]:
         """Statements that read and overwrite one bit of a ring, and advance its position."""
+
+    @abstractmethod
+    def left(self, deadline: Deadline | None, is_open: Value) -> str:
+        """The ticks left to a deadline of an open demand; without one, a value for none."""
+
+    def readings(self) -> list[dict[str, Any]]:
+        """The expressions of all readings, as values for a template."""
+        return [
+            {
+                "id": reading.id,
+                "prefix": reading.prefix,
+                "left": self.left(reading.deadline, reading.truths["open"]),
+                "truths": {name: self.value(value) for name, value in reading.truths.items()},
+            }
+            for reading in self.rail.readings
+        ]
+
+    def stages(self) -> list[dict[str, Any]]:
+        """The statements of each group below its comment, as values for a template."""
+        return [
+            {
+                "comment": stage.comment,
+                "lines": [line for step in stage.steps for line in self._statement(step)],
+            }
+            for stage in self.rail.stages
+        ]
 
     def literals(self) -> Iterator[tuple[str, str, bool]]:
         """The name, the input and the sign of each literal."""
@@ -95,11 +121,6 @@ class Statements(ABC):
 
     def _place(self, name: str) -> str:
         return f"{self.CELLS}{name}" if name in self.cells else name
-
-    def lines(self, stage: StatementGroup) -> Iterator[str]:
-        """The statements of a group."""
-        for step in stage.steps:
-            yield from self._statement(step)
 
     def _statement(self, step: Step) -> Iterator[str]:
         match step:

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field, replace
 
 from compiler.files.settings import Settings
 from fretish.bindings.declarations import Declarations
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, did_you_mean
 from fretish.diagnostics.explanations import ACCEPTANCES, explanation
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.documents import RequirementEntry
 
@@ -80,8 +81,7 @@ def _acceptance(
 ) -> Acceptance | Diagnostic:
     code = _CODES.get(number)
     if code is None:
-        near = suggestion(number, _CODES)
-        fix = f"did you mean `{near}`?" if near else "write the number that the warning begins with"
+        fix = did_you_mean(number, _CODES, "write the number that the warning begins with")
         return _bad(f"`{number}` is not a code of fretc", place, fix)
     about = explanation(code).accept
     if not about:
@@ -168,13 +168,7 @@ def unused_acceptances(
             acceptance.subject, declarations, recorded
         )
         if not (retired or open_yet or id(acceptance) in used):
-            yield Diagnostic(
-                Code.IDLE_ACCEPTANCE,
-                f"{acceptance.code.number} is accepted, but there is no such warning",
-                acceptance.span,
-                help="remove the acceptance: it would hide a later warning",
-                severity=Severity.WARNING,
-            )
+            yield diagnostic("unused_acceptance", acceptance.span, number=acceptance.code.number)
 
 
 def _may_come(

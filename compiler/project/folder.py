@@ -70,7 +70,7 @@ def load(
     mistakes = declarations.mistakes.values() if declarations else ()
     single = frozenset(chain.from_iterable(mistakes))
     of_all = [diagnostic for diagnostic in of_bindings if diagnostic not in single]
-    own = mistaken | {id(failure.requirement): failure.diagnostic for failure in failed}
+    own = mistaken | {failure.requirement: failure.diagnostic for failure in failed}
     accepted, unanswered = acceptances(written, chosen if isinstance(chosen, Settings) else None)
     if isinstance(chosen, Diagnostic) and not parents:
         unanswered = (*unanswered, chosen)
@@ -124,7 +124,7 @@ def _formalized(
 ) -> tuple[
     tuple[FormalizedRequirement, ...],
     tuple[UnformalizedRequirement, ...],
-    dict[int, Diagnostic],
+    dict[RequirementEntry, Diagnostic],
     list[Diagnostic],
 ]:
     """Formalized requirements, failed ones, errors of formalized ones, and all diagnostics.
@@ -153,7 +153,7 @@ def _formalized(
             continue
         requirements.append(requirement)
         if has_errors(remarks):
-            mistaken.setdefault(id(entry), _reason(remarks))
+            mistaken.setdefault(entry, _reason(remarks))
     return tuple(requirements), tuple(failed), mistaken, diagnostics
 
 

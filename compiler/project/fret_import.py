@@ -25,7 +25,8 @@ from compiler.project.lustre import fretish, lustre
 from fretish import expressions as e
 from fretish.bindings.declarations import Role
 from fretish.bindings.definitions import find_cycle
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, Severity, did_you_mean
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.parser import parse, parse_value
 from fretish.printer import expression
@@ -151,12 +152,13 @@ def _requirements(
         if id != wanted:
             of = f" of project {project}" if project else ""
             diagnostics.append(
-                _warning(
-                    Code.RENAMED,
-                    f"requirement {number} ({reqid}{of}) is imported as `{id}`: `{wanted}` is "
-                    "taken, and ids are compared without case",
-                    source,
-                    "rename it in its project, or import each project into its own folder",
+                diagnostic(
+                    "renamed",
+                    Source(source.name, "").span(),
+                    number=number,
+                    which=f"{reqid}{of}",
+                    id=id,
+                    wanted=wanted,
                 )
             )
         ids[project, reqid] = id
@@ -310,13 +312,8 @@ def _without_circles(tables: Mapping[str, dict[str, Any]], source: Source) -> It
             kept = {assignment_field(table["role"]): lustre(values.pop(name)) or ""}
             table["fret"] = kept | table.get("fret", {})
             del table["value"]
-        yield _warning(
-            Code.DEFINITION_CIRCLE,
-            f"assignments lead in a circle: {' -> '.join(names[:12])}; they are kept for FRET, "
-            "but not read",
-            source,
-            "define one of them without the others",
-        )
+        place = Source(source.name, "").span()
+        yield diagnostic("circular_assignments", place, names=" -> ".join(names[:12]))
 
 
 def _variable(record: Mapping[str, Any]) -> dict[str, Any]:
@@ -360,18 +357,13 @@ def assignment_field(role: str) -> str:
     return "modeRequirement" if role == Role.MODE else "assignment"
 
 
-def stands_for_something(role: str) -> bool:
-    """Whether FRET reads an assignment for the role; inputs have none."""
-    return role in (Role.INTERNAL, Role.MODE)
-
-
 def _value(record: Mapping[str, Any], written: str) -> e.Expression | None:
     """The assignment of a variable, as fretc wrote it if FRET's copy still agrees.
 
     None if it has no assignment, as inputs and outputs, or the assignment has no equivalent in
     FRETish.
     """
-    defines = stands_for_something(_text(record.get("idType")).lower())
+    defines = _text(record.get("idType")).lower() in (Role.INTERNAL, Role.MODE)
     if not defines or record.get("variable_name") == "FTP":  # FRETish's own name of the first tick
         return None
     own = record.get(OWN)
@@ -399,12 +391,8 @@ def _merged(
     differences = ", ".join(
         f"{key} `{second.get(key, second_fields.get(key, ''))}`" for key in lost
     )
-    return _warning(
-        Code.MERGED_VARIABLE,
-        f"a second variable `{name}` is kept for FRET, but not read: it has {differences}",
-        source,
-        "import each project into its own folder, or make the two variables equal",
-    )
+    place = Source(source.name, "").span()
+    return diagnostic("merged_variable", place, name=name, differences=differences)
 
 
 def _plain(value: Any) -> Any:
@@ -499,11 +487,10 @@ def _columns(
     for part, guesses in _GUESSES.items():
         wanted = options.get(part)
         if wanted is not None and wanted not in names:
-            near = suggestion(wanted, names)
             return _bad(
                 f"there is no column `{wanted}`",
                 source,
-                f"did you mean `{near}`?" if near else f"there are {', '.join(names)}",
+                did_you_mean(wanted, names, f"there are {', '.join(names)}"),
             )
         by_name = {name.strip().lower(): name for name in reversed(names) if name}
         guess = next((by_name[g] for g in guesses if g in by_name), None)
@@ -545,22 +532,14 @@ def _failed(why: str, source: Source, at: int = 0) -> ImportResult:
 
 
 def _bad(why: str, source: Source, fix: str, at: int = 0) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EXPORT,
-        f"`{source.name}` cannot be imported: {why}",
+    return diagnostic(
+        "export_not_imported",
         source.span(at, min(at + 1, len(source.text))),
+        source=source.name,
+        why=why,
         help=fix,
     )
 
 
-def _warning(code: Code, message: str, source: Source, fix: str) -> Diagnostic:
-    return Diagnostic(code, message, Source(source.name, "").span(), fix, Severity.WARNING)
-
-
 def _skipped(why: str, source: Source) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EXPORT,
-        f"{why}: it is left out",
-        Source(source.name, "").span(),
-        severity=Severity.WARNING,
-    )
+    return diagnostic("left_out_of_import", Source(source.name, "").span(), why=why)

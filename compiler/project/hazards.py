@@ -7,7 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from compiler.files.text_files import read
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
+from fretish.diagnostics.diagnostic import (
+    Code,
+    Diagnostic,
+    did_you_mean,
+    has_errors,
+)
+from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry
 from fretish.reading.natural_order import natural
 from fretish.reading.toml_text import Tables
@@ -89,25 +95,22 @@ def unknown_parents(
         remainder = (
             f" ({more} more {'parent is' if more == 1 else 'parents are'}, too)" if more else ""
         )
-        yield _unknown(
-            requirement,
-            f"there is no `hazards.toml`: the parent `{parent}` of {requirement.id} is declared "
-            f"nowhere{remainder}",
-            "write `hazards.toml` beside the requirements, or name it with `--hazards`",
+        yield diagnostic(
+            "no_hazards_file",
+            requirement.place("parents"),
+            parent=parent,
+            requirement=requirement.id,
+            remainder=remainder,
         )
         return
     for requirement, parent in unknown:
-        near = suggestion(parent, declared)
-        yield _unknown(
-            requirement,
-            f"{requirement.id} names the parent `{parent}`, which is not declared",
-            f"did you mean `{near}`?" if near else "declare it in hazards.toml",
+        yield diagnostic(
+            "unknown_parent",
+            requirement.place("parents"),
+            requirement=requirement.id,
+            parent=parent,
+            help=did_you_mean(parent, declared, "declare it in hazards.toml"),
         )
-
-
-def _unknown(requirement: RequirementEntry, message: str, fix: str) -> Diagnostic:
-    place = requirement.place("parents")
-    return Diagnostic(Code.UNKNOWN_PARENT, message, place, fix, Severity.WARNING)
 
 
 def cycles(requirements: Sequence[RequirementEntry]) -> Iterator[Diagnostic]:
@@ -118,11 +121,11 @@ def cycles(requirements: Sequence[RequirementEntry]) -> Iterator[Diagnostic]:
         circle = _circle(requirement.id, by_id)
         if circle and frozenset(circle) not in earlier:
             earlier.add(frozenset(circle))
-            yield Diagnostic(
-                Code.PARENTS_IN_A_CIRCLE,
-                f"{requirement.id} is its own ancestor: {' → '.join(circle)}",
+            yield diagnostic(
+                "circular_parents",
                 requirement.place("parents"),
-                help="remove one of these links from `parents`",
+                requirement=requirement.id,
+                path=" → ".join(circle),
             )
 
 

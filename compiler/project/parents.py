@@ -24,8 +24,9 @@ from xml.etree import ElementTree
 from compiler.files.checked_json import SchemaError, plain
 from compiler.files.settings import Settings
 from compiler.files.text_files import open_regular
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import missing_extra
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import with_budget
 from fretish.reading.yaml_text import loaded
@@ -42,7 +43,7 @@ class Parent:
     """The path of its document."""
 
 
-class UnreadableError(Exception):
+class ParentsError(Exception):
     """The document is not in the format of its name; the message says why."""
 
 
@@ -62,7 +63,7 @@ def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic,
                 by_id.setdefault(parent.id, parent)
         except ModuleNotFoundError:
             diagnostics.append(_missing_extra(settings, name))
-        except (UnreadableError, OSError) as error:
+        except (ParentsError, OSError) as error:
             why = error.strerror if isinstance(error, OSError) else str(error)
             diagnostics.append(_unreadable(settings, name, why or str(error)))
     return by_id, tuple(diagnostics)
@@ -72,11 +73,11 @@ def _demand_within(settings: Settings, path: Path) -> None:
     """Check that a document lies in the project, since settings may come from somebody else.
 
     Raises:
-        UnreadableError: the path, or a document in it, lies outside.
+        ParentsError: the path, or a document in it, lies outside.
     """
     for file in (path, *(sorted(path.glob("*.yml")) if path.is_dir() else ())):
         if not settings.holds(file):
-            raise UnreadableError(_OUTSIDE)
+            raise ParentsError(_OUTSIDE)
 
 
 _OUTSIDE = "it lies outside of the project"
@@ -94,10 +95,11 @@ def _size(path: Path) -> int:
 
 
 def _unreadable(settings: Settings, name: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_PARENTS,
-        f"the parents in `{name}` cannot be read: {why}",
+    return diagnostic(
+        "unreadable_parents",
         _place(settings, name),
+        name=name,
+        why=why,
         help="to allow it, name its folder: `fretc --parents FOLDER COMMAND ...`"
         if why == _OUTSIDE
         else _EXPORTS.get(Path(name).suffix.lower(), _EXPORTS[""]),
@@ -136,9 +138,9 @@ def _read(path: Path, name: str) -> Iterator[Parent]:
         case ".reqifz":
             return _reqifz(path, name)
         case ".sdoc":
-            raise UnreadableError("only StrictDoc itself can read its documents reliably")
+            raise ParentsError("only StrictDoc itself can read its documents reliably")
         case _:
-            raise UnreadableError("its extension belongs to no supported format")
+            raise ParentsError("its extension belongs to no supported format")
 
 
 _MOST = 64 * 2**20
@@ -152,11 +154,11 @@ def _text(path: Path) -> str:
 
 def _decoded(data: bytes) -> str:
     if len(data) > _MOST:
-        raise UnreadableError(f"it is larger than {_MOST // 2**20} MiB")
+        raise ParentsError(f"it is larger than {_MOST // 2**20} MiB")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise UnreadableError("it is not UTF-8 text") from None
+        raise ParentsError("it is not UTF-8 text") from None
 
 
 def _parent(id: str, title: str | None, text: str | None, source: str) -> Parent:
@@ -168,12 +170,12 @@ def _json(text: str, name: str) -> Iterator[Parent]:
     try:
         data: Any = plain(text)
     except SchemaError as error:
-        raise UnreadableError(f"it is not JSON: {error}") from None
+        raise ParentsError(f"it is not JSON: {error}") from None
     if isinstance(data, dict) and isinstance(data.get("DOCUMENTS"), list):
         return _strictdoc(data["DOCUMENTS"], name)
     if isinstance(data, dict) and "versions" in data:
         return _needs(data, name)
-    raise UnreadableError("it has neither `DOCUMENTS` (StrictDoc) nor `versions` (sphinx-needs)")
+    raise ParentsError("it has neither `DOCUMENTS` (StrictDoc) nor `versions` (sphinx-needs)")
 
 
 # StrictDoc -------------------------------------------------------------------------------------
@@ -196,7 +198,7 @@ def _nodes(node: Any) -> list[dict[str, Any]]:
     """The child nodes, in reverse order."""
     below = node.get("NODES", []) if isinstance(node, dict) else None
     if not isinstance(below, list) or not all(isinstance(child, dict) for child in below):
-        raise UnreadableError("its nodes are not as StrictDoc writes them")
+        raise ParentsError("its nodes are not as StrictDoc writes them")
     return below[::-1]
 
 
@@ -214,10 +216,10 @@ def _statement(node: Mapping[str, Any]) -> str:
 def _exports(folder: Path, name: str) -> Iterator[Parent]:
     """Every document in a folder of exports."""
     if any(folder.rglob(".doorstop.yml")):
-        raise UnreadableError("it holds the items; `doorstop export --yaml all FOLDER` writes them")
+        raise ParentsError("it holds the items; `doorstop export --yaml all FOLDER` writes them")
     paths = sorted(folder.glob("*.yml"))
     if not paths:
-        raise UnreadableError("it has no export of Doorstop (`*.yml`)")
+        raise ParentsError("it has no export of Doorstop (`*.yml`)")
     for path in paths:
         yield from _doorstop(path, name)
 
@@ -227,9 +229,9 @@ def _doorstop(path: Path, name: str) -> Iterator[Parent]:
     try:
         document = loaded(_text(path))
     except ValueError as error:
-        raise UnreadableError(f"{path.name} cannot be read as YAML: {error}") from None
+        raise ParentsError(f"{path.name} cannot be read as YAML: {error}") from None
     if not isinstance(document, dict) or not all(_is_item(item) for item in document.values()):
-        raise UnreadableError(f"{path.name} is not an export of Doorstop")
+        raise ParentsError(f"{path.name} is not an export of Doorstop")
     for uid, item in document.items():
         if item.get("active", True):
             yield _parent(str(uid), item.get("header"), item["text"], name)
@@ -248,14 +250,14 @@ def _needs(data: Mapping[str, Any], name: str) -> Iterator[Parent]:
     """The needs of the current version of needs.json."""
     versions, current = data["versions"], data.get("current_version")
     if not isinstance(versions, dict) or not isinstance(current, str) or current not in versions:
-        raise UnreadableError("its `current_version` is not among its `versions`")
+        raise ParentsError("its `current_version` is not among its `versions`")
     version = versions[current]
     needs = version.get("needs") if isinstance(version, dict) else None
     if not isinstance(needs, dict):
-        raise UnreadableError("its version has no `needs`")
+        raise ParentsError("its version has no `needs`")
     for id, need in needs.items():
         if not isinstance(need, dict):
-            raise UnreadableError(f"`{id}` is not a need")
+            raise ParentsError(f"`{id}` is not a need")
         content = need.get("content", need.get("description"))
         yield _parent(id, str(need.get("title") or ""), str(content or ""), name)
 
@@ -274,12 +276,12 @@ def _reqifz(path: Path, name: str) -> Iterator[Parent]:
             inside = sorted(n for n in archive.namelist() if n.lower().endswith(".reqif"))
             most = _LEAST_PACKED + _RATIO * path.stat().st_size
             if sum(archive.getinfo(member).file_size for member in inside) > most:
-                raise UnreadableError("it unpacks to far more data than a ReqIF archive should")
+                raise ParentsError("it unpacks to far more data than a ReqIF archive should")
             texts = [_inside(archive, member) for member in inside]
     except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, ValueError):
         texts = []  # RuntimeError: it is encrypted, or packed in a way that Python does not know
     if not texts:
-        raise UnreadableError("it is not an archive of ReqIF files")
+        raise ParentsError("it is not an archive of ReqIF files")
     for text in texts:
         yield from _reqif(text, name)
 
@@ -294,7 +296,7 @@ def _reqif(text: str, name: str) -> Iterator[Parent]:
     from reqif.parser import ReqIFParser
 
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise UnreadableError("it declares a document type, which a ReqIF file must not have")
+        raise ParentsError("it declares a document type, which a ReqIF file must not have")
     try:
         content = ReqIFParser.parse_from_string(text).core_content.req_if_content
         types, objects = content.spec_types or (), content.spec_objects or ()
@@ -305,7 +307,7 @@ def _reqif(text: str, name: str) -> Iterator[Parent]:
         }
         members = [_spec_object(spec_object, names, name) for spec_object in objects]
     except Exception as error:  # the library has no exception of its own for what it cannot read
-        raise UnreadableError(f"the library `reqif` cannot read it: {_first(error)}") from None
+        raise ParentsError(f"the library `reqif` cannot read it: {_first(error)}") from None
     yield from members
 
 

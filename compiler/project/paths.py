@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from compiler.files.text_files import unreadable
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.natural_order import natural
 
@@ -32,13 +33,7 @@ def requirement_files(folder: str) -> list[str] | Diagnostic:
 
 
 def _absent(what: str, folder: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NO_SUCH_FILE,
-        f"{what} `{folder}`",
-        Source(folder, "").span(),
-        help="name the folder of your requirements with `--requirements`, or create one: "
-        "`fretc init`",
-    )
+    return diagnostic("no_project_folder", Source(folder, "").span(), what=what, folder=folder)
 
 
 def _is_folder(path: str) -> bool:

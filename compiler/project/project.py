@@ -30,7 +30,7 @@ class Refused:
     @property
     def is_in_force(self) -> bool:
         """Whether the requirement is not retired."""
-        return self.requirement.status != "retired"
+        return self.requirement.is_in_force
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +59,9 @@ class Project:
     """Diagnostics about neither a single requirement nor a single table of the bindings: those of
     the bindings as a whole, of hazards, of parents and of the settings. An error in a table belongs
     to the requirements that read the table."""
-    mistaken: Mapping[int, Diagnostic] = field(default_factory=dict)
-    """The error of each formalized requirement that has one, by the `id()` of its entry: its id
-    is taken, or its `params` name something undeclared."""
+    mistaken: Mapping[RequirementEntry, Diagnostic] = field(default_factory=dict)
+    """The error of each formalized requirement that has one, by its entry: its id is
+    taken, or its `params` name something undeclared."""
     parents: Mapping[str, Parent] = field(default_factory=dict)
     """Parent requirements in other tools, by their ids."""
     acceptances: tuple[Acceptance, ...] = ()
@@ -80,11 +80,16 @@ class Project:
     @property
     def sound(self) -> Project:
         """The project without its `refused` requirements, retired ones included."""
-        refused = {id(refusal.requirement) for refusal in self.refused}
+        refused = {refusal.requirement for refusal in self.refused}
         requirements = tuple(
-            requirement for requirement in self.formalized if id(requirement.entry) not in refused
+            requirement for requirement in self.formalized if requirement.entry not in refused
         )
         return replace(self, formalized=requirements)
+
+    @property
+    def in_force(self) -> tuple[FormalizedRequirement, ...]:
+        """The formalized requirements that are not retired."""
+        return tuple(each for each in self.formalized if each.entry.is_in_force)
 
     @property
     def without_rule(self) -> tuple[RequirementEntry, ...]:

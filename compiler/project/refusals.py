@@ -16,7 +16,7 @@ from fretish.documents import RequirementEntry
 def refused(
     requirements: Sequence[RequirementEntry],
     formalized: Sequence[FormalizedRequirement],
-    own: Mapping[int, Diagnostic],
+    own: Mapping[RequirementEntry, Diagnostic],
     declarations: Declarations | None,
     unusable: Iterable[Diagnostic],
 ) -> tuple[Refused, ...]:
@@ -25,15 +25,15 @@ def refused(
     Args:
         requirements: all of them.
         formalized: the formalized ones among them.
-        own: the diagnostic of a requirement in its file, by the entry's `id()`; notes are ignored.
+        own: the diagnostic of a requirement in its file, by its entry; notes are ignored.
         declarations: the bindings; None if there are none.
         unusable: errors in the parts of the bindings that every requirement reads.
     """
-    rule_of = {id(requirement.entry): requirement for requirement in formalized}
+    rule_of = {requirement.entry: requirement for requirement in formalized}
     of_all = [diagnostic for diagnostic in unusable if diagnostic.is_error]
     refusals = []
     for entry in requirements:
-        requirement, mistake = rule_of.get(id(entry)), own.get(id(entry))
+        requirement, mistake = rule_of.get(entry), own.get(entry)
         why = [mistake] if mistake is not None and mistake.is_error else []
         if requirement is not None:
             why.extend(of_all)
@@ -44,13 +44,13 @@ def refused(
     return tuple(refusals)
 
 
-def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
-    """The errors that prevent a trace or a review, by the `id()` of each requirement.
+def unreviewable(project: Project) -> Mapping[RequirementEntry, tuple[Diagnostic, ...]]:
+    """The errors that prevent a trace or a review, by requirement.
 
     They include the errors of refused requirements. A trace also reads the headers and hazards
     above a requirement, and the accepted warnings.
     """
-    errors = {id(each.requirement): [*each.why] for each in project.refused}
+    errors = {each.requirement: [*each.why] for each in project.refused}
     of_headers = {mistake for each in project.requirements for mistake in each.mistakes}
     tables = project.declarations.mistakes.values() if project.declarations else ()
     of_formulas = {why for each in project.refused for why in each.why} - of_headers
@@ -63,7 +63,7 @@ def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
     for requirement in project.requirements if others else ():
         path = _UpwardPath.of(requirement, project)
         reasons = [mistake for mistake, owners in others.items() if path.reads(mistake, owners)]
-        errors.setdefault(id(requirement), []).extend(reasons)
+        errors.setdefault(requirement, []).extend(reasons)
     return {key: tuple(dict.fromkeys(why)) for key, why in errors.items() if why}
 
 

@@ -14,7 +14,8 @@ from fretish import syntax, units
 from fretish.bindings.constants import Exact, constants
 from fretish.bindings.declarations import Declarations, Proposition
 from fretish.checking import conditions
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.expressions import Quantity, parts
 from fretish.syntax import TimeUnit
@@ -58,13 +59,8 @@ def first_unit(requirements: Iterable[FormalizedRequirement]) -> Diagnostic | No
         for expression in conditions(requirement.written):
             for part in parts(expression):
                 if isinstance(part, Quantity):
-                    return Diagnostic(
-                        Code.UNIT_IN_SENTENCE,
-                        f"`{part.digits} {part.unit}`: FRET has no units; `--emit fret-json` "
-                        "writes each number in the unit of its signal",
-                        part.span,
-                        help="a number without a unit has the unit of its signal, also in FRET",
-                        severity=Severity.NOTE,
+                    return diagnostic(
+                        "unit_in_sentence", part.span, digits=part.digits, unit=part.unit
                     )
     return None
 
@@ -81,28 +77,12 @@ def _parameters(
         propositions = _propositions(requirement, declarations, name)
         mistaken = {("proposition", name), ("signal", name)} & declarations.mistakes.keys()
         if not propositions and not mistaken:
-            yield Diagnostic(
-                Code.UNKNOWN_NAME,
-                f"`params` states a number for `{name}`, which has no binding",
-                place,
-                help="name the proposition or signal that the number belongs to, and bind it",
-            )
+            yield diagnostic("unbound_parameter", place, name=name)
             continue
         if units.quantity(text) is None:
-            yield Diagnostic(
-                Code.BAD_FIELD,
-                f"`{text}` is not a quantity",
-                place,
-                help='write a number and a unit: `"5 cm"`',
-            )
+            yield diagnostic("parameter_not_quantity", place, text=text)
         elif _has_drifted(text, propositions):
-            yield Diagnostic(
-                Code.PARAMETER_DRIFT,
-                f"the requirement states {text} for `{name}`, but its binding has another number",
-                propositions[0].span,
-                help="correct the binding or `params`",
-                severity=Severity.WARNING,
-            )
+            yield diagnostic("parameter_drift", propositions[0].span, text=text, name=name)
 
 
 def _has_drifted(text: str, propositions: Sequence[Proposition]) -> bool:
@@ -187,11 +167,6 @@ def _differs(
     other = ""
     if elsewhere is not None:
         other = f": {elsewhere.text} ({elsewhere.source.name}:{elsewhere.line}:{elsewhere.column})"
-    return Diagnostic(
-        Code.PROSE_DRIFT,
-        f"the {field} of {requirement.id} says {words}, but the requirement uses another "
-        f"number{other}",
-        where,
-        help="correct the text or the number",
-        severity=Severity.WARNING,
+    return diagnostic(
+        "prose_drift", where, field=field, requirement=requirement.id, words=words, other=other
     )

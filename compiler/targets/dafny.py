@@ -25,9 +25,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import PurePosixPath
 
-from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of, temporal_predicate
@@ -38,7 +36,7 @@ from compiler.logic.spelling.reserved_words import DAFNY
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.dafny_claims import CHANNELS, Delay, delay, no_loop_reason
 from compiler.targets.interceptor_options import options as core
-from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
+from compiler.targets.target import Target, file_of_each, not_expressible, stem
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.declarations import Declarations
@@ -78,22 +76,6 @@ _SCOPES: Mapping[ScopeKind, str] = {
 }
 
 
-@with_recursion_limit
-def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
-) -> tuple[Artifact, ...]:
-    """`<id>.dfy` for each requirement."""
-    declared = options.declarations
-    return tuple(
-        Artifact(PurePosixPath(_name(requirement)), text(requirement, declared))
-        for requirement in requirements
-    )
-
-
-def _name(requirement: FormalizedRequirement) -> str:
-    return f"{stem(requirement)}.dfy"
-
-
 def text(requirement: FormalizedRequirement, declarations: Declarations | None) -> str:
     """The text of the file; equal for equal requirement and declarations.
 
@@ -106,7 +88,7 @@ def text(requirement: FormalizedRequirement, declarations: Declarations | None) 
         id=requirement.id,
         title=requirement.entry.title,
         sentence=" ".join(requirement.entry.wording.text.split()),
-        file=_name(requirement),
+        file=f"{stem(requirement)}.dfy",
         monitor=_monitor(requirement).rstrip() + "\n",
         interceptor=_interceptor(declarations).rstrip() + "\n",
         loop=_loop(requirement, declarations).rstrip(),
@@ -306,7 +288,7 @@ def _loop(requirement: FormalizedRequirement, declarations: Declarations | None)
 TARGET = Target(
     "dafny",
     "monitor step, interceptor and closed loop with proofs, for Dafny",
-    emit,
+    file_of_each("dfy", lambda requirement, options: text(requirement, options.declarations)),
     refuse,
     next_step="`dafny verify {}` proves it",
     of_loop=True,

@@ -41,8 +41,8 @@ def emit(
     requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
     """`fret.json` with all requirements: `{"requirements": [...], "variables": [...]}`."""
-    read = {id(formalized.entry): _in_fretish(formalized) for formalized in requirements}
-    ordered = [(entry, read.get(id(entry))) for entry in _ordered(requirements, options)]
+    read = {formalized.entry: _in_fretish(formalized) for formalized in requirements}
+    ordered = [(entry, read.get(entry)) for entry in _ordered(requirements, options)]
     content = {
         "requirements": [
             requirement(formalized.entry if formalized else entry, formalized)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import PurePosixPath
 
-from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
@@ -14,19 +12,9 @@ from compiler.logic import printing
 from compiler.logic.identifiers import legal_names
 from compiler.logic.spelling.reserved_words import SMV
 from compiler.targets.comparison_names import comparison_names, definitions
-from compiler.targets.target import DEFAULT, Options, Target, stem
+from compiler.targets.target import DEFAULT, Options, Target, file_of_each
 from fretish.diagnostics.rendering import visible
 from fretish.meaning import meaning
-
-
-def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
-) -> tuple[Artifact, ...]:
-    """`<id>.ltl` for each requirement."""
-    return tuple(
-        Artifact(PurePosixPath(f"{stem(requirement)}.ltl"), text(requirement, options))
-        for requirement in requirements
-    )
 
 
 def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
@@ -81,4 +69,4 @@ def _simplified(requirement: FormalizedRequirement) -> str:
     return shorter if shorter is not None else "(Spot finds nothing shorter)"
 
 
-TARGET = Target("ltl", "future-time and past-time formulas, for reading", emit)
+TARGET = Target("ltl", "future-time and past-time formulas, for reading", file_of_each("ltl", text))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 from typing import Protocol
 
 from compiler.files.artifact import Artifact
@@ -12,8 +13,10 @@ from compiler.files.attribution import NOBODY, Attribution
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from fretish.bindings.declarations import Declarations
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry
+from fretish.reading.recursion import with_recursion_limit
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +86,26 @@ class Target:
     """The target when weakening is allowed: it refuses less, and remarks on the loss."""
 
 
+def file_of_each(ending: str, text: Callable[[FormalizedRequirement, Options], str]) -> Emit:
+    """The function `emit` of a target that writes one file, `<id>.ending`, for each requirement.
+
+    Args:
+        ending: the ending of the file, without a dot.
+        text: the text of the file.
+    """
+
+    @with_recursion_limit
+    def emit(
+        requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    ) -> tuple[Artifact, ...]:
+        return tuple(
+            Artifact(PurePosixPath(f"{stem(requirement)}.{ending}"), text(requirement, options))
+            for requirement in requirements
+        )
+
+    return emit
+
+
 def stem(requirement: FormalizedRequirement) -> str:
     """The name of the requirement's files, without their ending: the id in lower case."""
     return requirement.id.lower()
@@ -98,10 +121,12 @@ def not_expressible(
     target: str, requirement: FormalizedRequirement, what: str, fix: str
 ) -> Diagnostic:
     """F601: the target's language cannot express a part of the requirement."""
-    return Diagnostic(
-        Code.NOT_EXPRESSIBLE,
-        f"{target} cannot express {what} of {requirement.id}",
+    return diagnostic(
+        "not_expressible",
         requirement.entry.wording,
+        target=target,
+        what=what,
+        requirement=requirement.id,
         help=fix,
     )
 
@@ -116,11 +141,12 @@ def too_long(
     """F670 if the formula is too long without `<->` and `xor`."""
     if _size(formula) <= _MOST_OPERATORS:
         return None
-    return Diagnostic(
-        Code.TOO_LARGE,
-        f"the property of {requirement.id} has more than {_MOST_OPERATORS} operators",
+    return diagnostic(
+        "property_too_long",
         requirement.entry.wording,
-        help=f"{target}'s formulas have no `<->` and no `xor`: bind parts as propositions",
+        requirement=requirement.id,
+        most=_MOST_OPERATORS,
+        target=target,
     )
 
 

@@ -5,23 +5,22 @@ The file is not trusted: a verdict that does not follow from its findings is F50
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
+from compiler.files import records
 from compiler.files.build_id import __version__
-from compiler.files.checked_json import SchemaError, parsed
-from compiler.files.records import Name, Record, Sha256, about, decoded, json_schema
-from compiler.files.text_files import read as read_text
+from compiler.files.records import Name, Record, Sha256, about, json_schema
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.arena.roles import role
 from fretc.analysis.findings import Analysis, Verdict
 from fretc.analysis.reasons import listed
 from fretish.bindings import canonical
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.printer import sentence as printed
 
@@ -158,27 +157,17 @@ def remarks(
         what = (
             "cannot be satisfied by any system" if len(ids) == 1 else "cannot be satisfied together"
         )
-        yield Diagnostic(
-            Code.UNREALIZABLE,
-            f"{listed(ids)} {what}: {each.because}",
+        yield diagnostic(
+            "unrealizable_requirements",
             places.get(ids[0]),
-            help="`fretc analyze` shows the run",
-            severity=Severity.WARNING,
+            requirements=listed(ids),
+            what=what,
+            because=each.because,
         )
     if analysis.verdict is Verdict.UNREALIZABLE and not analysis.conflicts:
-        yield Diagnostic(
-            Code.UNREALIZABLE,
-            f"requirements {analysis.why}",
-            help="`fretc analyze` shows them",
-            severity=Severity.WARNING,
-        )
+        yield diagnostic("unrealizable_set", why=analysis.why)
     if analysis.verdict is Verdict.NOT_CHECKED:
-        yield Diagnostic(
-            Code.NOT_ANALYZED,
-            f"it is unknown whether all requirements can be satisfied together: {analysis.why}",
-            help="`fretc analyze` shows the open questions",
-            severity=Severity.WARNING,
-        )
+        yield diagnostic("not_analyzed", why=analysis.why)
 
 
 # Files ----------------------------------------------------------------------------------------
@@ -195,23 +184,17 @@ class AnalyzedSet:
 
 def read(path: str) -> AnalyzedSet | Diagnostic:
     """Read and check a file of `fretc analyze`."""
-    source = read_text(path)
-    if isinstance(source, Diagnostic):
-        return source
-    try:
-        found = decoded(parsed(source.text).value, Document)
-    except json.JSONDecodeError as error:
-        return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
-    except SchemaError as error:
-        return _wrong(source, f"is not what `fretc analyze` writes: {error}")
-    except RecursionError:
-        return _wrong(source, "is not JSON that fretc can read: it is nested too deeply")
-    except ValueError as error:
-        return _wrong(source, f"is not JSON that fretc can read: {error}")
-    mistake = _contradiction(found)
+    again = "analyze again: `fretc analyze FILE...`"
+    found = records.read(path, Document, "fretc analyze", again)
+    if isinstance(found, Diagnostic):
+        return found
+    source, content = found
+    mistake = _contradiction(content)
     if mistake:
-        return _wrong(source, f"contradicts itself: {mistake}")
-    return AnalyzedSet(source.name, sha256(source.text), found)
+        place = Source(source.name, "").span()
+        what = f"contradicts itself: {mistake}"
+        return diagnostic("bad_result_file", place, path=source.name, what=what, help=again)
+    return AnalyzedSet(source.name, sha256(source.text), content)
 
 
 def known(path: str | None) -> AnalyzedSet | Diagnostic | None:
@@ -248,12 +231,3 @@ def _contradiction(found: Document) -> str:
     if analysis.verdict is follows:
         return ""
     return f"the verdict is `{analysis.verdict}`, but its parts imply `{follows}`"
-
-
-def _wrong(source: Source, what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EVIDENCE,
-        f"`{source.name}` {what}",
-        Source(source.name, "").span(),
-        help="analyze again: `fretc analyze FILE...`",
-    )

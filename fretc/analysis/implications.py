@@ -8,8 +8,8 @@ from itertools import combinations
 from operator import attrgetter
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.memory import Counter
 from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vacuity

@@ -9,8 +9,8 @@ from itertools import chain, repeat
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons
 from compiler.formalization.resolution import candidates
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet, Tick
 from fretc.analysis.arena.budget import ENDLESS, Budget
 from fretc.analysis.arena.counters import counter

@@ -7,9 +7,9 @@ from typing import assert_never
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import TRAITS, Kind, Trait
-from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.memory import Counter

@@ -15,8 +15,8 @@ from typing import assert_never, cast
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.resolution import candidates
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.memory import Counter
 from fretc.analysis.arena.variables import UnsupportedError

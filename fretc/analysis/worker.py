@@ -73,6 +73,16 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
             raise Interrupted
 
 
+def finished(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> tuple[list[F], bool]:
+    """The findings of the jobs, and whether Ctrl-C has stopped them."""
+    found: list[F] = []
+    try:
+        found.extend(findings(jobs, progress))
+    except Interrupted:
+        return found, True
+    return found, False
+
+
 @contextmanager
 def _interruption() -> Iterator[Callable[[], bool]]:
     """Whether Ctrl-C was pressed; a flag, so that no finding that was sent is lost."""

@@ -16,7 +16,8 @@ from fretc.audit.many_logs import local_executor
 from fretc.audit.outputs.totals import VerdictWords
 from fretc.audit.plan import Plan, planned
 from fretc.logs.signals.integrity import Integrity
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 Path = str | os.PathLike[str]
 
@@ -67,7 +68,7 @@ def audit_logs(
         raise Refusal((error,))
     named = accepted(logs_of([os.fspath(log) for log in logs]))
     if not named:
-        raise Refusal((_nothing(),))
+        raise Refusal((diagnostic("no_log_given"),))
     plan = planned(project, integrity=Integrity(integrity), confidence=confidence)
     if not isinstance(plan, Plan):
         raise Refusal(plan)
@@ -88,23 +89,10 @@ def _audit(plan: Plan, run: Run) -> Audit:
 
 def _bad_choice(integrity: str, confidence: float, jobs: int) -> Diagnostic | None:
     if integrity not in list(Integrity):
-        names = ", ".join(Integrity)
-        return _bad(f"unknown integrity level `{integrity}`", f"name one of {names}")
+        levels = ", ".join(Integrity)
+        return diagnostic("unknown_integrity_level", integrity=integrity, levels=levels)
     if not 0.5 < confidence < 1:
-        return _bad(
-            f"the confidence must be between 0.5 and 1, and it is {confidence}",
-            "give a number between 0.5 and 1",
-        )
+        return diagnostic("bad_confidence", confidence=confidence)
     if jobs < 1:
-        return _bad(
-            f"at least 1 process is needed, and the number given is {jobs}", "give 1 or more"
-        )
+        return diagnostic("too_few_processes", jobs=jobs)
     return None
-
-
-def _bad(what: str, fix: str) -> Diagnostic:
-    return Diagnostic(Code.BAD_USAGE, what, help=fix)
-
-
-def _nothing() -> Diagnostic:
-    return Diagnostic(Code.NOTHING_TO_DO, "no log is given", help="name one log or more")

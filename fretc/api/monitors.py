@@ -9,7 +9,8 @@ from compiler.formalization.formalize import duplicate_ids, name_collisions
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import monitor as python
 from fretc.api.refusal import Refusal, bounded
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from monitors.kernel.stepping import Standing
 from monitors.kernel.variables import Value
 from monitors.kernel.verdicts import Verdict
@@ -65,7 +66,7 @@ def monitor_text(*requirements: FormalizedRequirement) -> str:
         Refusal: a monitor cannot express a requirement, or they do not fit into one file.
     """
     if not requirements:
-        raise Refusal((_nothing(),))
+        raise Refusal((diagnostic("no_requirement_for_monitor"),))
     requirements = tuple({id(requirement): requirement for requirement in requirements}.values())
     same_id = duplicate_ids([requirement.entry for requirement in requirements]).values()
     errors = [
@@ -91,18 +92,9 @@ def _several_clocks(requirements: tuple[FormalizedRequirement, ...]) -> Iterable
     first, *others = requirements
     for requirement in others:
         if requirement.clock != first.clock:
-            yield Diagnostic(
-                Code.BAD_USAGE,
-                f"{requirement.id} and {first.id} have different clocks, and a joint monitor has "
-                "one clock",
+            yield diagnostic(
+                "several_clocks",
                 requirement.entry.wording,
-                help="formalize both with the same bindings",
+                requirement=requirement.id,
+                first=first.id,
             )
-
-
-def _nothing() -> Diagnostic:
-    return Diagnostic(
-        Code.NOTHING_TO_DO,
-        "no requirement is given: a monitor needs at least one",
-        help="give one requirement or more",
-    )

@@ -12,7 +12,8 @@ from fretc.verification.ajpf_results import ajpf_proofs
 from fretc.verification.engines.sandbox import Limits
 from fretc.verification.layers.request import Request
 from fretc.verification.verify import missing_prover, prove, refusals
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import has_errors
+from fretish.diagnostics.messages import diagnostic
 
 Path = str | os.PathLike[str]
 
@@ -45,17 +46,15 @@ def verify(
         Refusal: a requirement has an error, or no monitor can express it.
     """
     if has_errors(project.diagnostics):
-        raise Refusal(diagnostic for diagnostic in project.diagnostics if diagnostic.is_error)
+        raise Refusal(mistake for mistake in project.diagnostics if mistake.is_error)
     every = tuple(map(str, Layer))
     demanded = () if layers is None else _named("layer", layers, every)
     chosen_layers = demanded if layers is not None else every
     chosen_provers = _named("prover", provers, PROVERS)
     if not project.formalized or not chosen_layers:
-        raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is nothing to verify"),))
+        raise Refusal((diagnostic("nothing_to_verify"),))
     if limit < 1:
-        raise Refusal(
-            (_bad(f"the time limit must be 1 second or more, and it is {limit}", "give 1 or more"),)
-        )
+        raise Refusal((diagnostic("bad_time_limit", limit=limit),))
     results, remarks = ajpf_proofs(project.formalized, [os.fspath(path) for path in ajpf])
     if has_errors(remarks):
         raise Refusal(remarks)
@@ -77,11 +76,6 @@ def _named(what: str, choice: Iterable[str], names: tuple[str, ...]) -> tuple[st
     chosen = tuple(dict.fromkeys([choice] if isinstance(choice, str) else choice))
     for name in chosen:
         if name not in names:
-            raise Refusal(
-                (_bad(f"unknown {what} `{name}`", f"name one or more of {', '.join(names)}"),)
-            )
+            listed = ", ".join(names)
+            raise Refusal((diagnostic("unknown_choice", what=what, name=name, names=listed),))
     return chosen
-
-
-def _bad(what: str, fix: str) -> Diagnostic:
-    return Diagnostic(Code.BAD_USAGE, what, help=fix)

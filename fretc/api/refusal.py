@@ -6,7 +6,8 @@ import functools
 from collections.abc import Callable, Iterable
 from typing import ParamSpec, TypeVar
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import render_all
 from fretish.reading.limits import ExceededError, exceeded
 from fretish.reading.natural_order import by_place
@@ -51,15 +52,6 @@ def bounded(function: Callable[P, R]) -> Callable[P, R]:
         except ExceededError as error:
             raise Refusal((exceeded(error),)) from None
         except RecursionError:
-            raise Refusal((too_deep(),)) from None
+            raise Refusal((diagnostic("api_expression_too_deep"),)) from None
 
     return refusing
-
-
-def too_deep() -> Diagnostic:
-    """The refusal of an expression with more levels than Python's recursion limit allows."""
-    return Diagnostic(
-        Code.TOO_DEEP,
-        "an expression has too many nested operators",
-        help="define parts of the expression under separate names",
-    )

@@ -14,7 +14,8 @@ from fretc.attestation.signatures import SIGNERS
 from fretc.report.make import ReportBuild, make
 from fretc.verification.ajpf_results import default_paths as ajpf_results
 from fretc.verification.reader import default_path as verification_file
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 Path = str | os.PathLike[str]
 
@@ -69,7 +70,7 @@ def make_report(
         Refusal: a file cannot be read, or there is no requirement.
     """
     if not project.requirements:
-        raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to report on"),))
+        raise Refusal((diagnostic("nothing_to_report"),))
     first = project.requirements[0].wording.source.name
     build = make(
         project,

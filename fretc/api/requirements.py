@@ -14,7 +14,8 @@ from compiler.project.project import Project
 from fretc.api.refusal import Refusal, accepted, bounded
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
 from fretish.meaning import meaning
@@ -116,8 +117,4 @@ def formulas(requirement: FormalizedRequirement, notation: str = "plain") -> For
 
 
 def _no_notation(notation: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"unknown notation `{notation}`",
-        help=f"name one of {', '.join(printing.DIALECTS)}",
-    )
+    return diagnostic("unknown_notation", notation=notation, notations=", ".join(printing.DIALECTS))

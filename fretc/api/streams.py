@@ -14,7 +14,8 @@ from fretc.logs.stream import Stream as Truths
 from fretc.logs.stream import Tick as Row
 from fretc.watch.requirement_monitors import RequirementMonitors
 from fretish.bindings.declarations import Signal
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, did_you_mean
+from fretish.diagnostics.messages import diagnostic
 from monitors.kernel.stepping import Standing
 from monitors.kernel.verdicts import Truth
 
@@ -156,9 +157,8 @@ def _plan(project: Project) -> Plan:
 
 
 def _no_signal(name: str, names: tuple[str, ...]) -> Diagnostic:
-    near = suggestion(name, names)
-    return Diagnostic(
-        Code.UNKNOWN_NAME,
-        f"the bindings declare no signal `{name}`",
-        help=f"did you mean `{near}`?" if near else f"they declare {', '.join(names)}",
+    return diagnostic(
+        "undeclared_signal",
+        name=name,
+        help=did_you_mean(name, names, f"they declare {', '.join(names)}"),
     )

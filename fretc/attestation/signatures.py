@@ -21,6 +21,7 @@ from fretc.attestation.statement import Statement, Subject
 from fretc.attestation.statement import read as read_statement
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import unless_installed
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import with_budget
 
@@ -260,14 +261,7 @@ def _names(signers: Iterable[Signer]) -> str:
 
 
 def _broken(envelope: Envelope, signer: Signer) -> Diagnostic:
-    return Diagnostic(
-        Code.BROKEN_SIGNATURE,
-        f"the signature of {signer.name} does not verify: the signature or the signed content "
-        "has changed",
-        envelope.place.part(0, 0),
-        help="ask the signer whether the content is right, then sign it again; the signature "
-        "may be forged",
-    )
+    return diagnostic("broken_signature", envelope.place.part(0, 0), signer=signer.name)
 
 
 def missing() -> Diagnostic | None:

@@ -13,7 +13,8 @@ from fnmatch import fnmatchcase
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
 from fretc.attestation.keys import KEY_TYPES, PublicKey, UnusableKeyError, public_key
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import with_budget
 
@@ -88,13 +89,7 @@ def trusted(path: str) -> Signers | Diagnostic:
 
 def bad_key(path: str, error: UnusableKeyError) -> Diagnostic:
     """F931: the key in the file cannot be used."""
-    return Diagnostic(
-        Code.BAD_KEY,
-        f"the key in `{path}` cannot be used: {error}",
-        Source(path, "").span(),
-        help="name the private key to sign, its `.pub` to verify; `ssh-keygen -t ed25519` makes "
-        "both",
-    )
+    return diagnostic("unusable_key", Source(path, "").span(), path=path, error=error)
 
 
 def _read(source: Source) -> Signers | Diagnostic:
@@ -153,11 +148,10 @@ def _wrong(line: Span, what: str) -> Diagnostic:
 
 
 def _unused(line: Span, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_SIGNERS,
-        f"the key of this line is ignored: {why}",
+    return diagnostic(
+        "ignored_key",
         line,
-        help=f"name a key of {', '.join(f'`{each}`' for each in KEY_TYPES)}, without options or "
-        f'with `namespaces="{NAMESPACE}"`',
-        severity=Severity.WARNING,
+        why=why,
+        types=", ".join(f"`{each}`" for each in KEY_TYPES),
+        namespace=NAMESPACE,
     )

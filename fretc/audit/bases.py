@@ -7,7 +7,8 @@ from types import MappingProxyType
 
 from compiler.project.project import Project
 from fretc.audit.evidence.basis import Basis, basis
-from fretc.audit.refusals import active_requirements, refusals
+from fretc.audit.refusals import refusals
+from fretish.documents import RequirementEntry
 
 
 def audited_topics(project: Project) -> frozenset[str]:
@@ -15,14 +16,12 @@ def audited_topics(project: Project) -> frozenset[str]:
     declarations = project.declarations
     if declarations is None:
         return frozenset()
-    refused = {id(entry) for entry, _ in refusals(project)}
-    auditable = [
-        requirement
-        for requirement in active_requirements(project)
-        if id(requirement.entry) not in refused
-    ]
+    refused = {entry for entry, _ in refusals(project)}
     used = declarations.restricted_to(
-        name for requirement in auditable for name in requirement.watched
+        name
+        for requirement in project.in_force
+        if requirement.entry not in refused
+        for name in requirement.watched
     )
     return frozenset(signal.path.topic for signal in used.signals.values())
 
@@ -30,25 +29,25 @@ def audited_topics(project: Project) -> frozenset[str]:
 def bases(
     project: Project,
     topics: frozenset[str] | None = None,
-    monitors: Mapping[int, str] = MappingProxyType({}),
-) -> Mapping[int, Basis]:
-    """The verdict inputs of each requirement, retired ones included, by the `id()` of its entry.
+    monitors: Mapping[RequirementEntry, str] = MappingProxyType({}),
+) -> Mapping[RequirementEntry, Basis]:
+    """The verdict inputs of each requirement, retired ones included, by its entry.
 
     Args:
         project: with or without errors.
         topics: its `audited_topics`, if they are known.
-        monitors: the SHA-256 of the monitors that are known, by the same `id()`.
+        monitors: the SHA-256 of the monitors that are known, by the same entries.
     """
     declarations = project.declarations
     topics = audited_topics(project) if topics is None else topics
-    requirements = {id(requirement.entry): requirement for requirement in project.formalized}
+    requirements = {requirement.entry: requirement for requirement in project.formalized}
     return {
-        id(requirement): basis(
+        requirement: basis(
             requirement,
-            requirements.get(id(requirement)),
+            requirements.get(requirement),
             declarations,
             topics,
-            monitors.get(id(requirement)),
+            monitors.get(requirement),
         )
         for requirement in project.requirements
     }

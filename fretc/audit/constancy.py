@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from fretc.audit.evidence.schema import Result
-from fretc.audit.measurements.tallies import Tally
+from fretc.audit.measurements.tallies import NOTHING, Tally
 from fretish.bindings.declarations import Declarations
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,16 +30,7 @@ def totals(runs: Iterable[Mapping[str, Tally]]) -> dict[str, Total]:
     for tallies in runs:
         for name, tally in tallies.items():
             of_name.setdefault(name, []).append(tally)
-    return {name: Total(_sum(some), len(some)) for name, some in of_name.items()}
-
-
-def _sum(tallies: Sequence[Tally]) -> Tally:
-    return Tally(
-        sum(tally.true for tally in tallies),
-        sum(tally.false for tally in tallies),
-        sum(tally.unknown for tally in tallies),
-        sum(tally.changes for tally in tallies),
-    )
+    return {name: Total(sum(some, NOTHING), len(some)) for name, some in of_name.items()}
 
 
 def tallies_of(results: Iterable[Result]) -> dict[str, Tally]:
@@ -68,12 +60,12 @@ def never_changed(
         if explained and not total.true + total.false:
             continue
         runs = "the log" if of_runs.runs == 1 else f"any of {of_runs.runs} logs"
-        yield Diagnostic(
-            Code.NEVER_CHANGED,
-            f"`{name}` never changed in {runs}: {_always(total)}",
+        yield diagnostic(
+            "never_changed",
             declarations.propositions[name].span,
-            help="check its path, its unit and its bound, or audit a run in which it should change",
-            severity=Severity.NOTE,
+            name=name,
+            runs=runs,
+            values=_always(total),
         )
 
 

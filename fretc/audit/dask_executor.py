@@ -20,7 +20,6 @@ from urllib.parse import urlsplit
 from compiler.files.build_id import build_id
 from compiler.files.processes import isolate_imports
 from fretc.audit.many_logs import (
-    EVALUATIONS,
     Engine,
     LogAudits,
     LogResult,
@@ -28,8 +27,9 @@ from fretc.audit.many_logs import (
     results_of_killed_process,
 )
 from fretc.audit.plan import Plan, packed, unpacked
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic, DiagnosticError
 from fretish.diagnostics.extras import unless_installed
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from distributed import Client, Future, WorkerPlugin
@@ -49,7 +49,11 @@ def engine(name: str, jobs: int) -> Engine | Diagnostic:
     """
     place = urlsplit(name)
     if name != SCHEME and not (place.scheme == SCHEME and _is_address(place.netloc)):
-        return _bad_engine(name)
+        return diagnostic(
+            "unknown_engine",
+            name=name,
+            help="write `local`, `dask` or `dask://HOST:PORT`",
+        )
     encrypts = ["cryptography"] if name == SCHEME else []
     missing = unless_installed("the engine `dask` needs", ["distributed", *encrypts], "fleet")
     if missing is not None:
@@ -75,12 +79,8 @@ def _audit(connected: Any, plan: Plan, logs: Sequence[str]) -> LogAudits:
         yield error.diagnostic
 
 
-class _FleetError(Exception):
+class _FleetError(DiagnosticError):
     """The Dask cluster cannot audit."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 # Clusters -------------------------------------------------------------------------------------
@@ -282,29 +282,9 @@ def _in(folder: str) -> Iterator[None]:
 # Diagnostics ----------------------------------------------------------------------------------
 
 
-def _bad_engine(name: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`{name}` is no engine",
-        help=f"write `--evaluation {name}`"
-        if name in EVALUATIONS
-        else "write `local`, `dask` or `dask://HOST:PORT`",
-    )
-
-
 def _unreachable(address: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NO_FLEET,
-        f"the Dask cluster at `{address.replace('tcp', SCHEME, 1)}` cannot be reached: {why}",
-        help="start `dask scheduler` there, and `dask worker HOST:PORT --nthreads 1` on each "
-        "machine; `--engine dask` needs neither",
-    )
+    return diagnostic("cluster_unreachable", address=address.replace("tcp", SCHEME, 1), why=why)
 
 
 def _other_edition(what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.OTHER_EDITION,
-        what,
-        help="install the same fretc, Python and libraries on all machines: verdicts of "
-        "different versions are not mixed",
-    )
+    return diagnostic("other_edition", what=what)

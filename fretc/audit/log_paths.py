@@ -12,7 +12,8 @@ from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
 from fretc.logs.storage.listings import below, is_store
 from fretc.logs.storage.log_names import STDIN, is_url, name_of
 from fretc.logs.storage.splits import ACTIVE, is_backup, run_name, split
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 
 _LOGS = (".mcap", ".bag", ".db3", ACTIVE, ".bag.orig.active")
@@ -171,18 +172,8 @@ def _joined(by_real_path: dict[str, str]) -> Iterator[str]:
 
 
 def _empty(path: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NO_SUCH_FILE,
-        f"no log (`*.mcap`, `*.bag`, `*.db3`) is in `{name_of(path)}`",
-        Source(name_of(path), "").span(),
-        help="name the folder that contains the logs",
-    )
+    return diagnostic("folder_without_logs", Source(name_of(path), "").span(), path=name_of(path))
 
 
 def _no_match(path: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NO_SUCH_FILE,
-        f"no file matches `{name_of(path)}`",
-        Source(name_of(path), "").span(),
-        help="`*` matches any part of one name, `**` any number of nested folders",
-    )
+    return diagnostic("no_matching_file", Source(name_of(path), "").span(), path=name_of(path))

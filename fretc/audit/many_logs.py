@@ -31,7 +31,6 @@ from fretc.audit.evidence.schema import (
 )
 from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged_result, unread_result
 from fretc.audit.evidence.writer import text as written
-from fretc.audit.measurements.judgement import Engine as Evaluation
 from fretc.audit.measurements.tallies import Tally
 from fretc.audit.one_log import (
     MonitoredRequirement,
@@ -90,10 +89,6 @@ class Audit:
     def source(self) -> EvidenceSource:
         """The results as an `EvidenceSource`."""
         return EvidenceFile("", "", self.document)
-
-
-EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": kernel.stepped}
-"""The ways to run monitors: on whole traces at once, or step by step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -275,7 +270,7 @@ def audit_log(
         for requirement in requirements
         if requirement.monitor.REQUIREMENTS[0].id not in taken
     ]
-    evidence = audit(recording, declarations, new, EVALUATIONS[plan.evaluation]) if new else ()
+    evidence = audit(recording, declarations, new) if new else ()
     of_claim = {e.requirement: as_record(e) for e in evidence} | taken
     first, *others = (of_claim[claim.id] for claim in plan.claims)
     records = (record_with(first, course=plot_data(recording, declarations) or UNSET), *others)

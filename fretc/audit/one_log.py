@@ -13,7 +13,7 @@ from compiler.situations.situations import Situation
 from compiler.situations.thresholds import ThresholdPosition
 from fretc.audit.evidence.schema import Health, Situations
 from fretc.audit.evidence.writer import RunResult, health
-from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judge
+from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, judge
 from fretc.audit.measurements.margins import Margin, margins, worst
 from fretc.audit.measurements.situations import Near, nowhere_known, situation_ticks
 from fretc.audit.measurements.states import states
@@ -126,7 +126,6 @@ def audit(
     recording: Recording,
     declarations: Declarations,
     requirements: Sequence[MonitoredRequirement],
-    engine: Engine = kernel.evaluate,
 ) -> tuple[RunResult, ...]:
     """The result of one run for each requirement, in their order.
 
@@ -134,7 +133,6 @@ def audit(
         recording: the recording with all signals of all the monitors' propositions.
         declarations: every proposition of the monitors is declared.
         requirements: the requirements with their monitors.
-        engine: the evaluator of the monitors; the verdicts do not depend on it.
     """
     names = dict.fromkeys(name for requirement in requirements for name in requirement.propositions)
     truths = trace(declarations, recording, tuple(names))
@@ -150,9 +148,7 @@ def audit(
     )
     run_health, at = health(recording), _moments(truths.timeline)
     evidence = [
-        _evidence(
-            recording, declarations, truths, at, margins_of, near, requirement, engine, run_health
-        )
+        _evidence(recording, declarations, truths, at, margins_of, near, requirement, run_health)
         for requirement in requirements
     ]
     return tuple(_phased(result, phases_of.get(result.requirement)) for result in evidence)
@@ -176,20 +172,18 @@ def _evidence(
     margins_of: Mapping[str, tuple[Margin, ...]],
     near: Near,
     requirement: MonitoredRequirement,
-    engine: Engine,
     found: Health,
 ) -> RunResult:
     monitor = requirement.monitor
     columns = {name: truths.columns[name] for name in requirement.propositions}
     ticks = len(truths.timeline.times)
-    judgement = judge(
+    (judgement,) = judge(
         monitor,
         columns,
         truths.cut,
         ticks,
         intact=recording.intact,
         end=Verdict(declarations.clock.end),
-        engine=engine,
     )
     outcome = judgement.outcome
     signals = signals_of(declarations, requirement.propositions)

@@ -24,10 +24,11 @@ from fretc.audit.expected_response import demand
 from fretc.audit.measurements import confidence_intervals as intervals
 from fretc.audit.measurements.count_trials import chance, trials
 from fretc.audit.one_log import MonitoredRequirement
-from fretc.audit.refusals import RefusedRequirement, active_requirements, refusals
+from fretc.audit.refusals import RefusedRequirement, refusals
 from fretc.logs.signals.integrity import Integrity
 from fretish.bindings.declarations import Declarations
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry
 from fretish.reading.recursion import with_recursion_limit
 from monitors.loading import load
@@ -40,8 +41,6 @@ class Plan:
     claims: tuple[AuditedRequirement, ...]
     declarations: Declarations = field(compare=False, repr=False)
     """The declarations, with only the signals that the requirements read."""
-    evaluation: str
-    """The evaluation of monitors: a key of `fretc.audit.many_logs.EVALUATIONS`."""
     integrity: Integrity
     """How thoroughly a log is checked."""
     digest: str
@@ -74,7 +73,6 @@ class Plan:
 
 def planned(
     project: Project,
-    evaluation: str = "columns",
     integrity: Integrity = Integrity.HASH,
     confidence: float = intervals.CONFIDENCE,
 ) -> Plan | tuple[Diagnostic, ...]:
@@ -85,40 +83,39 @@ def planned(
 
     Args:
         project: a project without errors, except those of single requirements.
-        evaluation: `columns` or `online`; the verdicts do not depend on it.
         integrity: how thoroughly a log is checked beyond the bound messages.
         confidence: the confidence of bounds of a probability, between 0.5 and 1.
     """
     declarations = project.declarations
     unauditable = refusals(project)
-    left_out = {id(entry) for entry, _ in unauditable}
+    left_out = {entry for entry, _ in unauditable}
     requirements = [
-        requirement
-        for requirement in active_requirements(project)
-        if id(requirement.entry) not in left_out
+        requirement for requirement in project.in_force if requirement.entry not in left_out
     ]
     errors = tuple(dict.fromkeys(reason for _, why in unauditable for reason in why))
     if declarations is None or not requirements:
-        return errors or (Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to audit"),)
-    texts = {id(requirement.entry): monitors.text(requirement) for requirement in requirements}
+        return errors or (diagnostic("nothing_to_audit"),)
+    texts = {requirement.entry: monitors.text(requirement) for requirement in requirements}
     basis_of = bases(project, monitors={place: sha256(text) for place, text in texts.items()})
     claims = tuple(
-        _claim(requirement, basis_of[id(requirement.entry)], texts[id(requirement.entry)])
+        _claim(requirement, basis_of[requirement.entry], texts[requirement.entry])
         for requirement in requirements
     )
     refused = tuple(_refused(basis_of, entry, why) for entry, why in unauditable)
     used = declarations.restricted_to(
         name for requirement in requirements for name in requirement.watched
     )
-    digest = _digest(claims, refused, used, evaluation, integrity)
+    digest = _digest(claims, refused, used, integrity)
     one_each = tuple({each.id: each for each in reversed(refused)}.values())[::-1]
-    return Plan(claims, used, evaluation, integrity, digest, confidence, one_each)
+    return Plan(claims, used, integrity, digest, confidence, one_each)
 
 
 def _refused(
-    basis_of: Mapping[int, Basis], requirement: RequirementEntry, why: tuple[Diagnostic, ...]
+    basis_of: Mapping[RequirementEntry, Basis],
+    requirement: RequirementEntry,
+    why: tuple[Diagnostic, ...],
 ) -> RefusedRequirement:
-    return RefusedRequirement(requirement.id, wording(requirement), basis_of[id(requirement)], why)
+    return RefusedRequirement(requirement.id, wording(requirement), basis_of[requirement], why)
 
 
 def _claim(requirement: FormalizedRequirement, basis: Basis, monitor: str) -> AuditedRequirement:
@@ -138,14 +135,13 @@ def _digest(
     claims: Sequence[AuditedRequirement],
     refused: Sequence[RefusedRequirement],
     declarations: Declarations,
-    evaluation: str,
     integrity: Integrity,
 ) -> str:
     """SHA-256 of the plan, with positions in the bindings: diagnostics name their lines."""
     digest = hashlib.sha256(pickle.dumps(declarations, protocol=5))
     texts = [(c.id, c.sentence, dict(c.basis), c.monitor, astuple(c.demand)) for c in claims]
     reasons = [(r.id, r.sentence, dict(r.basis), [d.message for d in r.why]) for r in refused]
-    parts = [SCHEMA, evaluation, integrity, texts, reasons]
+    parts = [SCHEMA, integrity, texts, reasons]
     digest.update(json.dumps(parts).encode())
     return digest.hexdigest()
 
@@ -160,7 +156,7 @@ def keys(plan: Plan) -> Mapping[str, str]:
     """
     clock, signals = plan.declarations.clock, plan.declarations.signals.values()
     topics = sorted({signal.path.topic for signal in signals})
-    common = [SCHEMA, build_id(), plan.evaluation, plan.integrity, repr(clock), topics]
+    common = [SCHEMA, build_id(), plan.integrity, repr(clock), topics]
     requirements = zip(plan.claims, monitored_requirements(plan), strict=True)
     return {
         claim.id: sha256(json.dumps([*common, _letters(plan, claim, each.propositions)]))

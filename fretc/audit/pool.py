@@ -19,7 +19,8 @@ from typing import Any, TypeVar, overload
 from compiler.files.processes import ignore_interrupts, reply, stops_blocked
 from fretc.logs.storage.log_names import name_of
 from fretish.bindings.amounts import exact_duration
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 
 T = TypeVar("T")
@@ -69,20 +70,14 @@ def time_limit_diagnostic(log: str, how: TimedOut, limits: Limits) -> Diagnostic
         limits: the limits of the audit.
     """
     if how is TimedOut.OWN and limits.each is not None:
-        return Diagnostic(
-            Code.LOG_OUT_OF_TIME,
-            f"the audit of `{name_of(log)}` was ended after {exact_duration(limits.each)}",
+        return diagnostic(
+            "log_out_of_time",
             Source(name_of(log), "").span(),
-            help="allow more time with `--log-time`, or audit this log alone",
-            severity=Severity.WARNING,
+            log=name_of(log),
+            limit=exact_duration(limits.each),
         )
     assert limits.all is not None
-    return Diagnostic(
-        Code.AUDIT_OUT_OF_TIME,
-        f"the {exact_duration(limits.all)} of the audit were over: no data",
-        help="audit the remaining logs, or allow more time with `--time`",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("audit_out_of_time", limit=exact_duration(limits.all))
 
 
 def killed_diagnostic(log: str, how: str) -> Diagnostic:
@@ -92,11 +87,8 @@ def killed_diagnostic(log: str, how: str) -> Diagnostic:
         log: its path.
         how: how the process ended.
     """
-    return Diagnostic(
-        Code.PROCESS_KILLED,
-        f"the process that audited `{name_of(log)}` was killed, and again when it ran alone: {how}",
-        Source(name_of(log), "").span(),
-        help="it may have run out of memory: audit this log on a machine with more memory",
+    return diagnostic(
+        "audit_process_killed", Source(name_of(log), "").span(), log=name_of(log), how=how
     )
 
 

@@ -10,7 +10,8 @@ from compiler.project.project import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.evidence.basis import Basis
 from fretish.bindings.declarations import Declarations
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry
 
 
@@ -32,9 +33,9 @@ def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic
     The reasons are errors of the project, and what a log needs in addition: a binding of each
     proposition, a clock, and a monitor.
     """
-    requirements = active_requirements(project)
-    own = {id(requirement.entry): requirement for requirement in requirements}
-    refused = {id(each.requirement): each.why for each in project.refused}
+    requirements = project.in_force
+    own = {requirement.entry: requirement for requirement in requirements}
+    refused = {each.requirement: each.why for each in project.refused}
     unusable = (
         _unusable(project, requirements[0])
         if requirements and not has_errors(project.general)
@@ -42,8 +43,8 @@ def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic
     )
     refused_requirements = []
     for entry in project.requirements:
-        requirement = own.get(id(entry))
-        why = [*refused.get(id(entry), ())]
+        requirement = own.get(entry)
+        why = [*refused.get(entry, ())]
         if requirement is not None and unusable is not None:
             why.append(unusable)
         elif requirement is not None and project.declarations is not None:
@@ -53,29 +54,14 @@ def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic
     return tuple(refused_requirements)
 
 
-def active_requirements(project: Project) -> list[FormalizedRequirement]:
-    """The requirements that are not retired."""
-    return [
-        requirement for requirement in project.formalized if requirement.entry.status != "retired"
-    ]
-
-
 def _unusable(project: Project, first: FormalizedRequirement) -> Diagnostic | None:
     """The reason why the bindings cannot be used for any requirement; None: they can."""
     declarations = project.declarations
     if declarations is None:
-        return Diagnostic(
-            Code.UNBOUND,
-            "no bindings map the propositions to messages",
-            first.entry.wording,
-            help="write `bindings.toml` beside the requirements, or name it with `--bindings`",
-        )
+        return diagnostic("no_bindings", first.entry.wording)
     if not declarations.clock.declared:
-        return Diagnostic(
-            Code.NO_CLOCK,
-            f"`{declarations.source.name}` declares no clock",
-            declarations.source.span(0, 0),
-            help='add `[clock]` with `tick = "100 ms"`',
+        return diagnostic(
+            "no_clock_declared", declarations.source.span(0, 0), source=declarations.source.name
         )
     return None
 

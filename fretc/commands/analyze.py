@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import project_of
+from fretc.commands.opening import input_files, requirement_set
 from fretc.terminal.options import (
-    PATH,
     SECONDS,
+    component_option,
+    files_argument,
+    first_bindings_option,
     format_option,
     output_option,
     path_option,
@@ -23,29 +25,27 @@ from fretc.terminal.output import (
     EXIT_INCONCLUSIVE,
     EXIT_INTERRUPTED,
     EXIT_OK,
-    EXIT_USAGE,
     EXIT_VIOLATION,
     coloured,
     fail,
-    print_project_diagnostics,
     print_status,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+from fretc.terminal.progress import print_activity
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from compiler.formalization.formalized import FormalizedRequirement
-    from compiler.project.project import Project
     from fretc.analysis.analysis import Options
     from fretc.analysis.arena.roles import Roles
     from fretc.analysis.findings import Analysis
 
 
 @click.command()
-@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
-@click.option("--component", metavar="NAME", help="Only requirements of this component.")
+@files_argument
+@component_option
 @click.option(
     "--time",
     "seconds",
@@ -70,7 +70,7 @@ if TYPE_CHECKING:
     help="Answer as FRET does: an `eventually` without a bound must hold at once.",
 )
 @requirements_option
-@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
+@first_bindings_option
 @format_option()
 @output_option(
     default="build/analysis.json", show_default=True, help="File for the analysis. `-` prints it."
@@ -103,20 +103,14 @@ def analyze(
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from compiler.project.paths import companions
     from fretc.analysis.analysis import Options
     from fretc.analysis.arena.roles import roles
-    from fretc.analysis.assumptions import assumptions
     from fretc.analysis.evidence import document
     from fretc.analysis.text_output import lines
     from fretish.printer import sentence as printed
 
-    project, first = project_of(files, requirements, bindings, ("environment",))
-    formalized = active_requirements(project, component)
-    assumed, remarks = assumptions(formalized, project.declarations)
-    print_project_diagnostics(remarks, first)
-    if has_errors(remarks):
-        raise SystemExit(EXIT_USAGE)
+    known = requirement_set(files, component, requirements, bindings, ("environment",))
+    project, formalized, assumed = known.project, known.requirements, known.assumed
     chosen = roles([*formalized, *assumed])
     if isinstance(chosen, tuple):
         fail(*chosen)
@@ -133,10 +127,7 @@ def analyze(
         left_out = [refusal.requirement.id for refusal in project.refused if refusal.is_in_force]
         click.echo(coloured([*lines(analysis, sentences, left_out)]), nl=False)
     if output != "-":
-        sources = [entry.wording.source.name for entry in project.requirements]
-        write_outputs(
-            {Path(output): evidence}, [*sources, *companions(sources), *filter(None, [bindings])]
-        )
+        write_outputs({Path(output): evidence}, input_files(project, bindings))
     if emitted is not None and not stopped:
         _emit(analysis, formalized, assumed, chosen, Options(seconds, as_fret), emitted, emit_to)
     raise SystemExit(EXIT_INTERRUPTED if stopped else _status(analysis))
@@ -149,17 +140,10 @@ def asked(
     options: Options,
 ) -> tuple[Analysis, bool]:
     """The analysis of the requirements, and whether Ctrl-C has stopped it."""
-    from fretc.analysis.analysis import Finding, assembled, jobs
-    from fretc.analysis.worker import Interrupted, findings
-    from fretc.terminal.progress import print_activity
+    from fretc.analysis.analysis import assembled, jobs
+    from fretc.analysis.worker import finished
 
-    found: list[Finding] = []
-    stopped = False
-    try:
-        for finding in findings(jobs(requirements, chosen, assumed, options), print_activity):
-            found.append(finding)
-    except Interrupted:
-        stopped = True
+    found, stopped = finished(jobs(requirements, chosen, assumed, options), print_activity)
     return assembled(requirements, chosen, assumed, options, found), stopped
 
 
@@ -178,28 +162,22 @@ def _emit(
     from fretc.analysis.controllers.files import ControllerFormat, automata, controller
     from fretc.analysis.controllers.moves import Mealy
     from fretc.analysis.findings import OpenQuestion, Verdict
-    from fretc.analysis.worker import Interrupted, findings
-    from fretc.terminal.progress import print_activity
+    from fretc.analysis.worker import finished
     from fretish.printer import sentence as printed
 
     if analysis.verdict is not Verdict.REALIZABLE:
         print_status(f"no controller is written: {analysis.why}")
         return
     output_format = ControllerFormat(emitted)
-    try:
-        found = [
-            *findings(
-                controllers(requirements, chosen, assumed, options, output_format), print_activity
-            )
-        ]
-    except Interrupted:
-        raise SystemExit(EXIT_INTERRUPTED) from None
+    work = controllers(requirements, chosen, assumed, options, output_format)
+    found, stopped = finished(work, print_activity)
+    if stopped:
+        raise SystemExit(EXIT_INTERRUPTED)
     circuits = [each for each in found if isinstance(each, Circuit)]
     machines = [each for each in found if isinstance(each, Mealy)]
     for each in found:
         if isinstance(each, OpenQuestion):
-            message = f"no controller can be written: {each.why}"
-            fail(Diagnostic(Code.TOO_LARGE, message, help=_smaller(output_format)))
+            fail(diagnostic("no_controller", why=each.why, help=_smaller(output_format)))
     if output_format is ControllerFormat.PYTHON:
         sentences = {requirement.id: printed(requirement.written) for requirement in requirements}
         promises = {assumption.id: assumption.sentence for assumption in analysis.assumptions}
@@ -216,39 +194,6 @@ def _smaller(output_format: str) -> str:
     if output_format == "python":
         return "select one component with `--component`, or allow more time with `--time`"
     return "try `--emit python`: it lists no states and can write much larger controllers"
-
-
-def active_requirements(
-    project: Project, component: str | None
-) -> tuple[FormalizedRequirement, ...]:
-    """The requirements to analyze: all that are in force."""
-    requirements = tuple(
-        requirement for requirement in project.formalized if requirement.entry.status != "retired"
-    )
-    if component is not None:
-        requirements = _of_component(requirements, component)
-    if not requirements:
-        fail(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to analyze"))
-    return requirements
-
-
-def _of_component(
-    requirements: Sequence[FormalizedRequirement], component: str
-) -> tuple[FormalizedRequirement, ...]:
-    chosen = tuple(
-        requirement for requirement in requirements if requirement.sentence.component == component
-    )
-    if not chosen:
-        known = tuple(dict.fromkeys(requirement.sentence.component for requirement in requirements))
-        near = suggestion(component, known)
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"no requirement is about the component `{component}`",
-                help=f"did you mean `{near}`?" if near else f"there are {', '.join(known)}",
-            )
-        )
-    return chosen
 
 
 def _status(analysis: Analysis) -> int:

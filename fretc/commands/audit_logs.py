@@ -1,21 +1,23 @@
-"""Selection of the logs of an audit, and its time limits."""
+"""The logs of a command: their selection, the progress of reading them, and an audit of them."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
-from fretc.terminal.output import EXIT_INCONCLUSIVE, fail, print_status
-from fretish.diagnostics.diagnostic import Code, Diagnostic
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fretc.audit.evidence.schema import Selection
-    from fretc.audit.pool import Limits
+from fretc.audit.evidence.schema import Selection
+from fretc.audit.log_paths import logs as logs_of
+from fretc.audit.many_logs import Audit, Engine, audit_logs
+from fretc.audit.plan import Plan
+from fretc.audit.selection.choice import chosen, in_words
+from fretc.audit.selection.dates import since as time_of
+from fretc.terminal.output import EXIT_INCONCLUSIVE, EXIT_INTERRUPTED, or_fail, print_status
+from fretc.terminal.progress import progress
 
 
 def selected(
-    paths: Sequence[str], since: str | None, sample: int | None, seed: int
+    paths: Sequence[str], since: str | None = None, sample: int | None = None, seed: int = 0
 ) -> tuple[list[str], Selection | None]:
     """The selected logs; exits with status 3 if no log is left.
 
@@ -25,17 +27,8 @@ def selected(
         sample: size of the random sample; None: all logs.
         seed: seed of the random sample.
     """
-    from fretc.audit.log_paths import logs as logs_of
-    from fretc.audit.selection.choice import chosen, in_words
-    from fretc.audit.selection.dates import since as time_of
-
-    than = None if since is None else time_of(since)
-    if isinstance(than, Diagnostic):
-        fail(than)
-    logs = logs_of(paths)
-    if isinstance(logs, Diagnostic):
-        fail(logs)
-    some, selection = chosen(logs, than, sample, seed)
+    than = None if since is None else or_fail(time_of(since))
+    some, selection = chosen(or_fail(logs_of(paths)), than, sample, seed)
     if selection is not None:
         print_status(in_words(selection))
     if not some:
@@ -44,41 +37,37 @@ def selected(
     return some, selection
 
 
-def time_limits(log: str | None, whole: str | None, logs: Sequence[str], engine: str) -> Limits:
-    """Time limits for each log and for all logs.
-
-    Args:
-        log: `--log-time`; None: no limit.
-        whole: `--time`; None: no limit.
-        logs: the logs to audit.
-        engine: name of the engine.
-    """
-    from fretc.audit.pool import ENDLESS, Limits
-    from fretc.logs.storage.log_names import STDIN
-
-    limits = Limits(_seconds("--log-time", log), _seconds("--time", whole))
-    if limits != ENDLESS and (STDIN in logs or engine != "local"):
-        what = "standard input" if STDIN in logs else f"`--engine {engine}`"
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"{what} does not support time limits",
-                help="remove `--time` and `--log-time`, or audit files on this machine",
-            )
-        )
-    return limits
+def audit_in_memory(plan: Plan, logs: Sequence[str], engine: Engine) -> Audit:
+    """Audit the logs in memory; an interrupted audit saves nothing."""
+    try:
+        with shown(logs) as show:
+            result = audit_logs(plan, logs, engine, tell=lambda log, _: show(log))
+    except KeyboardInterrupt:
+        print_status("stopped")
+        raise SystemExit(EXIT_INTERRUPTED) from None
+    return or_fail(result)
 
 
-def _seconds(option: str, text: str | None) -> float | None:
-    from fretish.units import nanoseconds
+@contextmanager
+def shown(logs: Sequence[str]) -> Iterator[Callable[[str], None]]:
+    """Show the progress in bytes; yields a function to call with each finished log."""
+    sizes = {log: _size(log) for log in logs}
+    logs_done = bytes_done = 0
+    total = sum(sizes.values())
+    with progress(total if len(logs) > 1 else 0, "auditing") as show:
 
-    length = None if text is None else nanoseconds(text)
-    if text is not None and length is None:
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"`{option} {text}` is not a duration",
-                help=f"write `{option} 90s`, `{option} 30min` or `{option} 6h`",
-            )
-        )
-    return None if length is None else length / 1e9
+        def tell(log: str) -> None:
+            nonlocal logs_done, bytes_done
+            logs_done, bytes_done = logs_done + 1, bytes_done + sizes[log]
+            megabytes = f"{bytes_done / 1e6:.0f}/{total / 1e6:.0f} MB"
+            show(bytes_done, f"{logs_done}/{len(logs)} logs, {megabytes}")
+
+        yield tell
+
+
+def _size(log: str) -> int:
+    """Size of a log in bytes; 1 if it is unknown, so that the log counts."""
+    try:
+        return max(1, os.path.getsize(log))
+    except OSError:
+        return 1

@@ -6,16 +6,18 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
+from compiler.files.records import plain
+from compiler.files.templating import to_json
+from compiler.project.project import Project
+from fretc.audit.evidence.declared_units import without_samples
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.result_summaries import EvidenceSource
+from fretc.audit.evidence.schema import SCHEMA, Result
 from fretc.terminal.output import EVIDENCE, STORE, fail, not_written, print_status
-from fretish.diagnostics.diagnostic import Code, Diagnostic
-
-if TYPE_CHECKING:
-    from compiler.project.project import Project
-    from fretc.audit.evidence.probabilities import Estimated
-    from fretc.audit.evidence.result_summaries import EvidenceSource
-    from fretc.audit.evidence.schema import Result
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 _BATCH = 256
 """Number of results that are read at once."""
@@ -77,11 +79,11 @@ def check(target: Target, parquet: str | None) -> None:
             fail(not_written(str(path), "it is not a regular file"))
         return
     if not path.is_dir():
-        fail(_no_folder(path))
+        fail(diagnostic("store_is_file", path=path))
     from fretc.audit.store.writer import is_store
 
     if any(path.iterdir()) and not is_store(path):
-        fail(_no_store(path))
+        fail(diagnostic("store_folder_in_use", path=path))
 
 
 def _check_table(parquet: str, evidence: Path) -> None:
@@ -122,8 +124,6 @@ def remove_other(target: Target) -> None:
 
 
 def _is_evidence(path: Path) -> bool:
-    from fretc.audit.evidence.schema import SCHEMA
-
     with path.open("rb") as file:
         return f'"schema": "{SCHEMA}"'.encode() in file.read(200)
 
@@ -140,8 +140,6 @@ def results(source: EvidenceSource) -> Iterator[Result]:
 
 def bare(source: EvidenceSource, project: Project) -> Iterator[Result]:
     """All results in declared units, without samples."""
-    from fretc.audit.evidence.declared_units import without_samples
-
     for result in results(source):
         yield from without_samples([result], project.declarations)
 
@@ -162,7 +160,8 @@ def text(
     outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], output_format: str
 ) -> str:
     """The results in a format for programs."""
-    from fretc.audit.outputs.junit import github, junit
+    from fretc.audit.outputs.github import github
+    from fretc.audit.outputs.junit import junit
     from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
 
     if output_format == "json":
@@ -181,26 +180,7 @@ def text(
 
 def _json(outcome: Outcome) -> str:
     """JSON array with an object for each run and requirement; an object with probabilities."""
-    from compiler.files.records import plain
-    from compiler.files.templating import to_json
-
     found = [plain(each) for each in results(outcome.source)]
     if not outcome.estimates:
         return f"{to_json(found)}\n"
     return f"{to_json({'results': found, 'probabilities': plain(tuple(outcome.estimates))})}\n"
-
-
-def _no_folder(path: Path) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` cannot be written: an evidence store is a folder, and this is a file",
-        help=f"for evidence in one file, use a name that ends with `.json`: `-o {path}.json`",
-    )
-
-
-def _no_store(path: Path) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` cannot be written: the folder contains other files",
-        help="name a new folder, an empty one, or a store that `fretc audit` has written",
-    )

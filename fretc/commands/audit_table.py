@@ -2,8 +2,6 @@
 
 The table is no wider than the screen. Rows and columns that do not fit are counted; the worst are
 always shown.
-
-Nothing of it is wider than the screen. What does not fit is counted, and it is never the worst.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ from fretc.coverage.coverage import of_all_runs
 from fretc.coverage.text_output import in_counts
 from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE
 from fretc.terminal.screen import Screen, padded, titled, width
-from fretish.bindings.amounts import exact, instant, seconds, value
+from fretish.bindings.amounts import count_of, exact, instant, seconds, value
 from fretish.diagnostics.rendering import visible
 from fretish.documents import named
 
@@ -240,7 +240,7 @@ def _last(subject: Subject) -> Line:
     counts = totals(marks)
     parts = [_count(total, many=len(marks.names) > 1) for total in counts]
     times = "\N{MULTIPLICATION SIGN}"
-    head = f"{_times(len(marks.names), 'run')} {times} {_times(len(marks.ids), 'requirement')}"
+    head = f"{count_of(len(marks.names), 'run')} {times} {count_of(len(marks.ids), 'requirement')}"
     text = f"{head}: {', '.join(parts)}  {subject.seconds:.1f} s"
     return ((text, counts[0].colour if counts else None),)
 
@@ -248,10 +248,6 @@ def _last(subject: Subject) -> Line:
 def _count(total: Total, *, many: bool) -> str:
     if not total.runs:
         return f"{total.results:,} {total.word} over all runs"
-    where = f" ({_times(total.requirements, 'requirement')} in {_times(total.runs, 'run')})"
+    where = f" ({count_of(total.requirements, 'requirement')} in {count_of(total.runs, 'run')})"
     bad = total.word not in (*SHOWN, COUNTED)
     return f"{total.results:,} {total.word}{where if many and bad else ''}"
-
-
-def _times(count: int, noun: str) -> str:
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"

@@ -28,11 +28,13 @@ from fretc.terminal.output import (
     coloured,
     fail,
     fail_at_end,
+    or_fail,
     print_diagnostics,
     print_project_diagnostics,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from compiler.project.project import Project
@@ -82,14 +84,14 @@ def bind(
         project = _project(requirements, bindings, replaced=output)
         print_diagnostics(
             [
-                diagnostic
-                for diagnostic in project.diagnostics
-                if diagnostic.is_error and not _is_in(diagnostic, output)
+                finding
+                for finding in project.diagnostics
+                if finding.is_error and not _is_in(finding, output)
             ]
         )
         _draft(source, project, output, force=force)
     elif not paths:
-        fail(Diagnostic(Code.NOTHING_TO_DO, "no log was given to check", help="name the logs"))
+        fail(diagnostic("no_log_to_check"))
     else:
         project = _project(requirements, bindings)
         _check(paths, project, requirements, output_format, jobs)
@@ -114,9 +116,8 @@ def _project(requirements: str, bindings: str | None, replaced: str | None = Non
         if is_given("requirements"):
             fail(files)
         files = []
-    project = load(
-        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
-    )
+    place = bindings or sibling_path(requirements, "bindings.toml")
+    project = load(files, place, reads=AUDIT_TABLES)
     relevant = [d for d in project.diagnostics if replaced is None or not _is_in(d, replaced)]
     if has_errors(relevant):
         fail_at_end()
@@ -144,10 +145,8 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
-        fail(_exists(output))
-    contents = look(log, words=True)
-    if isinstance(contents, Diagnostic):
-        fail(contents)
+        fail(diagnostic("bindings_exist", path=output))
+    contents = or_fail(look(log, words=True))
     print_diagnostics(contents.recording.findings)
     text = draft(
         contents, missing_propositions(project), durations(project), missing_signals(project)
@@ -156,31 +155,14 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
     raise SystemExit(EXIT_OK)
 
 
-def _exists(path: str) -> Diagnostic:
-    """F905: a file exists, and `--force` is not given."""
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` already exists",
-        help="name another file with `-o`, or overwrite it with `--force`",
-    )
-
-
 def _not_one_mode() -> Diagnostic:
     """F907: neither `--from` nor `--check`, or both."""
-    return Diagnostic(
-        Code.BAD_USAGE,
-        "either draft bindings with `--from LOG`, or check them with `--check LOG...`",
-        help="see `fretc bind --help`",
-    )
+    return diagnostic("from_or_check")
 
 
 def _second_log(path: str) -> Diagnostic:
     """F907: a LOG in addition to that of `--from`."""
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"bindings are drafted from one log, but a second one is given: `{path}` is one more",
-        help="name one log after `--from`",
-    )
+    return diagnostic("second_log", path=path)
 
 
 # Checks --------------------------------------------------------------------------------------
@@ -193,14 +175,11 @@ def _check(
     from fretc.audit.log_paths import logs as logs_of
     from fretc.audit.plan import Plan, planned
 
-    logs = logs_of(paths)
-    if isinstance(logs, Diagnostic):
-        fail(logs)
+    logs = or_fail(logs_of(paths))
     if project.declarations is None:
         fail(_no_bindings())
-    plan = planned(
-        project
-    )  # Not an audit plan: bindings can be checked even if no requirement can be audited.
+    # Bindings can be checked even if no requirement can be audited.
+    plan = planned(project)
     result = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
     if isinstance(result, Diagnostic):
         fail(
@@ -219,26 +198,17 @@ def _check(
 def _unbound(project: Project) -> list[Diagnostic]:
     """A diagnostic for each proposition that a requirement names and the bindings do not define.
 
-        Retired requirements are skipped, because no audit evaluates them.
-
-    Retired requirements do not count: no audit judges them.
+    Retired requirements are skipped, because no audit evaluates them.
     """
     from compiler.formalization.binding_agreement import unbound_propositions
 
     assert project.declarations is not None
-    requirements = [
-        requirement for requirement in project.formalized if requirement.entry.status != "retired"
-    ]
     return [
         missing
-        for requirement in requirements
+        for requirement in project.in_force
         for missing in unbound_propositions(requirement, project.declarations)
     ]
 
 
 def _no_bindings() -> Diagnostic:
-    return Diagnostic(
-        Code.NOTHING_TO_DO,
-        "there are no bindings to check",
-        help="name them with `--bindings`, or draft some: `fretc bind --from LOG`",
-    )
+    return diagnostic("no_bindings_to_check")

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import click
 
+from compiler.files.dates import today
 from fretc.terminal.options import (
     analysis_option,
     bindings_option,
     evidence_option,
+    evidence_path,
     extras,
     format_option,
     hazards_option,
@@ -23,7 +26,7 @@ from fretc.terminal.output import (
     EXIT_INCONCLUSIVE,
     EXIT_OK,
     EXIT_USAGE,
-    fail,
+    or_fail,
     print_diagnostic_groups,
     print_status,
     write_outputs,
@@ -34,6 +37,8 @@ from fretish.diagnostics.rendering import as_json, visible
 if TYPE_CHECKING:
     from compiler.project.project import Project
     from fretc.analysis.evidence import AnalyzedSet
+
+T = TypeVar("T")
 
 
 @click.command(
@@ -62,7 +67,7 @@ def check(
     requirements: str,
     bindings: str | None,
     hazards: str | None,
-    evidence: str,
+    evidence: str | None,
     verification: str | None,
     analysis: str | None,
     analyze: bool,
@@ -81,8 +86,28 @@ def check(
 
     Example: fretc check --fix
     """
-    from compiler.files.dates import today
     from compiler.project.folder import load_folder
+
+    if fix:
+        _fix(requirements)
+    project = or_fail(load_folder(requirements, bindings, hazards))
+    files = _Files(requirements, evidence_path(evidence), verification, analysis)
+    diagnostics = [*project.diagnostics, *_found(project, files, analyze=analyze)]
+    _finish(tuple(dict.fromkeys(diagnostics)), len(project.requirements), output_format)
+
+
+@dataclass(frozen=True, slots=True)
+class _Files:
+    """Paths beside those of the project."""
+
+    requirements: str
+    evidence: str
+    verification: str | None
+    analysis: str | None
+
+
+def _found(project: Project, files: _Files, *, analyze: bool) -> list[Diagnostic]:
+    """Diagnostics of all files together, in the order of the checks."""
     from compiler.project.paths import sibling_path
     from compiler.project.stated_numbers import first_unit
     from fretc.analysis.evidence import known as known_analysis
@@ -92,54 +117,48 @@ def check(
     from fretc.report.diagnostics import idle_waivers, stale_evidence
     from fretc.report.model.assessments import assessments
     from fretc.traceability.acceptances import warnings
-    from fretc.traceability.lock import Lock, withdrawal_warnings, withdrawn_requirements
     from fretc.traceability.lock import read as read_lock
+    from fretc.traceability.lock import withdrawal_warnings, withdrawn_requirements
     from fretc.traceability.waivers import read as read_waivers
     from fretc.verification.reader import known as proven
 
-    if fix:
-        _fix(requirements)
-    project = load_folder(requirements, bindings, hazards)
-    if isinstance(project, Diagnostic):
-        fail(project)
     units = first_unit(project.formalized)
-    diagnostics = [*project.diagnostics, *([units] if units is not None else [])]
-    audited = (required_source if is_given("evidence") else source)(evidence)
+    found = [units] if units is not None else []
+    audited = (required_source if is_given("evidence") else source)(files.evidence)
+    results = audited if not isinstance(audited, Diagnostic) else None
     if isinstance(audited, Diagnostic) and audited.is_error:
-        diagnostics.append(audited)
-    proofs = proven(verification)
-    if isinstance(proofs, Diagnostic):
-        diagnostics.append(proofs)
-        proofs = ()
-    analyzed = known_analysis(analysis)
-    if isinstance(analyzed, Diagnostic):
-        diagnostics.append(analyzed)
-        analyzed = None
-    results = None if isinstance(audited, Diagnostic) else audited
+        found.append(audited)
+    proofs = _value(proven(files.verification), found) or ()
+    analyzed = _value(known_analysis(files.analysis), found)
     briefs = ResultSummaries.of(results) if results else None
-    lock, path = None, sibling_path(requirements, "fretc.lock")
-    if path is not None:
-        known = read_lock(path)
-        lock = known if isinstance(known, Lock) else None
-        diagnostics.extend([] if isinstance(known, Lock) else [known])
-    waivers, waived = {}, sibling_path(requirements, "waivers.toml")
+    path = sibling_path(files.requirements, "fretc.lock")
+    lock = _value(read_lock(path), found) if path is not None else None
+    waivers, waived = {}, sibling_path(files.requirements, "waivers.toml")
     if waived is not None:
-        found, wrong = read_waivers(waived, [r.id for r in project.requirements], today())
-        waivers = {id: waiver for id, waiver in found.items() if waiver.covers(today())}
-        diagnostics.extend(wrong)
+        known, wrong = read_waivers(waived, [r.id for r in project.requirements], today())
+        waivers = {id: waiver for id, waiver in known.items() if waiver.covers(today())}
+        found.extend(wrong)
     assessed = assessments(project, briefs, lock, waivers, proofs, analyzed)
     standings = [assessment.standing for assessment in assessed]
     if path is not None:
         chains = [standing.chain for standing in standings]
         withdrawn = withdrawn_requirements(project.requirements, chains, lock)
-        diagnostics.extend(withdrawal_warnings(withdrawn, path))
-    diagnostics.extend(stale_evidence(assessed, briefs, evidence))
-    diagnostics.extend(idle_waivers(assessed))
-    diagnostics.extend(reason for _, why in refusals(project) for reason in why)
+        found.extend(withdrawal_warnings(withdrawn, path))
+    found.extend(stale_evidence(assessed, briefs, files.evidence))
+    found.extend(idle_waivers(assessed))
+    found.extend(reason for _, why in refusals(project) for reason in why)
     if analyze:
-        diagnostics.extend(_together(project.sound, analyzed))
-    diagnostics.extend(warnings(project, standings, lock, results))
-    _finish(tuple(dict.fromkeys(diagnostics)), len(project.requirements), output_format)
+        found.extend(_together(project.sound, analyzed))
+    found.extend(warnings(project, standings, lock, results))
+    return found
+
+
+def _value(read: T | Diagnostic, found: list[Diagnostic]) -> T | None:
+    """The value; a diagnostic is added to `found` instead."""
+    if isinstance(read, Diagnostic):
+        found.append(read)
+        return None
+    return read
 
 
 def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnostic]:
@@ -150,9 +169,7 @@ def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnosti
     from fretc.analysis.evidence import remarks, suspicions
     from fretc.commands.analyze import asked
 
-    requirements = tuple(
-        requirement for requirement in project.formalized if requirement.entry.status != "retired"
-    )
+    requirements = project.in_force
     assumed, said = assumptions(requirements, project.declarations)
     yield from said
     chosen = roles([*requirements, *assumed])

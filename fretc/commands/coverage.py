@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import AUDIT_TABLES, plan_of
+from fretc.commands.opening import planned_project
 from fretc.terminal.options import (
     LOG_EXTRAS,
     PATH,
     bindings_option,
     evidence_option,
+    evidence_path,
     extras,
     format_option,
     is_given,
@@ -29,18 +30,18 @@ from fretc.terminal.output import (
     EXIT_USAGE,
     coloured,
     fail,
+    or_fail,
     print_diagnostics_below,
     print_status,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from compiler.project.project import Project
     from fretc.audit.evidence.result_summaries import EvidenceSource
-    from fretc.audit.plan import Plan
     from fretc.coverage.coverage import Coverage
     from fretc.coverage.directions import Directions
     from fretc.testing.suite import Suite
@@ -63,7 +64,7 @@ def coverage(
     paths: tuple[str, ...],
     requirements: str,
     bindings: str | None,
-    evidence: str,
+    evidence: str | None,
     output_format: str,
     verbose: bool,
     tests: str | None,
@@ -81,22 +82,17 @@ def coverage(
 
     Example: fretc coverage runs/ --requirements requirements/mission
     """
+    from fretc.audit.store.anywhere import required_source
     from fretc.coverage import record, text_output
     from fretc.coverage.coverage import coverage as found_in
     from fretc.coverage.directions import is_complete
 
     if paths and is_given("evidence"):
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                "logs and `--evidence` are both given, but the runs come from only one of them",
-                help="remove one of the two options",
-            )
-        )
+        fail(diagnostic("logs_and_evidence"))
     if paths:
         source, titles, is_bad = _audited(paths, requirements, bindings, jobs)
     else:
-        source, titles, is_bad = _recorded(evidence), {}, False
+        source, titles, is_bad = or_fail(required_source(evidence_path(evidence))), {}, False
     covered = found_in(source)
     known = _directions(covered, tests)
     if output_format == "json":
@@ -129,9 +125,7 @@ def suite_of(named: str | None, fingerprints: Mapping[str, str]) -> Suite | None
 
     if named is None and not os.path.lexists(DEFAULT):
         return None
-    suite = read(named or DEFAULT)
-    if isinstance(suite, Diagnostic):
-        fail(suite)
+    suite = or_fail(read(named or DEFAULT))
     known = {requirement.id: requirement.fingerprint for requirement in suite.requirements}
     other = [id for id, own in fingerprints.items() if known.get(id, own) != own]
     if other:
@@ -144,15 +138,6 @@ def suite_of(named: str | None, fingerprints: Mapping[str, str]) -> Suite | None
     return suite
 
 
-def _recorded(evidence: str) -> EvidenceSource:
-    from fretc.audit.store.anywhere import required_source
-
-    source = required_source(evidence)
-    if isinstance(source, Diagnostic):
-        fail(source)
-    return source
-
-
 def _audited(
     paths: Sequence[str], requirements: str, bindings: str | None, jobs: int
 ) -> tuple[EvidenceSource, dict[str, str], bool]:
@@ -161,11 +146,10 @@ def _audited(
     No file is written.
     """
     from fretc.audit.many_logs import local_executor
-    from fretc.commands.audit_logs import selected
-    from fretc.commands.audit_progress import audit_in_memory
+    from fretc.commands.audit_logs import audit_in_memory, selected
 
     project, plan = planned_project(requirements, bindings)
-    logs, _ = selected(paths, None, None, 0)
+    logs, _ = selected(paths)
     audit = audit_in_memory(plan, logs, local_executor(jobs))
     diagnostics = project.answered(audit.diagnostics)
     print_diagnostics_below(diagnostics, project.diagnostics)
@@ -173,17 +157,3 @@ def _audited(
         raise SystemExit(EXIT_USAGE)
     titles = {requirement.id: requirement.name for requirement in project.requirements}
     return audit.source, titles, has_errors(diagnostics)
-
-
-def planned_project(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
-    """The project, and the audit plan for its usable requirements."""
-    from compiler.project.folder import load
-    from compiler.project.paths import requirement_files, sibling_path
-
-    files = requirement_files(requirements)
-    if isinstance(files, Diagnostic):
-        fail(files)
-    project = load(
-        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
-    )
-    return project, plan_of(project, requirements)

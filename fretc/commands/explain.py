@@ -27,7 +27,9 @@ from fretc.terminal.output import (
     print_diagnostics,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean, has_errors
+from fretish.diagnostics.messages import diagnostic
+from fretish.diagnostics.source import Source
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,13 +61,7 @@ def explain(
     code = None if is_file else _code(what)
     if code is not None:
         if picture is not None:
-            fail(
-                Diagnostic(
-                    Code.BAD_USAGE,
-                    "`--svg` draws a requirement, not a diagnostic code",
-                    help="remove `--svg`",
-                )
-            )
+            fail(diagnostic("picture_of_code"))
         _explain_code(code, output_format)
         return
     if is_sentence(what):
@@ -74,7 +70,7 @@ def explain(
         formalized = _rules(what, requirements, bindings, is_file=is_file)
     if picture is not None and len(formalized) > 1:
         fix = f"name one of them: `fretc explain {quote(formalized[0].id)}`"
-        fail(Diagnostic(Code.BAD_USAGE, f"`{what}` contains several requirements", help=fix))
+        fail(diagnostic("several_requirements", what=what, help=fix))
     _explain_rules(formalized, output_format, picture)
 
 
@@ -102,11 +98,11 @@ _MOST_TICKS = 100_000
 
 
 def _too_long(requirement: FormalizedRequirement) -> Diagnostic:
-    return Diagnostic(
-        Code.TOO_LARGE,
-        f"the picture of {requirement.id} would have more than {_MOST_TICKS} ticks",
+    return diagnostic(
+        "picture_too_large",
         requirement.entry.wording,
-        help="state a shorter duration, or use a clock with longer ticks",
+        requirement=requirement.id,
+        most=_MOST_TICKS,
     )
 
 
@@ -137,7 +133,6 @@ def _typed(sentence: str, folder: str, bindings: str | None) -> list[FormalizedR
     from compiler.formalization.formalize import formalize
     from compiler.project.folder import load
     from compiler.project.paths import BINDINGS, sibling_path
-    from fretish.diagnostics.source import Source
     from fretish.documents import RequirementEntry
 
     project = load([], bindings or sibling_path(folder, BINDINGS), reads=())
@@ -217,9 +212,9 @@ def _unknown_code(what: str) -> Diagnostic | None:
     if not re.fullmatch(r"[Ff]\d+", what):
         return None
     area = [code.number for code in Code if code.number[1] == what[1]]
-    return Diagnostic(
-        Code.NO_SUCH_REQUIREMENT,
-        f"`{what.upper()}` is neither a diagnostic code nor the id of a requirement",
+    return diagnostic(
+        "unknown_id_or_code",
+        word=what.upper(),
         help=f"there are {', '.join(sorted(area))}" if area else "codes begin with F1 to F9",
     )
 
@@ -227,23 +222,15 @@ def _unknown_code(what: str) -> Diagnostic | None:
 def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Diagnostic:
     """F515 for an unknown requirement, or F515 for an unknown code if it looks like one."""
     if is_file:
-        return Diagnostic(
-            Code.NO_SUCH_REQUIREMENT,
-            f"`{what}` contains no requirement",
-            help="write one: `whenever p the robot shall within 3 ticks satisfy q`",
-        )
+        return diagnostic("no_requirement_in_text", what=what)
     if (unknown_code := _unknown_code(what)) is not None:
         return unknown_code
     if any(character.isspace() for character in what):
-        return Diagnostic(
-            Code.NO_SUCH_REQUIREMENT,
-            f"`{what}` is not the id of a requirement",
-            help='pipe a sentence in: `echo "the robot shall ..." | fretc explain -`',
-        )
-    near = suggestion(what, ids)
+        return diagnostic("no_such_id", what=what)
     listing = f"there are {', '.join(ids[:8])}{', ...' if len(ids) > 8 else ''}"
-    return Diagnostic(
-        Code.NO_SUCH_REQUIREMENT,
-        f"no requirement in `{folder}` has the id `{what}`",
-        help=f"did you mean `{near}`?" if near else listing if ids else "name a `.fret` file",
+    return diagnostic(
+        "no_such_id_in_folder",
+        folder=folder,
+        what=what,
+        help=did_you_mean(what, ids, listing if ids else "name a `.fret` file"),
     )

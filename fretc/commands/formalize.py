@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from compiler.emit import TARGETS
+from compiler.emit import TARGETS, renamed_propositions
 from fretc.commands.opening import usable_part
 from fretc.terminal.group import DEFAULT, Compile
-from fretc.terminal.options import PATH, format_option, output_option, path_option
+from fretc.terminal.options import PATH, first_bindings_option, format_option, output_option
 from fretc.terminal.output import (
     EXIT_OK,
     EXIT_USAGE,
@@ -21,11 +21,13 @@ from fretc.terminal.output import (
     REQUIREMENTS_FOLDER,
     fail,
     fail_at_end,
+    or_fail,
     print_diagnostics,
     print_status,
     write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
@@ -46,7 +48,7 @@ _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
     help="Kind of file to generate. Repeatable.",
 )
 @output_option(default="build", show_default=True, help="Folder for generated files. `-` prints.")
-@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
+@first_bindings_option
 @format_option(text="Output format of the formulas.")
 @click.option(
     "--notation",
@@ -89,16 +91,10 @@ def compile_(
     if one_file and not any(TARGETS[kind].joins for kind in kinds):
         *most, last = (f"`--emit {name}`" for name, each in TARGETS.items() if each.joins)
         joining = f"{', '.join(most)} and {last}"
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE, f"`--one-file` applies only to {joining}", help="add one of them"
-            )
-        )
+        fail(diagnostic("one_file_not_joining", joining=joining))
     if weaken:
         _check_weaken(kinds)
-    paths = expanded_paths(files)
-    if isinstance(paths, Diagnostic):
-        fail(paths)
+    paths = or_fail(expanded_paths(files))
     of_loop = any(TARGETS[kind].of_loop for kind in kinds)
     project = load(paths, bindings, reads=("interceptor", "assume") if of_loop else ())
     undecided = _undecided(project.sound.formalized)
@@ -142,29 +138,21 @@ def _check_weaken(kinds: Sequence[str]) -> None:
     """F907 if no requested target has a weaker form."""
     weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
     if not any(TARGETS[kind].weak for kind in kinds):
-        message = f"`--weaken` applies only to {' and '.join(weak)}"
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                message,
-                help="remove `--weaken`: other kinds of files never weaken a requirement",
-            )
-        )
+        fail(diagnostic("nothing_to_weaken", targets=" and ".join(weak)))
 
 
 def _deliver_formulas(project: Project, output: str) -> None:
     """Write the JSON array of `--emit ltl --format json`, in the order of the files."""
-    from compiler.emit import renamed_propositions
     from compiler.files.templating import to_json
     from compiler.formalization.record import failed, formulas
 
     records = {}
     for requirement in project.formalized:
         names = renamed_propositions(requirement)
-        records[id(requirement.entry)] = formulas(requirement) | ({"names": names} if names else {})
-    records |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
-    records |= {id(r.requirement): failed(r.requirement, r.why[0]) for r in project.refused}
-    text = to_json([records[id(r)] for r in project.requirements])
+        records[requirement.entry] = formulas(requirement) | ({"names": names} if names else {})
+    records |= {f.requirement: failed(f.requirement, f.diagnostic) for f in project.failed}
+    records |= {r.requirement: failed(r.requirement, r.why[0]) for r in project.refused}
+    text = to_json([records[r] for r in project.requirements])
     write_outputs({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})
 
 
@@ -241,16 +229,14 @@ def _emitted(
 ) -> tuple[list[FormalizedRequirement] | None, list[Diagnostic]]:
     """The requirements that the target accepts, or None for no file; and the refusals.
 
-        A file that combines all requirements is written for all of them or not at all.
-
-    A file of all requirements is made of all of them or not at all.
+    A file that combines all requirements is written for all of them or not at all.
     """
     from compiler.formalization.formalize import name_collisions
 
     requirements = project.formalized
     answers = [(requirement, target.refuse(requirement)) for requirement in requirements]
-    wrong = [diagnostic for _, diagnostic in answers if diagnostic is not None]
-    whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
+    wrong = [refusal for _, refusal in answers if refusal is not None]
+    whole = [refusal] if (refusal := target.refuse_project(options)) else []
     one_file = target.together or (options.one_file and target.joins)
     if one_file:
         whole += name_collisions(requirements)
@@ -262,18 +248,14 @@ def _emitted(
         whole.append(_not_of_all(target, project.refused))
     if whole or (wrong and (one_file or not target.per_rule)):
         return None, [*wrong, *whole]
-    expressible = [requirement for requirement, diagnostic in answers if diagnostic is None]
+    expressible = [requirement for requirement, refusal in answers if refusal is None]
     return (expressible or None) if wrong else expressible, wrong
 
 
 def _not_of_all(target: Target, refused: Sequence[Refused]) -> Diagnostic:
     """F618: a file that combines all requirements would lack some."""
     ids = ", ".join(refusal.requirement.id for refusal in refused)
-    return Diagnostic(
-        Code.NOT_OF_ALL,
-        f"`--emit {target.name}` combines all requirements, but some have errors: {ids}",
-        help="fix them, or name only the files of the other requirements",
-    )
+    return diagnostic("not_of_all", target=target.name, ids=ids)
 
 
 @click.command()
@@ -295,9 +277,7 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
     from compiler.project.formatting import formatted_files
     from compiler.project.paths import expanded_paths
 
-    paths = expanded_paths(files)
-    if isinstance(paths, Diagnostic):
-        fail(paths)
+    paths = or_fail(expanded_paths(files))
     texts, wrong = formatted_files(paths)
     if wrong:
         fail(*wrong)
@@ -340,9 +320,7 @@ def import_(
     from compiler.files.text_files import read
     from compiler.project.fret_import import read_export
 
-    source = read(file)
-    if isinstance(source, Diagnostic):
-        fail(source)
+    source = or_fail(read(file))
     columns = {"id": id_column, "text": text_column, "project": project_column}
     result = read_export(source, {part: name for part, name in columns.items() if name})
     print_diagnostics(result.diagnostics)
@@ -351,7 +329,7 @@ def import_(
     files = {str(artifact.path): artifact.text for artifact in result.artifacts}
     clashes = [path for path in files if (Path(output) / path).exists()]
     if clashes and output != "-" and not force:
-        fail(_exists(str(Path(output) / clashes[0])))
+        fail(diagnostic("output_exists", path=str(Path(output) / clashes[0])))
     _deliver_all(files, output)
     counts = f"{result.requirements} requirements, {result.variables} variables"
     print_status(f"imported {counts}")
@@ -363,11 +341,3 @@ def _deliver_all(files: Mapping[str, str], output: str) -> None:
         write_outputs({Path("-"): "".join(files.values())})
     else:
         write_outputs({Path(output) / path: text for path, text in files.items()})
-
-
-def _exists(path: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` already exists",
-        help="name another folder with `-o`, or overwrite it with `--force`",
-    )

@@ -5,7 +5,13 @@ from __future__ import annotations
 import click
 
 from fretc.terminal.options import LOG_EXTRAS, PATH, extras, format_option
-from fretc.terminal.output import EXIT_INCONCLUSIVE, EXIT_OK, EXIT_USAGE, fail, print_diagnostics
+from fretc.terminal.output import (
+    EXIT_INCONCLUSIVE,
+    EXIT_OK,
+    EXIT_USAGE,
+    or_fail,
+    print_diagnostics,
+)
 from fretish.diagnostics.diagnostic import Diagnostic
 
 
@@ -31,9 +37,7 @@ def info(paths: tuple[str, ...], whole: bool, output_format: str) -> None:
     from fretc.audit.outputs.overview import as_record, text
     from fretc.logs.reader import look
 
-    logs = logs_of(paths)
-    if isinstance(logs, Diagnostic):
-        fail(logs)
+    logs = or_fail(logs_of(paths))
     answers = [look(log) for log in logs]
     wrong = [one for one in answers if isinstance(one, Diagnostic)]
     contents = [one for one in answers if not isinstance(one, Diagnostic)]

@@ -12,11 +12,13 @@ from fretc.terminal.options import LOG_EXTRAS, PATH, extras, path_option
 from fretc.terminal.output import (
     REQUIREMENTS_FOLDER,
     fail,
+    or_fail,
     print_diagnostics,
     print_status,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 
@@ -42,12 +44,10 @@ def init(folder: str, log: str | None) -> None:
 
     requirements = Path(folder) / REQUIREMENTS_FOLDER
     if os.path.lexists(requirements) and not _is_empty_folder(requirements):
-        fail(_exists(str(requirements)))
+        fail(diagnostic("project_exists", path=str(requirements)))
     if log == "-":
-        fail(_standard_input())
-    beginning = without_log() if log is None else from_log(log)
-    if isinstance(beginning, Diagnostic):
-        fail(beginning)
+        fail(diagnostic("log_read_twice"))
+    beginning = or_fail(without_log() if log is None else from_log(log))
     print_diagnostics(beginning.findings)
     files = {requirements / name: text for name, text in beginning.files.items()}
     if not _has_settings(Path(folder)):
@@ -86,21 +86,3 @@ def _settings_to_fill_in() -> str:
 
 def _is_empty_folder(path: Path) -> bool:
     return path.is_dir() and not any(path.iterdir())
-
-
-def _exists(path: str) -> Diagnostic:
-    """F905: the requirements folder exists already."""
-    return Diagnostic(
-        Code.NOT_WRITTEN,
-        f"`{path}` already exists",
-        help="name another folder; `fretc bind --from LOG` drafts bindings alone",
-    )
-
-
-def _standard_input() -> Diagnostic:
-    """F907: `--from -`."""
-    return Diagnostic(
-        Code.BAD_USAGE,
-        "standard input can be read only once, but drafting a project reads the log twice",
-        help="save the log to a file, and name that file",
-    )

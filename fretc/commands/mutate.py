@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import click
 
+from fretc.commands.opening import planned_project
 from fretc.terminal.options import (
     LOG_EXTRAS,
     PATH,
@@ -27,6 +28,7 @@ from fretc.terminal.output import (
     print_diagnostics_below,
     print_status,
 )
+from fretish.diagnostics.rendering import visible
 
 
 @click.command(
@@ -71,16 +73,14 @@ def mutate(
 
     Example: fretc mutate --against runs/
     """
-    from fretc.commands.audit_logs import selected
-    from fretc.commands.audit_progress import shown
-    from fretc.commands.coverage import planned_project, suite_of
+    from fretc.commands.audit_logs import selected, shown
+    from fretc.commands.coverage import suite_of
     from fretc.coverage import mutation_output, mutation_record
     from fretc.coverage.mutation import mutation_job, survey
-    from fretish.diagnostics.rendering import visible
 
     (place,) = places([folder] if folder else [], requirements)
     project, plan = planned_project(place, bindings)
-    logs, _ = selected(paths, None, None, 0)
+    logs, _ = selected(paths)
     asked = mutation_job(project, plan)
     try:
         with shown(logs) as show:

@@ -6,11 +6,15 @@ The command gets one JSON object on standard input; its `text` suits chat hooks.
 from __future__ import annotations
 
 import shlex
+import subprocess
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from compiler.files.processes import isolate_imports
+from compiler.files.templating import to_json
 from fretc.terminal.output import fail, print_diagnostics, print_status
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 _PATIENCE = 60
@@ -26,23 +30,12 @@ def words(command: str, option: str = "--notify") -> list[str]:
     else:
         why = "it is empty"
     if not found:
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"`{option}` names no command: {why}",
-                help="put the command and its options into one pair of quotes",
-            )
-        )
+        fail(diagnostic("no_command_named", option=option, why=why))
     return found
 
 
 def notify(command: Sequence[str], summary: Mapping[str, Any]) -> None:
     """Run the command with the summary, and report whether it failed; verdicts are not affected."""
-    import subprocess
-
-    from compiler.files.processes import isolate_imports
-    from compiler.files.templating import to_json
-
     isolate_imports()
     try:
         done = subprocess.run(
@@ -64,9 +57,4 @@ def notify(command: Sequence[str], summary: Mapping[str, Any]) -> None:
 
 
 def _failed(command: Sequence[str], how: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NOTICE_FAILED,
-        f"`{command[0]}` {how}: the summary was not delivered",
-        help="run it by hand to see why; verdicts and exit status are not affected",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("notice_failed", command=command[0], how=how)

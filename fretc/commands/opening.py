@@ -6,6 +6,7 @@ whatever else it prints or writes.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fretc.terminal.options import places
@@ -13,16 +14,19 @@ from fretc.terminal.output import (
     EXIT_USAGE,
     fail,
     fail_at_end,
+    or_fail,
     print_diagnostics_below,
     print_project_diagnostics,
     print_status,
 )
-from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, did_you_mean, has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
+    from compiler.formalization.formalized import FormalizedRequirement
     from compiler.project.project import Project
     from fretc.audit.plan import Plan
 
@@ -46,9 +50,7 @@ def project_of(
     from compiler.project.paths import expanded_paths, requirement_files
 
     (first, *_) = places(files, requirements)
-    paths = expanded_paths(files) if files else requirement_files(requirements)
-    if isinstance(paths, Diagnostic):
-        fail(paths)
+    paths = or_fail(expanded_paths(files) if files else requirement_files(requirements))
     project = load(paths, bindings, reads=reads)
     print_project_diagnostics(project.diagnostics, first)
     return usable_part(project), first
@@ -71,6 +73,85 @@ def usable_part(project: Project, *, others: bool = False) -> Project:
         raise SystemExit(EXIT_USAGE)
     print_requirements_with_errors(project)
     return sound
+
+
+@dataclass(frozen=True, slots=True)
+class RequirementSet:
+    """Requirements that are considered together, with assumptions about the environment."""
+
+    project: Project
+    requirements: tuple[FormalizedRequirement, ...]
+    assumed: tuple[FormalizedRequirement, ...]
+
+
+def requirement_set(
+    files: Sequence[str],
+    component: str | None,
+    requirements: str,
+    bindings: str | None,
+    reads: Collection[str],
+) -> RequirementSet:
+    """The requirements in force; exits if there is none, or an assumption has an error.
+
+    Args: as for `project_of`; and `component`, whose requirements are chosen (None: all).
+    """
+    from fretc.analysis.assumptions import assumptions
+
+    project, first = project_of(files, requirements, bindings, reads)
+    chosen = active_requirements(project, component)
+    assumed, remarks = assumptions(chosen, project.declarations)
+    print_project_diagnostics(remarks, first)
+    if has_errors(remarks):
+        raise SystemExit(EXIT_USAGE)
+    return RequirementSet(project, chosen, assumed)
+
+
+def active_requirements(
+    project: Project, component: str | None
+) -> tuple[FormalizedRequirement, ...]:
+    """The requirements to analyze: all that are in force."""
+    requirements = project.in_force
+    if component is not None:
+        requirements = _of_component(requirements, component)
+    if not requirements:
+        fail(diagnostic("nothing_to_analyze"))
+    return requirements
+
+
+def _of_component(
+    requirements: Sequence[FormalizedRequirement], component: str
+) -> tuple[FormalizedRequirement, ...]:
+    chosen = tuple(
+        requirement for requirement in requirements if requirement.sentence.component == component
+    )
+    if not chosen:
+        known = tuple(dict.fromkeys(requirement.sentence.component for requirement in requirements))
+        fail(
+            diagnostic(
+                "unknown_component",
+                component=component,
+                help=did_you_mean(component, known, f"there are {', '.join(known)}"),
+            )
+        )
+    return chosen
+
+
+def planned_project(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
+    """The project, and the audit plan for its usable requirements."""
+    from compiler.project.folder import load
+    from compiler.project.paths import requirement_files
+
+    files = or_fail(requirement_files(requirements))
+    project = load(files, bindings, reads=AUDIT_TABLES)
+    return project, plan_of(project, requirements)
+
+
+def input_files(project: Project, *others: str | None) -> list[str]:
+    """The files of a project, and other inputs that are given: no output may replace them."""
+    from compiler.project.paths import companions
+
+    sources = [requirement.wording.source.name for requirement in project.requirements]
+    return [*sources, *companions(sources), *(name for name in others if name is not None)]
 
 
 def plan_of(project: Project, requirements: str) -> Plan:

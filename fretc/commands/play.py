@@ -4,20 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import project_of
+from fretc.commands.opening import active_requirements, input_files, project_of
 from fretc.terminal.options import (
-    PATH,
     analysis_option,
+    files_argument,
+    first_bindings_option,
     output_option,
     path_option,
     requirements_option,
     tests_option,
 )
-from fretc.terminal.output import EXIT_OK, EXIT_USAGE, fail, print_diagnostics, write_outputs
+from fretc.terminal.output import (
+    EXIT_OK,
+    EXIT_USAGE,
+    fail,
+    or_fail,
+    print_diagnostics,
+    write_outputs,
+)
 from fretish.diagnostics.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
@@ -28,15 +36,14 @@ if TYPE_CHECKING:
     from fretc.play.versions import Side
 
 
-T = TypeVar("T")
 _SECONDS = 20
 """CPU seconds for the search of a trace that distinguishes two versions."""
 
 
 @click.command()
-@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
+@files_argument
 @requirements_option
-@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
+@first_bindings_option
 @path_option(
     "--against",
     metavar="OLD",
@@ -75,7 +82,6 @@ def play(
     Example: fretc play requirements/ --log run.mcap
     """
     from compiler.formalization.formalize import name_collisions
-    from compiler.project.paths import companions
     from fretc.play.page import html
     from fretc.play.starts import of_examples
     from fretc.play.versions import Versions, side_by_side, versions
@@ -107,31 +113,17 @@ def play(
     notes += [note for run in recorded for note in run.notes]
     before = {pair.new.id: pair.old.id for pair in changes.pairs}
     page = html(shown, [*now.refused.items()], starts, before, notes)
-    wordings = [*project.requirements, *(earlier.requirements if earlier else ())]
-    sources = [requirement.wording.source.name for requirement in wordings]
-    inputs = filter(None, [bindings, tests, analysis, *logs])
-    write_outputs({Path(output): page}, [*sources, *companions(sources), *inputs])
+    inputs = input_files(project, bindings, tests, analysis, *logs)
+    write_outputs({Path(output): page}, [*inputs, *(input_files(earlier) if earlier else [])])
     raise SystemExit(EXIT_USAGE if refusals else EXIT_OK)
 
 
 def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
     """One version of a project, and why some requirements without errors have no monitor."""
-    from compiler.targets.javascript.monitor import refuse
-    from fretc.commands.analyze import active_requirements
-    from fretc.play.versions import Side
+    from fretc.play.versions import side
 
-    requirements = active_requirements(project, None)
-    refused = {
-        requirement.id: why
-        for requirement in requirements
-        if (why := refuse(requirement)) is not None
-    }
-    known = [requirement for requirement in requirements if requirement.id not in refused]
-    mistaken = {
-        refusal.requirement.id: refusal.why[0] for refusal in project.refused if refusal.is_in_force
-    }
-    reasons = {id: why.message for id, why in (mistaken | refused).items()}
-    return Side(known, reasons, project.declarations), [*refused.values()]
+    mistaken = (refusal for refusal in project.refused if refusal.is_in_force)
+    return side(active_requirements(project, None), mistaken, project.declarations)
 
 
 def _recorded(
@@ -148,7 +140,7 @@ def _recorded(
         fail(*plan)
     print_diagnostics([*plan.refusals])
     for log in logs:
-        found = _good(of_log(known, plan, log))
+        found = or_fail(of_log(known, plan, log))
         print_diagnostics(found.findings)
         yield found
 
@@ -168,21 +160,15 @@ def of_files(
 
     path = tests or (DEFAULT if Path(DEFAULT).exists() else None)
     if path is not None:
-        suite = _good(read_suite(path))
+        suite = or_fail(read_suite(path))
         old = changed(suite, requirements)
         if old:
             print_diagnostics([stale(path, f"{', '.join(old)} changed since", "fretc test")])
         yield from of_suite(suite, known)
     path = analysis or default_path()
     if path is not None:
-        found = _good(read_analysis(path)).document
+        found = or_fail(read_analysis(path)).document
         old = others(found, requirements)
         if old:
             print_diagnostics([stale(path, f"{', '.join(old)} changed since", "fretc analyze")])
         yield from of_analysis(found, old)
-
-
-def _good(found: T | Diagnostic) -> T:
-    if isinstance(found, Diagnostic):
-        fail(found)
-    return found

@@ -16,6 +16,7 @@ from fretc.terminal.options import (
     analysis_option,
     bindings_option,
     evidence_option,
+    evidence_path,
     extras,
     hazards_option,
     is_given,
@@ -30,10 +31,12 @@ from fretc.terminal.output import (
     EXIT_USAGE,
     EXIT_VIOLATION,
     fail,
+    not_written,
+    or_fail,
     print_project_diagnostics,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
+from fretish.diagnostics.diagnostic import Severity, has_errors
 
 if TYPE_CHECKING:
     from compiler.project.project import Project
@@ -120,7 +123,7 @@ def report(
     requirements: str,
     bindings: str | None,
     hazards: str | None,
-    evidence: str,
+    evidence: str | None,
     verification: str | None,
     analysis: str | None,
     ajpf: tuple[str, ...],
@@ -154,14 +157,11 @@ def report(
         absent = kind.missing()
         if absent is not None:
             fail(absent)
+    evidence = evidence_path(evidence)
     if is_given("evidence") and not os.path.lexists(evidence):
         fail(replace(not_audited(evidence), severity=Severity.ERROR))
-    files = requirement_files(requirements)
-    if isinstance(files, Diagnostic):
-        fail(files)
-    project = load_folder(requirements, bindings, hazards)
-    if isinstance(project, Diagnostic):
-        fail(project)
+    files = or_fail(requirement_files(requirements))
+    project = or_fail(load_folder(requirements, bindings, hazards))
     lock = lock or sibling_path(requirements, "fretc.lock")
     waivers = waivers or sibling_path(requirements, "waivers.toml")
     signers = signers or sibling_path(requirements, SIGNERS)
@@ -195,21 +195,18 @@ def report(
 def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | None) -> Inset | None:
     """The embedded page of `fretc play`; None: no requirement can be on it."""
     from compiler.formalization.formalize import name_collisions
-    from compiler.targets.javascript.monitor import refuse
     from fretc.audit.plan import Plan, planned
     from fretc.commands.play import of_files
     from fretc.play.page import inset
     from fretc.play.recorded import Recorded, of_evidence
     from fretc.play.starts import of_examples
+    from fretc.play.versions import side
 
-    refused = {refusal.requirement.id: refusal.why[0].message for refusal in project.refused}
-    project = project.sound
-    refused |= {
-        requirement.id: said.message
-        for requirement in project.formalized
-        if (said := refuse(requirement))
-    }
-    known = [requirement for requirement in project.formalized if requirement.id not in refused]
+    refusals, project = project.refused, project.sound
+    mistaken = {refusal.requirement.id for refusal in refusals}
+    sound = [each for each in project.formalized if each.id not in mistaken]
+    shown, _ = side(sound, refusals, None)
+    known = shown.requirements
     if not known or [*name_collisions(known)]:
         return None
     plan = planned(project)
@@ -221,7 +218,7 @@ def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | No
         *of_examples(known),
         *of_files(project.formalized, known, None, analysis),
     ]
-    return inset(known, [*refused.items()], starts, notes=recorded.notes)
+    return inset(known, [*shown.refused.items()], starts, notes=recorded.notes)
 
 
 def _outputs(
@@ -237,8 +234,6 @@ def _outputs(
 
 def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequence[str]) -> None:
     """Write each format to its path."""
-    from fretc.terminal.output import not_written
-
     paths: dict[Path, str | Iterable[str]] = {}
     for report_format, path in outputs:
         if Path(path) in paths:

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+from compiler.files.dates import is_date, is_in_future, today
 from fretc.commands.opening import print_excluded
 from fretc.terminal.options import (
     PATH,
     analysis_option,
     evidence_option,
+    evidence_path,
     extras,
     format_option,
     is_given,
@@ -26,17 +28,18 @@ from fretc.terminal.output import (
     EXIT_USAGE,
     fail,
     fail_at_end,
+    or_fail,
     print_project_diagnostics,
     print_status,
     write_outputs,
 )
 from fretish.diagnostics.diagnostic import (
-    Code,
     Diagnostic,
     Severity,
+    did_you_mean,
     has_errors,
-    suggestion,
 )
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 from fretish.reading.natural_order import natural
 
@@ -76,7 +79,7 @@ def lock(
     comment: str,
     day: str | None,
     requirements: str,
-    evidence: str,
+    evidence: str | None,
     verification: str | None,
     analysis: str | None,
     path: str | None,
@@ -97,7 +100,6 @@ def lock(
 
     Example: fretc lock --reviewer "A. Meier" --role "safety engineer" --comment "first review"
     """
-    from compiler.files.dates import is_date, is_in_future, today
     from compiler.files.templating import to_json
     from fretc.traceability.lock import (
         Acceptance,
@@ -112,13 +114,12 @@ def lock(
 
     for name, words in (("--reviewer", reviewer), ("--role", role), ("--comment", comment)):
         if not words.strip():
-            fail(Diagnostic(Code.BAD_USAGE, f"`{name}` says nothing", help="fill it in"))
+            fail(diagnostic("empty_option", name=name))
     day = day or today()
     if not is_date(day):
-        fail(Diagnostic(Code.BAD_USAGE, f"`{day}` is no date", help="write it as `2026-11-22`"))
+        fail(diagnostic("not_a_date", day=day))
     if is_in_future(day):
-        message = f"`{day}` is in the future: a review cannot have happened yet"
-        fail(Diagnostic(Code.BAD_USAGE, message, help="leave out `--date` to use today"))
+        fail(diagnostic("review_in_future", day=day))
     project, chains, refuted = _chains(requirements, evidence, verification, analysis, accept=True)
     refused = _refused(project)
     where = path or _beside(requirements)
@@ -172,7 +173,7 @@ def _signatures(
 def diff(
     baseline: str | None,
     requirements: str,
-    evidence: str,
+    evidence: str | None,
     verification: str | None,
     analysis: str | None,
     output_format: str,
@@ -214,7 +215,7 @@ def _refused(project: Project) -> Mapping[str, Sequence[Diagnostic]]:
         return {}
     fail_at_end()
     reached = unreviewable(project)
-    refused = {r.id: reached[id(r)] for r in project.requirements if id(r) in reached}
+    refused = {r.id: reached[r] for r in project.requirements if r in reached}
     if len(refused) < len({requirement.id for requirement in project.requirements}):
         print_excluded(refused, len(project.requirements))
     return refused
@@ -222,7 +223,7 @@ def _refused(project: Project) -> Mapping[str, Sequence[Diagnostic]]:
 
 def _chains(
     requirements: str,
-    evidence: str,
+    evidence: str | None,
     verification: str | None,
     analysis: str | None,
     *,
@@ -232,7 +233,7 @@ def _chains(
 
     Args:
         requirements: folder or file of the requirements.
-        evidence: path of the evidence.
+        evidence: path of the evidence; None: the default path.
         verification: path of the proofs.
         analysis: path of the analysis.
         accept: whether the results will be accepted, so that a store is checked in full.
@@ -245,17 +246,11 @@ def _chains(
     from fretc.traceability.chain import chains
     from fretc.verification.reader import known
 
-    project = load_folder(requirements)
-    if isinstance(project, Diagnostic):
-        fail(project)
-    proofs = known(verification)
-    if isinstance(proofs, Diagnostic):
-        fail(proofs)
-    analyzed = known_analysis(analysis)
-    if isinstance(analyzed, Diagnostic):
-        fail(analyzed)
+    project = or_fail(load_folder(requirements))
+    proofs = or_fail(known(verification))
+    analyzed = or_fail(known_analysis(analysis))
     read = required_source if is_given("evidence") else source
-    audited = read(evidence, in_full=accept)
+    audited = read(evidence_path(evidence), in_full=accept)
     if isinstance(audited, Diagnostic):
         print_project_diagnostics([*project.diagnostics, audited], requirements)
         if audited.is_error:
@@ -274,9 +269,8 @@ def _chosen(
     known = [*(chain.requirement for chain in chains), *orphans]
     for id in ids:
         if id not in known:
-            near = suggestion(id, known)
-            fix = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
-            fail(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=fix))
+            fix = did_you_mean(id, known, f"there are {', '.join(known)}")
+            fail(diagnostic("unknown_requirement", id=id, help=fix))
     return [chain for chain in chains if not ids or chain.requirement in ids]
 
 

@@ -6,21 +6,24 @@ import os
 import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from compiler.files.dates import today
 from fretc.terminal.options import PATH, extras, path_option
 from fretc.terminal.output import (
     EXIT_VIOLATION,
     fail,
+    or_fail,
     print_diagnostics,
     print_status,
     write_outputs,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.source import Source
 from fretish.reading.natural_order import natural
@@ -81,12 +84,11 @@ def sign(files: tuple[str, ...], key: str, reviewer: str | None, verification: s
         for line in signable.lines:
             print_status(visible(line))
     mine = private(key)
-    write_outputs(_merged(signed(signable, mine) for signable in signables), [*files, key])
+    outputs: dict[Path, str] = {}
+    for signable in signables:
+        outputs |= signed(signable, mine)
+    write_outputs(outputs, [*files, key])
     print_status(f"signed with {mine.public.text}")
-
-
-def _merged(parts: Iterable[Mapping[Path, str]]) -> dict[Path, str]:
-    return {path: text for part in parts for path, text in part.items()}
 
 
 def installed() -> None:
@@ -120,11 +122,11 @@ def _passphrase(path: str) -> str:
         return known
     if not sys.stdin.isatty():
         fail(
-            Diagnostic(
-                Code.BAD_KEY,
-                f"the key in `{path}` has a passphrase, but there is no terminal to ask for it",
+            diagnostic(
+                "passphrase_without_terminal",
                 Source(path, "").span(),
-                help=f"set the environment variable {PASSPHRASE} to the passphrase",
+                path=path,
+                passphrase=PASSPHRASE,
             )
         )
     asked: str = click.prompt(f"passphrase of {visible(path)}", hide_input=True, err=True)
@@ -137,9 +139,7 @@ def signed(what: Signable, key: PrivateKey) -> dict[Path, str]:
     from fretc.attestation.signatures import appended, beside, envelope, kept, read
     from fretc.attestation.statement import text
 
-    envelopes = read(what.path)
-    if isinstance(envelopes, Diagnostic):
-        fail(envelopes)
+    envelopes = or_fail(read(what.path))
     new = envelope(signed_envelope(text(what.statement), key))
     omissions = len(envelopes) - len(kept(envelopes, new, what.current))
     if omissions:
@@ -191,9 +191,7 @@ def _json(path: str, verification: str | None) -> Signable:
     from fretc.verification.reader import default_path
 
     if not os.path.isdir(path):
-        source = read_text(path)
-        if isinstance(source, Diagnostic):
-            fail(source)
+        source = or_fail(read_text(path))
         schema = _schema(source)
         if schema == proved.SCHEMA:
             return _proved(path)
@@ -217,17 +215,13 @@ def _schema(source: Source) -> object:
         return whole.field("schema").value
     except SchemaError as error:
         fail(
-            Diagnostic(
-                Code.BAD_EVIDENCE,
-                f"`{source.name}` is nothing that fretc signs: {error}",
-                Source(source.name, "").span(),
-                help="name a file that `fretc audit`, `verify`, `analyze` or `report` has written",
+            diagnostic(
+                "not_signable", Source(source.name, "").span(), source=source.name, error=error
             )
         )
 
 
 def _as_error(wrong: Diagnostic) -> Diagnostic:
-    from dataclasses import replace
 
     return replace(wrong, severity=Severity.ERROR)
 
@@ -246,7 +240,7 @@ def _evidence(audited: EvidenceSource, proofs: Proofs | None) -> Signable:
 
 def _summary_of_evidence(audited: EvidenceSource) -> Iterator[str]:
     from fretc.audit.measurements.confidence_intervals import REFUTED
-    from fretc.report.model.audits import SingleAudit
+    from fretc.report.model.assessments import SingleAudit
     from monitors import kernel
 
     audits = [SingleAudit(brief, ()) for _, brief in audited.briefs()]
@@ -267,9 +261,7 @@ def _summary_of_evidence(audited: EvidenceSource) -> Iterator[str]:
 def _proofs(path: str) -> Proofs:
     from fretc.verification.reader import read
 
-    proofs = read(path)
-    if isinstance(proofs, Diagnostic):
-        fail(proofs)
+    proofs = or_fail(read(path))
     _same_bytes(path, proofs.sha256)
     return proofs
 
@@ -286,9 +278,7 @@ def _analyzed(path: str) -> Signable:
     from fretc.analysis.evidence import read
     from fretc.attestation import statement as attestation
 
-    known = read(path)
-    if isinstance(known, Diagnostic):
-        fail(known)
+    known = or_fail(read(path))
     _same_bytes(path, known.sha256)
     found = known.document.analysis
     lines = (
@@ -316,14 +306,7 @@ def _same_bytes(path: str, sha256: str) -> None:
     from compiler.files.text_files import file_sha256
 
     if file_sha256(path) != sha256:
-        fail(
-            Diagnostic(
-                Code.UNREADABLE,
-                f"`{path}` is not UTF-8 text without a byte order mark, or it is being written",
-                Source(path, "").span(),
-                help="wait until it is complete, or create it again",
-            )
-        )
+        fail(diagnostic("not_same_bytes", Source(path, "").span(), path=path))
 
 
 def _report(path: str) -> Signable:
@@ -365,7 +348,6 @@ def of_reviews(path: str, mine: Iterable[Review], all_: Iterable[Review]) -> Sig
 
 
 def _waivers(path: str, key: str, reviewer: str | None) -> Signable:
-    from compiler.files.dates import today
     from fretc.attestation import statement as attestation
     from fretc.traceability.waivers import read
 
@@ -424,9 +406,7 @@ def _public(path: str) -> str:
     """Fingerprint of a public key."""
     from fretc.attestation.signers import trusted
 
-    found = trusted(path)
-    if isinstance(found, Diagnostic):
-        fail(found)
+    found = or_fail(trusted(path))
     return next((signer.key.fingerprint for signer in found.signers), "")
 
 
@@ -448,13 +428,9 @@ def require(evidence: EvidenceSource, by: str, others: Mapping[str, str | None])
     installed()
     from fretc.attestation.signers import trusted
 
-    keys = trusted(by)
-    if isinstance(keys, Diagnostic):
-        fail(keys)
+    keys = or_fail(trusted(by))
     companions = {kind: path for kind, path in others.items() if path is not None}
-    signatures = book([evidence.file, *companions.values()], keys)
-    if isinstance(signatures, Diagnostic):
-        fail(signatures)
+    signatures = or_fail(book([evidence.file, *companions.values()], keys))
     mistakes = list(signatures.diagnostics())
     signature = signatures.agreed(evidence)
     if not signature.is_good:
@@ -471,9 +447,4 @@ def require(evidence: EvidenceSource, by: str, others: Mapping[str, str | None])
 
 def _unsigned(path: str, by: str, why: str) -> Diagnostic:
     """F558."""
-    return Diagnostic(
-        Code.NOT_SIGNED,
-        f"`{path}` is not signed as `{by}` asks for: {why}",
-        Source(path, "").span(),
-        help=f"sign its present content: `fretc sign {path} --key KEY`",
-    )
+    return diagnostic("not_signed", Source(path, "").span(), path=path, by=by, why=why)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from compiler.files.build_id import __version__
 from fretc.terminal.options import (
     PATH,
     extras,
@@ -29,8 +30,9 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretc.terminal.progress import progress
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import missing_extra
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 
 if TYPE_CHECKING:
@@ -151,9 +153,6 @@ def _known(scenario: Scenario) -> None:
 
     Raises:
         ScenarioError: one does not exist.
-
-    Raises:
-        ScenarioError: one is not there.
     """
     from fretc.campaigns.experiment import project
     from simulation.world.scenario import ScenarioError
@@ -183,12 +182,7 @@ def _place(name: str, why: str) -> Span | None:
 
 def _bad_scenario(name: str, why: str) -> Diagnostic:
     """F914."""
-    return Diagnostic(
-        Code.BAD_SCENARIO,
-        f"the scenario `{name}` cannot be run: {why}",
-        _place(name, why),
-        help="`fretc simulate --list` lists the scenarios that come with fretc",
-    )
+    return diagnostic("bad_scenario", _place(name, why), name=name, why=why)
 
 
 def _file(out: str) -> Path:
@@ -223,7 +217,6 @@ def _record(
     encoding: str,
     pictures: Mapping[str, str | None],
 ) -> None:
-    from compiler.files.build_id import __version__
     from fretc.campaigns.campaign import intercepted
     from fretc.campaigns.experiment import safety_function
     from simulation.mission import record

@@ -6,39 +6,34 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import click
 
+from fretc.audit.evidence.verdicts import VERDICTS
+from fretc.audit.outputs.summary import COUNTED, MOST, Answer, Summary, run_query, summarize
+from fretc.audit.outputs.table import read
 from fretc.terminal.output import (
     EXIT_INCONCLUSIVE,
     EXIT_OK,
     EXIT_VIOLATION,
     fail,
+    or_fail,
     print_diagnostics,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.bindings.amounts import count_of
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
-if TYPE_CHECKING:
-    from fretc.audit.outputs.summary import Answer, Summary
 
-
-def summarize(paths: Sequence[str], query: str | None, output_format: str) -> NoReturn:
+def print_summary(paths: Sequence[str], query: str | None, output_format: str) -> NoReturn:
     """Print a summary of evidence, or the result of a query; exit with the status of the audit."""
-    from fretc.audit.outputs.summary import run_query, summarize
-    from fretc.audit.outputs.table import read
-
     if output_format not in ("text", "json"):
-        fail(_no_form(output_format))
-    table = read(paths, query)
-    if isinstance(table, Diagnostic):
-        fail(table)
+        fail(diagnostic("unknown_summary_format", output_format=output_format))
+    table = or_fail(read(paths, query))
     if query is not None:
         with closing(table):
-            answer = run_query(table, query)
-        if isinstance(answer, Diagnostic):
-            fail(answer)
+            answer = or_fail(run_query(table, query))
         click.echo(_json(answer.records) if output_format == "json" else _listed(answer), nl=False)
         raise SystemExit(EXIT_OK)
     with closing(table):
@@ -47,14 +42,6 @@ def summarize(paths: Sequence[str], query: str | None, output_format: str) -> No
     click.echo(_json(summary.as_record) if output_format == "json" else _text(summary), nl=False)
     raise SystemExit(
         EXIT_VIOLATION if summary.violated else EXIT_OK if summary.shown else EXIT_INCONCLUSIVE
-    )
-
-
-def _no_form(output_format: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"a summary has no output format `{output_format}`",
-        help="use `text` or `json`",
     )
 
 
@@ -76,12 +63,10 @@ def _plain(value: object) -> object:
 
 
 def _text(summary: Summary) -> str:
-    from fretc.audit.outputs.summary import MOST
-
     whole = summary.whole
-    damaged = f", {_many(whole['damaged'], 'damaged run')}" if whole["damaged"] else ""
+    damaged = f", {count_of(whole['damaged'], 'damaged run')}" if whole["damaged"] else ""
     lines = [
-        f"{_many(whole['runs'], 'run')}, {_many(whole['requirements'], 'requirement')}, "
+        f"{count_of(whole['runs'], 'run')}, {count_of(whole['requirements'], 'requirement')}, "
         f"{whole['seconds'] / 3600:.1f} h{damaged}",
         "",
         *_aligned(*_verdicts(summary)),
@@ -96,9 +81,6 @@ def _text(summary: Summary) -> str:
 
 
 def _verdicts(summary: Summary) -> tuple[list[str], list[list[str]]]:
-    from fretc.audit.evidence.verdicts import VERDICTS
-    from fretc.audit.outputs.summary import COUNTED
-
     counted = (f"{VERDICTS[word].sign.glyph} {word}" for word in COUNTED.values())
     head = ["requirement", "runs", *counted, "violations"]
     rows = [
@@ -157,7 +139,3 @@ def _aligned(head: list[str], rows: list[list[str]]) -> Iterator[str]:
 
 def _is_number(cell: str) -> bool:
     return not cell.strip("0123456789.,-+e s")
-
-
-def _many(count: Any, thing: str) -> str:
-    return f"{count:,} {thing}{'' if count == 1 else 's'}"

@@ -1,53 +1,38 @@
-"""`fretc test`: generate short test traces from requirements, each with its verdict.
+"""`fretc test`: generate short test traces from requirements, or test a program.
 
-`fretc.testing` generates them; this module reads the options, prints and writes.
+`test_suite` generates the tests, and `test_against` tests a program; this module reads the options.
 """
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
-from fretc.commands.opening import AUDIT_TABLES, project_of
+from fretc.commands.opening import AUDIT_TABLES, input_files, requirement_set
 from fretc.terminal.options import (
-    PATH,
     SECONDS,
+    component_option,
     extras,
+    files_argument,
+    first_bindings_option,
     format_option,
+    grouped,
     jobs_option,
     output_option,
     path_option,
     requirements_option,
 )
-from fretc.terminal.output import (
-    EXIT_INCONCLUSIVE,
-    EXIT_INTERRUPTED,
-    EXIT_OK,
-    EXIT_USAGE,
-    coloured,
-    fail,
-    print_project_diagnostics,
-    print_status,
-    write_outputs,
-)
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
-from fretish.diagnostics.rendering import visible
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from compiler.formalization.formalized import FormalizedRequirement
-    from fretc.analysis.text_output import Line
-    from fretc.testing.suite import Suite
+from fretc.terminal.output import fail
+from fretish.diagnostics.diagnostic import did_you_mean
+from fretish.diagnostics.messages import diagnostic
 
 
 @click.command(
     epilog=extras({"sim": "--emit mcap and --emit scenario"}),
 )
-@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
-@click.option("--component", metavar="NAME", help="Only requirements of this component.")
+@files_argument
+@component_option
 @click.option("--show", metavar="ID", help="Print the tests of this requirement, tick by tick.")
 @path_option("--suite", "saved", help="Use the tests of this file instead of generating new ones.")
 @click.option(
@@ -64,7 +49,7 @@ if TYPE_CHECKING:
     type=click.Choice(("pytest", "csv", "fret", "c", "mcap", "scenario")),
     help="Write the tests: `pytest` files, `csv` tables for monitors, traces for FRET's "
     "simulator, a self-test in `c`, `mcap` logs for audits, or `scenario` files for the "
-    "simulated robot. Repeatable.",
+    "simulated robot.",
 )
 @click.option(
     "--language",
@@ -97,7 +82,7 @@ if TYPE_CHECKING:
     help="Time limit for each answer of the program, in seconds.",
 )
 @requirements_option
-@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
+@first_bindings_option
 @format_option()
 @output_option(
     help="File for the tests, or for the result of --against. `-` prints it.  [default: "
@@ -106,20 +91,11 @@ if TYPE_CHECKING:
 def test(
     files: tuple[str, ...],
     component: str | None,
-    show: str | None,
-    saved: str | None,
-    seconds: float,
-    emitted: str | None,
-    languages: tuple[str, ...],
-    emit_to: str,
-    runs: int,
-    jobs: int,
-    against: str | None,
-    line_time: float,
     requirements: str,
     bindings: str | None,
-    output_format: str,
-    output: str | None,
+    against: str | None,
+    line_time: float,
+    **options: Any,
 ) -> None:
     """Generate tests from requirements: short traces, each with its expected verdict.
 
@@ -137,151 +113,27 @@ def test(
 
     Example: fretc test requirements/agv --emit pytest
     """
-    from compiler.files.records import plain
-    from compiler.files.templating import to_json
-    from compiler.project.paths import companions
-    from fretc.analysis.assumptions import assumptions
-    from fretc.commands import test_against, test_staging
-    from fretc.commands.analyze import active_requirements
-
-    project, first = project_of(files, requirements, bindings, ("environment", *AUDIT_TABLES))
-    formalized = active_requirements(project, component)
+    reads = ("environment", *AUDIT_TABLES)
+    checked = requirement_set(files, component, requirements, bindings, reads)
+    show, emitted, saved = options["show"], options["emitted"], options["saved"]
     if show is not None:
-        _check_shown(show, [requirement.id for requirement in formalized])
-    assumed, remarks = assumptions(formalized, project.declarations)
-    print_project_diagnostics(remarks, first)
-    if has_errors(remarks):
-        raise SystemExit(EXIT_USAGE)
-    sources = [entry.wording.source.name for entry in project.requirements]
-    protected = [*sources, *companions(sources), *filter(None, [bindings])]
-    if languages and emitted != "pytest":
-        why = "`--language` needs `--emit pytest`"
-        fail(Diagnostic(Code.BAD_USAGE, why, help="add `--emit pytest`, or remove `--language`"))
+        _check_shown(show, [requirement.id for requirement in checked.requirements])
+    protected = input_files(checked.project, bindings, saved)
+    if options["languages"] and emitted != "pytest":
+        fail(diagnostic("language_without_pytest"))
     if against is not None:
         if emitted is not None or show is not None:
-            clash = "`--against` tests a program; it cannot be combined with `--emit` or `--show`"
-            fail(Diagnostic(Code.BAD_USAGE, clash, help="remove one of them"))
-        place = output or "build/tests/conformance.json"
-        test_against.against(
-            against, formalized, assumed, seconds, line_time, output_format, place, protected
-        )
-    output = output or "build/tests/suite.json"
-    on_stage = emitted if emitted in test_staging.FORMS else None
-    if on_stage is not None:
-        test_staging.check(on_stage, emit_to)
-    if saved is not None:
-        protected.append(saved)
-    suite, stopped = (
-        (_of(saved, formalized), False) if saved else _made(formalized, assumed, seconds)
-    )
-    text = f"{to_json(plain(suite))}\n"
-    if emitted is not None and emit_to == "-":
-        pass  # Standard output then holds the tests.
-    elif output == "-" or output_format == "json":
-        click.echo(text, nl=False)
-    else:
-        found = _lines(suite, formalized, show, of_file=saved is not None)
-        all_lines = [(visible(text), colour) for text, colour in found]
-        click.echo(coloured(all_lines), nl=False)
-    outputs: dict[Path, str] = {} if saved or output == "-" else {Path(output): text}
-    if emitted is not None and on_stage is None:
-        outputs |= _files(suite, formalized, emitted, emit_to, languages)
-    write_outputs(outputs, protected)
-    if stopped:
-        raise SystemExit(EXIT_INTERRUPTED)
-    if on_stage is not None:
-        status = test_staging.write_simulated_tests(project, suite, on_stage, emit_to, runs, jobs)
-        if status != EXIT_OK:
-            raise SystemExit(status)
-    raise SystemExit(EXIT_OK if saved or suite.is_complete else EXIT_INCONCLUSIVE)
+            fail(diagnostic("against_with_emit"))
+        from fretc.commands.test_against import ProgramOptions, test_program
+
+        program = grouped(ProgramOptions, {**options, "command": against, "line_time": line_time})
+        raise SystemExit(test_program(checked, program, protected))
+    from fretc.commands.test_suite import SuiteOptions, make_tests
+
+    raise SystemExit(make_tests(checked, grouped(SuiteOptions, options), protected))
 
 
-def _check_shown(id: str, known: Sequence[str]) -> None:
+def _check_shown(id: str, known: list[str]) -> None:
     if id not in known:
-        near = suggestion(id, known)
-        hint = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
-        fail(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=hint))
-
-
-def _of(path: str, requirements: Sequence[FormalizedRequirement]) -> Suite:
-    """The tests of a file that are about the present requirements."""
-    from fretc.testing.exports.saved import WrongError
-    from fretc.testing.exports.saved import saved as checked
-    from fretc.testing.reader import read
-
-    suite = read(path)
-    if isinstance(suite, Diagnostic):
-        fail(suite)
-    again = "generate it again: `fretc test`"
-    try:
-        found = checked(suite, requirements)
-    except WrongError as error:
-        fail(Diagnostic(Code.BAD_EVIDENCE, f"`{path}`: {error}", help=again))
-    if found.others:
-        others = ", ".join(found.others)
-        print_status(visible(f"left out, because the requirements have changed: {others}"))
-    if not found.suite.tests:
-        why = f"`{path}` has no test of a current requirement"
-        fail(Diagnostic(Code.NOTHING_TO_DO, why, help=again))
-    return found.suite
-
-
-def _made(
-    requirements: Sequence[FormalizedRequirement],
-    assumed: Sequence[FormalizedRequirement],
-    seconds: float,
-) -> tuple[Suite, bool]:
-    """The test suite, and whether Ctrl-C has stopped the search."""
-    from fretc.analysis.worker import Interrupted, findings
-    from fretc.terminal.progress import print_activity
-    from fretc.testing.assembly import jobs, suite
-
-    found = []
-    stopped = False
-    try:
-        for each in findings(jobs(requirements, assumed, seconds), print_activity):
-            found.append(each)
-    except Interrupted:
-        stopped = True
-    return suite(requirements, assumed, found), stopped
-
-
-def _files(
-    suite: Suite,
-    requirements: Sequence[FormalizedRequirement],
-    emitted: str,
-    output: str,
-    languages: Sequence[str],
-) -> dict[Path, str]:
-    """The files of the tests; tests without a file are reported."""
-    from fretc.testing.exports.files import SuiteFormat, files
-    from fretc.testing.exports.pytest_file import Language
-
-    chosen = [each for each in Language if each in languages] or [Language.PYTHON]
-    artifacts, left = files(suite, requirements, SuiteFormat(emitted), chosen)
-    for why in dict.fromkeys(left.values()):
-        names = [name for name in left if left[name] == why]
-        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
-        print_status(visible(f"not written: {names[0]}{more}: {why}"))
-    if output == "-":
-        return {Path("-"): "".join(artifact.text for artifact in artifacts)}
-    return {Path(output) / emitted / artifact.path: artifact.text for artifact in artifacts}
-
-
-def _lines(
-    suite: Suite, requirements: Sequence[FormalizedRequirement], show: str | None, *, of_file: bool
-) -> Iterator[Line]:
-    from fretc.testing.requirement_model import demands
-    from fretc.testing.text_output import lines, lines_of_file, shown
-    from fretish.bindings.declarations import Role
-
-    if show is None:
-        yield from lines_of_file(suite) if of_file else lines(suite)
-        return
-    requirement = next(each for each in requirements if each.id == show)
-    roles = {name: Role(own) for name, own in suite.roles.items()}
-    declared = requirement.declarations.propositions if requirement.declarations else {}
-    bound = (declared[name] for name in requirement.watched if name in declared)
-    signals = (signal for each in bound for signal in each.signals)
-    names = [*requirement.variables, *demands(requirement).atoms, *signals]
-    yield from shown(suite, show, names, roles, requirement.wordings)
+        hint = did_you_mean(id, known, f"there are {', '.join(known)}")
+        fail(diagnostic("unknown_requirement", id=id, help=hint))

@@ -6,12 +6,18 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
 
 import click
 
+from compiler.files.records import plain
+from compiler.files.templating import to_json
+from fretc.analysis.arena.budget import OutOfTimeError
+from fretc.analysis.arena.roles import roles
+from fretc.analysis.arena.variables import UnsupportedError
+from fretc.commands.opening import RequirementSet
 from fretc.terminal.output import (
     EXIT_INCONCLUSIVE,
     EXIT_INTERRUPTED,
@@ -23,71 +29,61 @@ from fretc.terminal.output import (
     print_diagnostics,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretc.terminal.progress import print_activity
+from fretc.testing.conformance.conformance_run import ConformanceRun
+from fretc.testing.conformance.findings import Conformance
+from fretc.testing.conformance.program import Program, ProgramError
+from fretc.testing.conformance.text_output import lines
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
-if TYPE_CHECKING:
-    from compiler.formalization.formalized import FormalizedRequirement
-    from fretc.testing.conformance.findings import Conformance
+
+@dataclass(frozen=True, slots=True)
+class ProgramOptions:
+    """The options of `fretc test` about a program."""
+
+    command: str
+    """The program and its arguments, in shell syntax."""
+    seconds: float
+    """CPU seconds for the strategy towards each situation."""
+    line_time: float
+    """Time limit for each line of the program, in seconds."""
+    output_format: str
+    output: str | None
 
 
-def against(
-    command: str,
-    requirements: Sequence[FormalizedRequirement],
-    assumed: Sequence[FormalizedRequirement],
-    seconds: float,
-    line_time: float,
-    output_format: str,
-    output: str,
-    protected: Iterable[str],
-) -> NoReturn:
-    """Test a program, print the result, and exit.
+def test_program(checked: RequirementSet, options: ProgramOptions, protected: Iterable[str]) -> int:
+    """Test a program and print the result; returns the exit status.
 
     Args:
-        command: the program and its arguments, in shell syntax.
-        requirements: the requirements.
-        assumed: the assumptions about the environment.
-        seconds: CPU seconds for the strategy towards each situation.
-        line_time: time limit for each line of the program, in seconds.
-        output_format: text or json.
-        output: path of the result; `-` prints it.
+        checked: the requirements, and the assumptions about the environment.
+        options: the program, and how it is tested.
         protected: input files, which no output may replace.
     """
-    from compiler.files.records import plain
-    from compiler.files.templating import to_json
-    from fretc.analysis.arena.budget import OutOfTimeError
-    from fretc.analysis.arena.roles import roles
-    from fretc.analysis.arena.variables import UnsupportedError
-    from fretc.terminal.progress import print_activity
-    from fretc.testing.conformance.conformance_run import ConformanceRun
-    from fretc.testing.conformance.program import Program, ProgramError
-    from fretc.testing.conformance.text_output import lines
-
-    words = _words(command)
-    chosen = roles([*requirements, *assumed])
+    words = _words(options.command)
+    output = options.output or "build/tests/conformance.json"
+    chosen = roles([*checked.requirements, *checked.assumed])
     if isinstance(chosen, tuple):
         fail(*chosen)
     wrong: Diagnostic | None = None
     stopped = False
     try:
-        campaign = ConformanceRun(requirements, assumed, chosen, seconds)
+        campaign = ConformanceRun(checked.requirements, checked.assumed, chosen, options.seconds)
         oracle = campaign.oracle
         try:
             campaign.run(
-                lambda: Program(words, oracle.inputs, oracle.outputs, line_time), print_activity
+                lambda: Program(words, oracle.inputs, oracle.outputs, options.line_time),
+                print_activity,
             )
         except ProgramError as error:
             wrong = error.diagnostic
         except KeyboardInterrupt:
             stopped = True
     except (UnsupportedError, OutOfTimeError) as error:
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE, f"no program can be tested against these requirements: {error}"
-            )
-        )
+        fail(diagnostic("no_conformance_test", error=error))
     found = campaign.findings(words)
     evidence = f"{to_json(plain(found))}\n"
-    if output == "-" or output_format == "json":
+    if output == "-" or options.output_format == "json":
         click.echo(evidence, nl=False)
     else:
         click.echo(coloured([*lines(found, chosen)]), nl=False)
@@ -95,9 +91,7 @@ def against(
         write_outputs({Path(output): evidence}, protected)
     if wrong is not None:
         print_diagnostics([wrong])
-    if stopped:
-        raise SystemExit(EXIT_INTERRUPTED)
-    raise SystemExit(_status(found, wrong))
+    return EXIT_INTERRUPTED if stopped else _status(found, wrong)
 
 
 def _words(command: str) -> list[str]:
@@ -113,12 +107,7 @@ def _words(command: str) -> list[str]:
 
 def _no_command(command: str, why: str) -> Diagnostic:
     """F907."""
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`--against {shlex.quote(command)}` names no program: {why}",
-        help='put the program and its arguments into one pair of quotes: `--against "python3 '
-        'program.py"`',
-    )
+    return diagnostic("no_program_named", command=shlex.quote(command), why=why)
 
 
 def _status(found: Conformance, wrong: Diagnostic | None) -> int:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
+from compiler.project.project import Project
 from fretc.terminal.output import (
     EXIT_INTERRUPTED,
     EXIT_OK,
@@ -17,28 +17,20 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretc.terminal.progress import progress
+from fretc.testing.log_synthesis.logs import LogTestResult, logs
+from fretc.testing.log_synthesis.scenarios import (
+    Aim,
+    Found,
+    confirmed,
+    realizable_goals,
+    search,
+    text,
+)
+from fretc.testing.suite import Suite
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import visible
-
-if TYPE_CHECKING:
-    from compiler.project.project import Project
-    from fretc.testing.log_synthesis.logs import LogTestResult
-    from fretc.testing.log_synthesis.scenarios import Aim, Found
-    from fretc.testing.suite import Suite
-
-FORMS = ("mcap", "scenario")
-"""Values of `--emit` that need the simulated robot."""
-
-
-def check(emitted: str, emit_to: str) -> None:
-    """Exit if the files cannot be written: without the packages, or to standard output."""
-    from fretc.commands.simulate import require_simulation
-
-    if emit_to == "-":
-        message = f"`--emit {emitted}` writes several files, which cannot be printed with `-`"
-        fail(Diagnostic(Code.BAD_USAGE, message, help="name a folder"))
-    require_simulation()
+from simulation.world.scenario import names
 
 
 def write_simulated_tests(
@@ -59,7 +51,6 @@ def write_simulated_tests(
 
 
 def _logs(project: Project, suite: Suite, folder: Path) -> int:
-    from fretc.testing.log_synthesis.logs import logs
 
     done: list[LogTestResult] = []
     interrupted = False
@@ -101,7 +92,6 @@ def _listed(what: str, reasons: Iterable[tuple[str, str]]) -> None:
 
 
 def _scenarios(project: Project, suite: Suite, folder: Path, runs: int, jobs: int) -> int:
-    from fretc.testing.log_synthesis.scenarios import Found, realizable_goals, search
 
     aims, why = realizable_goals(suite, project)
     found, interrupted = Found(), False
@@ -128,9 +118,6 @@ def _written(
     project: Project, found: Found, folder: Path, words: Mapping[Aim, str]
 ) -> Collection[str]:
     """Write the new scenarios; one that does not reproduce its result is not written."""
-    from fretc.testing.log_synthesis.scenarios import confirmed, text
-    from simulation.world.scenario import names
-
     known, unlike = names(), []
     files: dict[Path, str] = {}
     for name, scenario in found.scenarios.items():
@@ -153,7 +140,6 @@ def _say(
     folder: Path,
     unlike: Collection[str],
 ) -> None:
-    from simulation.world.scenario import names
 
     known = names()
     own = [name for name in found.scenarios if name not in known]

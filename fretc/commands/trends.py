@@ -17,7 +17,8 @@ from fretc.terminal.output import (
     protect,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 
 @click.command()
@@ -85,16 +86,6 @@ def trends(
 
         click.echo(painted(lines(known, screen())), nl=False)
     if not known.has_pairs:
-        print_diagnostics([_nothing_to_compare()])
+        print_diagnostics([diagnostic("nothing_to_compare")])
     worse = EXIT_VIOLATION if known.is_worse else None
     raise SystemExit(worse or (EXIT_OK if known.is_comparable else EXIT_INCONCLUSIVE))
-
-
-def _nothing_to_compare() -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_COMPARABLE,
-        "nothing can be compared: no requirement was evaluated in the same scenario in two rounds",
-        help="also name earlier evidence; label runs with `scenario`, or name all logs of a "
-        "scenario alike",
-        severity=Severity.WARNING,
-    )

@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from compiler.logic.claims import PROVERS, Layer
-from fretc.commands.opening import print_excluded, project_of
+from compiler.files.build_id import __version__
+from compiler.files.records import plain
+from compiler.logic.claims import PROVERS, SCHEMA, Document, Layer, Result
+from fretc.commands.opening import input_files, print_excluded, project_of
 from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import (
-    PATH,
     extras,
+    files_argument,
+    first_bindings_option,
     format_option,
     limit_option,
     output_option,
@@ -31,12 +34,15 @@ from fretc.terminal.output import (
     coloured,
     fail,
     fail_at_end,
+    or_fail,
     print_diagnostics,
     write_outputs,
 )
+from fretc.terminal.progress import print_activity
 from fretc.verification.layers.languages import language_of
 from fretc.verification.layers.table import OF_MONITOR, in_words
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -80,7 +86,7 @@ Example: fretc verify requirements/r1.fret --monitor
     help=_HELP,
     epilog=extras({"crosshair": "--with crosshair"}),
 )
-@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
+@files_argument
 @click.option(
     "--layer",
     "layers",
@@ -116,7 +122,7 @@ Example: fretc verify requirements/r1.fret --monitor
     help="Result of AJPF. Repeatable.  [default: every build/*_ajpf/result.json]",
 )
 @requirements_option
-@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
+@first_bindings_option
 @limit_option
 @format_option()
 @output_option(
@@ -151,8 +157,6 @@ def verify(
     traces: str | None,
 ) -> None:
     """The command; its help is `_HELP`."""
-    from compiler.project.paths import companions
-    from fretc.terminal.progress import print_activity
     from fretc.verification.ajpf_results import default_paths
     from fretc.verification.engines.sandbox import Limits
     from fretc.verification.layers.request import Request
@@ -194,8 +198,7 @@ def verify(
     print_excluded({id: (why,) for id, why in refused.items()}, len(project.formalized))
     own = header.name if header else None
     options = (monitor_file, own, interceptor, agent, properties, bindings, *results)
-    sources = [requirement.wording.source.name for requirement in project.requirements]
-    inputs = [*sources, *companions(sources), *(name for name in options if name is not None)]
+    inputs = input_files(project, *options)
     texts = [*lines(proofs, every_claim=every_claim)] if output_format == "text" else None
     _print_and_write(proofs, texts, output, traces, inputs)
     raise SystemExit(_status(proofs))
@@ -231,18 +234,14 @@ def _ajpf_proofs(project: Project, results: Sequence[str]) -> Sequence[Proof]:
 def _half_an_agent(agent: str | None) -> Diagnostic:
     """F907: `--agent` without `--properties`, or the other way round."""
     present, missing = ("properties", "agent") if agent is None else ("agent", "properties")
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`--{present}` needs `--{missing}`",
-        help="name both: `--agent FILE.gwen --properties FILE.psl`",
-    )
+    return diagnostic("agent_option_missing", present=present, missing=missing)
 
 
 def _project(files: Sequence[str], requirements: str, bindings: str | None) -> Project:
     """The usable part of the project; exits if it has no requirement."""
     project, _ = project_of(files, requirements, bindings, ("interceptor", "assume"))
     if not project.formalized:
-        fail(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to verify"))
+        fail(diagnostic("no_requirement_to_verify"))
     return project
 
 
@@ -252,10 +251,7 @@ def _read(path: str | None) -> Source | None:
 
     if path is None:
         return None
-    source = read(path)
-    if isinstance(source, Diagnostic):
-        fail(source)
-    return source
+    return or_fail(read(path))
 
 
 def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
@@ -265,25 +261,12 @@ def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
         return None
     others = [name for name in layers if name in OF_MONITOR and name != Layer.MONITOR]
     if others:
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"`--layer {others[0]}` needs a monitor in Python",
-                help=f"verify `{monitor.name}` with `--layer monitor`",
-            )
-        )
+        fail(diagnostic("layer_needs_python", layer=others[0], monitor=monitor.name))
     if language.name != "C":
         return None
     included = re.search(r'^#include "(\w+\.h)"$', monitor.text, re.MULTILINE | re.ASCII)
     if included is None:
-        fail(
-            Diagnostic(
-                Code.BAD_MONITOR,
-                f"`{monitor.name}` is not a generated monitor: it does not include its header",
-                monitor.span(0, 0),
-                help="name a file that `--emit c` wrote",
-            )
-        )
+        fail(diagnostic("monitor_without_header", monitor.span(0, 0), monitor=monitor.name))
     return _read(str(Path(monitor.name).with_name(included[1])))
 
 
@@ -298,11 +281,12 @@ def _proofs(project: Project, request: Request) -> Sequence[Proof]:
         assert request.monitor is not None
         language = language_of(request.monitor.name)
         fail(
-            Diagnostic(
-                Code.BAD_MONITOR,
-                f"`{request.monitor.name}` is not a generated monitor: {error}",
+            diagnostic(
+                "not_a_monitor",
                 request.monitor.span(0, 0),
-                help=f"name a file that `--emit {language.emit if language else 'monitor'}` wrote",
+                monitor=request.monitor.name,
+                error=error,
+                target=language.emit if language else "monitor",
             )
         )
     if isinstance(proofs, Diagnostic):
@@ -328,10 +312,7 @@ def _print_and_write(
         traces: folder for the tables; None: none are written.
         inputs: files that no output may replace.
     """
-    from compiler.files.build_id import __version__
-    from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from compiler.logic.claims import SCHEMA, Document
 
     document = f"{to_json(plain(Document(SCHEMA, __version__, tuple(proofs))))}\n"
     files: dict[Path, str | bytes] = {}
@@ -370,11 +351,8 @@ def _trace_files(proofs: Sequence[Proof], folder: Path) -> dict[Path, str]:
 def _status(proofs: Sequence[Proof]) -> int:
     """The exit status, as stated in the help.
 
-        A stop that is never released violates no requirement: it gives 3, not 1.
-
-    That a stop is never released breaks no requirement: it is 3, and not 1.
+    A stop that is never released violates no requirement: it gives 3, not 1.
     """
-    from compiler.logic.claims import Result
     from fretc.verification.loop.closed_loop import RELEASED
 
     refuted = (proof.claim for proof in proofs if proof.result is Result.COUNTEREXAMPLE)

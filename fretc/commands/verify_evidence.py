@@ -33,15 +33,15 @@ from fretc.terminal.output import (
     EXIT_VIOLATION,
     coloured,
     fail,
+    or_fail,
     print_diagnostics,
 )
+from fretc.terminal.progress import print_activity
 from fretish.diagnostics.diagnostic import (
-    Code,
-    Diagnostic,
-    Severity,
+    did_you_mean,
     has_errors,
-    suggestion,
 )
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
@@ -146,13 +146,13 @@ def verify_evidence(
     Example: fretc verify-evidence --manifest logs.sha256 --report build/report.html
     """
     from fretc.analysis.evidence import default_path as analyzed
+    from fretc.analysis.evidence import read as read_analysis
     from fretc.audit.store.anywhere import required
     from fretc.verification.reader import default_path
+    from fretc.verification.reader import read as read_proofs
 
     file = evidence_path(file)
-    evidence = required(file)
-    if isinstance(evidence, Diagnostic):
-        fail(evidence)
+    evidence = or_fail(required(file))
     whole = evidence.document
     if signed_by is not None:
         others = {"report": report, "proofs": verification, "analysis": analysis}
@@ -160,11 +160,12 @@ def verify_evidence(
     project, plan = _plan(requirements, bindings, labels)
     scope = _scope(plan, only, requirements)
     verification = verification or default_path()
-    proofs = _proofs(verification)
+    proofs = or_fail(read_proofs(verification)) if verification is not None else None
     analysis = analysis or analyzed()
-    known = _analyzed(analysis)
+    known = or_fail(read_analysis(analysis)) if analysis is not None else None
     log_hashes = _manifest(manifest)
-    places = _places(_runs(whole), places_named, offline=offline)
+    runs = list(dict.fromkeys(result.run for result in whole.results))
+    places = _places(runs, places_named, offline=offline)
     results = [*_rechecked(whole, plan, places, scope, log_hashes, jobs)]
     results += _reproved(project.sound, proofs, scope, limit, skip=no_proofs)
     if known is not None:
@@ -191,20 +192,12 @@ def _status(results: Sequence[Recheck], same: bool | None, scope: Scope) -> int:
     return EXIT_INCONCLUSIVE if Finding.UNKNOWN in kinds or scope.part else EXIT_OK
 
 
-def _runs(whole: Document) -> list[str]:
-    return list(dict.fromkeys(result.run for result in whole.results))
-
-
 def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tuple[Project, Plan]:
     from compiler.project.folder import load_folder
     from fretc.logs.labels import given
 
-    given_labels = given(labels)
-    if isinstance(given_labels, Diagnostic):
-        fail(given_labels)
-    project = load_folder(requirements, bindings)
-    if isinstance(project, Diagnostic):
-        fail(project)
+    given_labels = or_fail(given(labels))
+    project = or_fail(load_folder(requirements, bindings))
     return project, replace(plan_of(project, requirements), labels=given_labels)
 
 
@@ -218,7 +211,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
     for folder in folders:
         if not Path(folder).is_dir():
             fix = "name the folder of the logs"
-            fail(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=fix))
+            fail(diagnostic("no_folder", folder=folder, help=fix))
     places: dict[str, str] = {}
     for folder in folders:
         places = {**located(runs, folder), **places}
@@ -229,12 +222,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
     fix = "if you trust it, name its folder or URL prefix with `--logs`"
     print_diagnostics(
         [
-            Diagnostic(
-                Code.FOREIGN_PLACE,
-                f"`{name_of(places[run])}` is not opened: {why}",
-                help=fix,
-                severity=Severity.WARNING,
-            )
+            diagnostic("log_not_opened", log=name_of(places[run]), why=why, help=fix)
             for run, why in refusals.items()
         ]
     )
@@ -253,9 +241,8 @@ def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
     ids = tuple(dict.fromkeys(name.strip() for name in only.split(",")))
     for name in ids:
         if name not in claims:
-            near = suggestion(name, claims)
-            fix = f"did you mean `{near}`?" if near else f"there are {', '.join(claims)}"
-            fail(Diagnostic(Code.BAD_USAGE, f"no requirement `{name}` is in force", help=fix))
+            fix = did_you_mean(name, claims, f"there are {', '.join(claims)}")
+            fail(diagnostic("requirement_not_in_force", name=name, help=fix))
     return Scope(ids, _lock(requirements), part=True)
 
 
@@ -264,10 +251,7 @@ def _lock(requirements: str) -> Lock | None:
     from fretc.traceability.lock import NAME, read
 
     path = sibling_path(requirements, NAME)
-    lock = read(path) if path is not None else None
-    if isinstance(lock, Diagnostic):
-        fail(lock)
-    return lock
+    return or_fail(read(path) if path is not None else None)
 
 
 def _manifest(path: str | None) -> Manifest | None:
@@ -279,24 +263,6 @@ def _manifest(path: str | None) -> Manifest | None:
     if not isinstance(manifest, Manifest):
         fail(*manifest)
     return manifest
-
-
-def _proofs(path: str | None) -> Proofs | None:
-    from fretc.verification.reader import read
-
-    proofs = read(path) if path is not None else None
-    if isinstance(proofs, Diagnostic):
-        fail(proofs)
-    return proofs
-
-
-def _analyzed(path: str | None) -> AnalyzedSet | None:
-    from fretc.analysis.evidence import read
-
-    known = read(path) if path is not None else None
-    if isinstance(known, Diagnostic):
-        fail(known)
-    return known
 
 
 def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
@@ -338,12 +304,8 @@ def _signatures(files: Sequence[str], signers: str | None) -> SignatureBook:
     from fretc.attestation.signatures import book
     from fretc.attestation.signers import trusted
 
-    known = trusted(signers) if signers is not None else None
-    if isinstance(known, Diagnostic):
-        fail(known)
-    signatures = book(files, known)
-    if isinstance(signatures, Diagnostic):
-        fail(signatures)
+    known = or_fail(trusted(signers) if signers is not None else None)
+    signatures = or_fail(book(files, known))
     broken = list(signatures.diagnostics())
     print_diagnostics(broken)
     if has_errors(broken):
@@ -365,10 +327,7 @@ def _rechecked(
     from fretc.audit.many_logs import local_executor
     from fretc.reproduction.results import recheck
 
-    results = recheck(whole, plan, places, local_executor(jobs), scope, manifest)
-    if isinstance(results, Diagnostic):
-        fail(results)
-    return results
+    return or_fail(recheck(whole, plan, places, local_executor(jobs), scope, manifest))
 
 
 def _reproved(
@@ -376,7 +335,6 @@ def _reproved(
 ) -> Sequence[Recheck]:
     from fretc.reproduction.outcome import PROOFS, unknown
     from fretc.reproduction.proofs import prove_again, unproved_plans
-    from fretc.terminal.progress import print_activity
     from fretc.verification.engines.sandbox import Limits
 
     missing = tuple(unproved_plans(project, proofs.proofs if proofs else (), scope.claimed))
@@ -384,9 +342,9 @@ def _reproved(
         return missing
     if skip:
         return (unknown(PROOFS, "", "the proofs were not repeated: `--no-proofs`"), *missing)
-    results = prove_again(project, proofs, Limits(seconds=limit), scope.claimed, print_activity)
-    if isinstance(results, Diagnostic):
-        fail(results)
+    results = or_fail(
+        prove_again(project, proofs, Limits(seconds=limit), scope.claimed, print_activity)
+    )
     return (*results, *missing)
 
 
@@ -406,9 +364,7 @@ def _asked_again(
         why = f"the analysis was not repeated: `{'--no-analysis' if skip else '--only'}`"
         return (unknown(TOGETHER, "", why),)
     document = known.document
-    in_force = [
-        requirement for requirement in project.formalized if requirement.entry.status != "retired"
-    ]
+    in_force = project.in_force
     requirements = [
         requirement for requirement in in_force if requirement.id in document.requirements
     ]
@@ -443,9 +399,7 @@ def _report(
     from fretc.attestation.signatures import SIGNERS
     from fretc.report.make import make
 
-    source = read(path)
-    if isinstance(source, Diagnostic):
-        fail(source)
+    source = or_fail(read(path))
     names = [sibling_path(requirements, name) for name in ("fretc.lock", "waivers.toml", SIGNERS)]
     current = make(
         project,

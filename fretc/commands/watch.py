@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import AUDIT_TABLES, plan_of
+from fretc.commands.opening import input_files, planned_project
 from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import PATH, bindings_option, extras, path_option, requirements_option
 from fretc.terminal.output import (
@@ -17,12 +17,14 @@ from fretc.terminal.output import (
     EXIT_VIOLATION,
     fail,
     not_written,
+    or_fail,
     print_diagnostics_below,
     print_status,
     protect,
     write_outputs,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -110,11 +112,9 @@ def watch(
     from fretc.watch.watch import Watch
 
     if evidence is not None and record is None:
-        fail(_needs_recording())
+        fail(diagnostic("evidence_needs_recording"))
     reaction = None if command is None else Reaction(notify.words(command, "--on-violation"))
-    source = chosen(words, follow=follow)
-    if isinstance(source, Diagnostic):
-        fail(source)
+    source = or_fail(chosen(words, follow=follow))
     project, plan, inputs = _planned(requirements, bindings)
     outputs = [Path(name) for name in (record, evidence) if name is not None and name != "-"]
     protect(outputs, [*inputs, *words])
@@ -147,9 +147,7 @@ def _opened(words: Sequence[str], source: Source) -> Sequence[Publisher]:
         return ()
     from fretc.watch.publishing.choice import addresses, chosen
 
-    publishers = chosen(words, source)
-    if isinstance(publishers, Diagnostic):
-        fail(publishers)
+    publishers = or_fail(chosen(words, source))
     for address in addresses(publishers):
         print_status(f"publishes at {address}: open it in Foxglove")
     return publishers
@@ -157,19 +155,10 @@ def _opened(words: Sequence[str], source: Source) -> Sequence[Publisher]:
 
 def _planned(requirements: str, bindings: str | None) -> tuple[Project, Plan, Sequence[str]]:
     """The audit plan, and its input files."""
-    from compiler.project.folder import load
-    from compiler.project.paths import companions, requirement_files, sibling_path
-
-    files = requirement_files(requirements)
-    if isinstance(files, Diagnostic):
-        fail(files)
-    project = load(
-        files, bindings or sibling_path(requirements, "bindings.toml"), reads=AUDIT_TABLES
-    )
-    plan = plan_of(project, requirements)
+    project, plan = planned_project(requirements, bindings)
     if plan.declarations.clock.effective_lateness is None:
         fail(_needs_lateness(plan))
-    return project, plan, (*files, *companions(files), *([bindings] if bindings else []))
+    return project, plan, input_files(project, bindings)
 
 
 def _status(runs: Sequence[RunEnded]) -> int:
@@ -184,10 +173,10 @@ def _audited(
 ) -> int:
     """Audit the recordings and write the evidence."""
     from fretc.audit.many_logs import local_executor
-    from fretc.commands.audit_progress import audit_in_memory
+    from fretc.commands.audit_logs import audit_in_memory
 
     if not logs:
-        fail(Diagnostic(Code.NOTHING_TO_DO, "nothing was recorded: there is no evidence"))
+        fail(diagnostic("nothing_recorded"))
     result = audit_in_memory(plan, logs, local_executor(1))
     print_diagnostics_below(project.answered(result.diagnostics), ())
     write_outputs({Path(evidence): result.evidence}, [*inputs, *logs])
@@ -197,18 +186,8 @@ def _audited(
 def _needs_lateness(plan: Plan) -> Diagnostic:
     source = plan.declarations.source
     start = source.text.find("[clock]")
-    return Diagnostic(
-        Code.NO_LATENESS,
-        f"the clock uses `{plan.declarations.clock.time}`, but the bindings do not say how late "
-        "messages may arrive",
+    return diagnostic(
+        "lateness_missing",
         source.span(start, start + len("[clock]")) if start >= 0 else None,
-        'add `lateness = "50 ms"` under `[clock]`: the longest delay of a message',
-    )
-
-
-def _needs_recording() -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        "`--evidence` needs a recording, and nothing is recorded",
-        help="add `--record run.mcap`",
+        time=plan.declarations.clock.time,
     )

@@ -7,7 +7,7 @@ import signal
 import sys
 import time
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from threading import Event as Flag
 from types import FrameType
 from typing import Protocol
@@ -160,52 +160,37 @@ def watched(
 
     Raises:
         OSError: standard output was closed.
-
-    Raises:
-        OSError: nobody reads any more what is shown.
     """
-    try:
-        _watched(watch, source, output, reaction, publishing, stopped)
-    finally:
+    with ExitStack() as stack:
         if reaction is not None:
-            reaction.end()
-
-
-def _watched(
-    watch: Watch,
-    source: Source,
-    output: Output,
-    reaction: Reaction | None,
-    publishing: Publishing,
-    stopped: Flag,
-) -> None:
-    broken: OSError | None = None
-    try:
-        for item in source.arrivals(watch.topics):
-            for news in watch.take(item):
-                _tell(news, watch, output, reaction)
-            publishing.take(item, watch)
-            if reaction is not None:
-                for problem in reaction.problems():
-                    output.tell(DiagnosticEvent(problem), watch.session)
-            output.refresh(watch.session)
-            if watch.ended or stopped.is_set():
-                break
-    except OSError as error:
-        broken = error
-    finally:
-        source.close()
-        for news in watch.finish():
-            with suppress(OSError) if broken is not None else nullcontext():
-                _tell(news, watch, output, reaction)
-        publishing.end(watch)
-    if broken is not None:
-        raise broken
-    output.end(watch.session)
-    if reaction is not None:
-        reaction.wait()
-        for problem in reaction.problems():
-            output.tell(DiagnosticEvent(problem), watch.session)
+            stack.callback(reaction.end)
+        broken: OSError | None = None
+        try:
+            for item in source.arrivals(watch.topics):
+                for news in watch.take(item):
+                    _tell(news, watch, output, reaction)
+                publishing.take(item, watch)
+                if reaction is not None:
+                    for problem in reaction.problems():
+                        output.tell(DiagnosticEvent(problem), watch.session)
+                output.refresh(watch.session)
+                if watch.ended or stopped.is_set():
+                    break
+        except OSError as error:
+            broken = error
+        finally:
+            source.close()
+            for news in watch.finish():
+                with suppress(OSError) if broken is not None else nullcontext():
+                    _tell(news, watch, output, reaction)
+            publishing.end(watch)
+        if broken is not None:
+            raise broken
+        output.end(watch.session)
+        if reaction is not None:
+            reaction.wait()
+            for problem in reaction.problems():
+                output.tell(DiagnosticEvent(problem), watch.session)
 
 
 def _tell(news: WatchEvent, watch: Watch, output: Output, reaction: Reaction | None) -> None:

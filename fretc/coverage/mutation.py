@@ -17,7 +17,7 @@ from compiler.formalization.resolution import with_propositions
 from compiler.project.project import Project
 from compiler.situations.mutants import Mutant, mutants
 from compiler.targets.python import monitor as monitors
-from fretc.audit.measurements.judgement import Judgement, judge_each
+from fretc.audit.measurements.judgement import Judgement, judge
 from fretc.audit.plan import Plan
 from fretc.audit.pool import WorkerDied, killed_diagnostic, map_processes
 from fretc.logs.reader import read
@@ -181,7 +181,7 @@ def judgements(
     columns = {name: truths.columns.get(name, unknown) for name in monitor.PROPOSITIONS}
     if cut is not None:
         cut = {name: cut.get(name) for name in columns}
-    return judge_each(monitor, columns, cut, ticks, intact=intact, end=end)
+    return judge(monitor, columns, cut, ticks, intact=intact, end=end)
 
 
 def difference(own: Judgement, other: Judgement) -> Difference | None:

@@ -16,7 +16,7 @@ from fretc.coverage.coverage import (
     counts,
 )
 from fretc.coverage.directions import Directions, is_complete, unseen
-from fretish.bindings.amounts import seconds
+from fretish.bindings.amounts import count_of, seconds
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.status_symbols import StatusSymbol
 
@@ -63,7 +63,9 @@ def _requirement(
     if not of:
         yield f"{signs.UNKNOWN.glyph} {title}: situations not measured", signs.UNKNOWN.colour
         return
-    unmeasured = f", not measured in {_times(len(one.unmeasured), 'run')}" if one.unmeasured else ""
+    unmeasured = (
+        f", not measured in {count_of(len(one.unmeasured), 'run')}" if one.unmeasured else ""
+    )
     yield f"{sign.glyph} {title}: {seen} of {of} situations seen{unmeasured}", sign.colour
     for situation in one.situations:
         if every or situation.standing is not CoverageStatus.SEEN:
@@ -95,7 +97,7 @@ def sign_of(standing: CoverageStatus) -> StatusSymbol:
 def _standing(one: RecordedSituation, runs: tuple[str, ...]) -> str:
     match one.standing:
         case CoverageStatus.SEEN:
-            many = f"seen in {_times(len(one.seen), 'run')}, first" if len(runs) > 1 else "seen"
+            many = f"seen in {count_of(len(one.seen), 'run')}, first" if len(runs) > 1 else "seen"
             return f"{many} {_first(one.seen, runs)}"
         case CoverageStatus.PERHAPS:
             return f"perhaps {_first(one.perhaps, runs)}, where some values are unknown"
@@ -125,7 +127,7 @@ def _runs(covered: Coverage, *, every: bool) -> Iterator[Line]:
     listed = covered.runs if every else covered.runs[:_MOST_NAMED]
     for place, name in enumerate(listed):
         only = f", {alone[place]} of them that no other run shows" if alone[place] else ""
-        yield f"{name}: {_times(shown[place], 'situation')}{only}", None
+        yield f"{name}: {count_of(shown[place], 'situation')}{only}", None
     if len(listed) < len(covered.runs):
         yield f"and {len(covered.runs) - len(listed):,} more runs: `-v` lists them", None
 
@@ -140,7 +142,7 @@ def _least(covered: Coverage) -> Iterator[Line]:
     how = "the smallest set" if least.is_exact else "a smaller set may exist"
     verb = "shows" if len(least.runs) == 1 else "show"
     yield (
-        f"{len(least.runs)} of {_times(len(runs), 'run')} {verb} all that is seen ({how}): "
+        f"{len(least.runs)} of {count_of(len(runs), 'run')} {verb} all that is seen ({how}): "
         f"{', '.join(names)}{more}",
         None,
     )
@@ -149,8 +151,8 @@ def _least(covered: Coverage) -> Iterator[Line]:
 def totals(covered: Coverage, directions: Directions) -> Line:
     """`2 runs x 15 requirements: 84 of 190 situations seen, 12 perhaps, 94 never`."""
     head = (
-        f"{_times(len(covered.runs), 'run')} \N{MULTIPLICATION SIGN} "
-        f"{_times(len(covered.requirements), 'requirement')}"
+        f"{count_of(len(covered.runs), 'run')} \N{MULTIPLICATION SIGN} "
+        f"{count_of(len(covered.requirements), 'requirement')}"
     )
     left = sum(1 for _ in unseen(covered, directions))
     known = f"; {left:,} are not seen yet that a run can show" if directions else ""
@@ -163,10 +165,6 @@ def in_counts(requirements: Sequence[RequirementCoverage]) -> str:
     found = counts(requirements)
     rest = [f"{found[status]:,} {status}" for status in [*CoverageStatus][1:] if found[status]]
     blank = sum(not requirement.situations for requirement in requirements)
-    rest += [f"{_times(blank, 'requirement')} not measured"] if blank else []
+    rest += [f"{count_of(blank, 'requirement')} not measured"] if blank else []
     seen = f"{found[CoverageStatus.SEEN]:,} of {found.total():,} situations seen"
     return ", ".join([seen, *rest])
-
-
-def _times(count: int, noun: str) -> str:
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"

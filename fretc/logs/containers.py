@@ -11,12 +11,13 @@ from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Sink
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Gap
-from fretc.logs.storage import bags, storage_diagnostics
+from fretc.logs.storage import bags
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.inputs import Input
 from fretc.logs.storage.parts import Part
 from fretc.logs.storage.splits import unclosed_backup
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.limits import extend_budget
 
@@ -38,7 +39,7 @@ def part(
     """
     extend_budget(log.size)
     contents = _read(log, sink, integrity, place, wanted)
-    return log_diagnostics.changed(place) if log.changed() else contents
+    return diagnostic("changed_log", place) if log.changed() else contents
 
 
 def only_grows(log: Input) -> bool:
@@ -53,7 +54,7 @@ def _read(
     log.stream.seek(0)
     start = log.stream.read(_BEGINNING)
     if not start:
-        return log_diagnostics.empty(place)
+        return diagnostic("empty_log", place)
     if integrity is not Integrity.INDEX:
         log.begin()
     for magic, read in CONTAINERS.items():
@@ -71,7 +72,7 @@ def _bag(
     wanted: Collection[str],
 ) -> Part | Diagnostic:
     if log.file is None or log.same is None:
-        return storage_diagnostics.bag_of_no_file(place)
+        return diagnostic("bag_of_no_file", place)
     contents = bags.read(log.file, log.same, start, sink, place)
     if isinstance(contents, Diagnostic):
         return contents
@@ -101,12 +102,12 @@ def _mcap(
     held = contents(log.stream, log.size, sink, integrity, wanted)
     if held.span is not None:
         digest = log.sha256() if held.checked.hashed else held.summary_sha256
-        notes = (storage_diagnostics.without_crc(place),) if held.unprotected else ()
+        notes = (diagnostic("without_crc", place),) if held.unprotected else ()
         return Part(digest, log.size, held.span, held.damages, notes, held.checked, held.described)
     if held.cut is not None:
         return log_diagnostics.truncated(held.cut, place)
     if held.damages:
-        return log_diagnostics.nothing_whole(held.damages[0][0], place)
+        return diagnostic("no_whole_message", place, description=held.damages[0][0].description)
     return Part(log.sha256(), log.size, None, ())
 
 

@@ -12,7 +12,8 @@ from types import MappingProxyType
 
 from fretish.bindings.declarations import LabelSource
 from fretish.bindings.tables.labels import MOST_LABELS, is_label
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.reading import name_patterns
 
 LONGEST = 200
@@ -83,32 +84,18 @@ def given(texts: Sequence[str]) -> Labels | Diagnostic:
     for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not is_label(name) or not 0 < len(value) <= LONGEST:
-            return Diagnostic(
-                Code.BAD_LABEL,
-                f"`--label {_short(text)}` is no label",
-                help=f"write `--label version=2.1`: a name, `=`, up to {LONGEST} characters",
-            )
+            return diagnostic("not_a_label", text=_short(text), longest=LONGEST)
         if name in labels_given:
-            return Diagnostic(
-                Code.BAD_LABEL, f"`--label {name}=...` is given twice", help="remove one of them"
-            )
+            return diagnostic("label_given_twice", name=name)
         labels_given[name] = value
     if len(labels_given) > MOST_LABELS:
-        return Diagnostic(
-            Code.BAD_LABEL,
-            f"there are {len(labels_given)} labels; at most {MOST_LABELS} are allowed",
-        )
+        return diagnostic("too_many_labels", count=len(labels_given), most=MOST_LABELS)
     return labels_given
 
 
 def _conflict(name: str) -> Diagnostic:
     """F552, with equal text for all logs, so that many of them are one warning."""
-    return Diagnostic(
-        Code.LABEL_CONFLICT,
-        f"sources of the label `{name}` give one run different values",
-        help="the command line takes precedence, then the sources in the order of `[run.label]`",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("label_conflict", name=name)
 
 
 def _none(name: str, sources: Sequence[LabelSource], *, is_given: bool) -> Diagnostic:
@@ -116,12 +103,7 @@ def _none(name: str, sources: Sequence[LabelSource], *, is_given: bool) -> Diagn
     texts = (f"{'path' if source.is_path else 'metadata'}:{source.text}" for source in sources)
     where = " or ".join(f"`{text}`" for text in texts)
     what = f"is empty, or longer than {LONGEST} characters" if is_given else "has no value"
-    return Diagnostic(
-        Code.NO_LABEL,
-        f"a run has no label `{name}`: {where} {what}",
-        help=f"give it with `--label {name}=...`, or fix its sources in `[run.label]`",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("no_label", name=name, where=where, what=what)
 
 
 def _short(text: str) -> str:

@@ -1,4 +1,4 @@
-"""Diagnostics about a log: one function for each message (F400 to F418).
+"""Diagnostics about a log whose values are computed from signals, clocks and damage.
 
 `place` is the log itself; a diagnostic about one signal points at its line of the bindings. Times
 are nanoseconds.
@@ -19,8 +19,9 @@ from fretish.bindings.amounts import duration, seconds
 from fretish.bindings.declarations import Signal, short_type
 from fretish.bindings.words import listed
 from fretish.clock import Clock, TimeSource
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, did_you_mean, suggestion
 from fretish.diagnostics.extras import install_help
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.toml_text import as_key
 
@@ -28,26 +29,6 @@ _SECOND = 10**9
 _MOST = 20
 
 # The whole file
-
-
-def changed(place: Span) -> Diagnostic:
-    """F903: the bytes that were read and those that were hashed may differ."""
-    return Diagnostic(
-        Code.UNREADABLE,
-        "the log was changed while it was read",
-        place,
-        "wait until its recording or its copy is complete",
-    )
-
-
-def empty(place: Span) -> Diagnostic:
-    """A log without bytes, or without messages."""
-    return Diagnostic(
-        Code.EMPTY_LOG,
-        "the log holds no message",
-        place,
-        "was the recorder stopped at once, or did it subscribe to no topic?",
-    )
 
 
 _PACKED = {
@@ -65,48 +46,19 @@ def not_a_log(start: bytes, place: Span) -> Diagnostic:
     """A file of another kind, recognized by its first bytes."""
     for magic, (codec, command) in _PACKED.items():
         if start.startswith(magic):
-            return Diagnostic(
-                Code.NOT_A_LOG,
-                f"the whole file is compressed with {codec}",
-                place,
-                f"unpack it first: `{command} FILE`; MCAP has a compression of its own",
-            )
-    return Diagnostic(
-        Code.NOT_A_LOG,
-        "it is not a log: neither MCAP, nor a ROS 1 bag, nor an SQLite file of rosbag2",
-        place,
-        "name an MCAP file, a ROS 1 bag or a rosbag2 folder",
-    )
+            return diagnostic("compressed_log", place, codec=codec, command=command)
+    return diagnostic("not_a_log", place)
 
 
 def truncated(cut: int, place: Span) -> Diagnostic:
     """A log without an end, and without a whole message before byte `cut`."""
-    return Diagnostic(
-        Code.TRUNCATED_LOG,
-        f"the log breaks off after byte {cut}: no message in it is whole",
-        place,
-        "copy the log again from where it was recorded",
-    )
-
-
-def nothing_whole(damage: Damage, place: Span) -> Diagnostic:
-    """A log with messages, none of which is whole."""
-    return Diagnostic(
-        Code.DAMAGED_CHUNK,
-        f"no message of the log can be read: {damage.description}",
-        place,
-        "copy the log again from where it was recorded",
-    )
+    return diagnostic("truncated_log", place, cut=cut)
 
 
 def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
     """A log with so many ticks that a time must be wrong."""
-    return Diagnostic(
-        Code.UNREADABLE_LOG,
-        f"the log lasts {duration(length / _SECOND)}, which is {ticks} ticks: "
-        f"a message has a wrong time ({clock.time})",
-        place,
-        "use another `time` under `[clock]`, or a longer `tick`",
+    return diagnostic(
+        "log_too_long", place, length=duration(length / _SECOND), ticks=ticks, time=clock.time
     )
 
 
@@ -145,11 +97,8 @@ def few(diagnostics: list[Diagnostic], place: Span) -> list[Diagnostic]:
     """At most a page of diagnostics; the last one counts the others."""
     if len(diagnostics) <= _MOST:
         return diagnostics
-    more = f"the log is damaged in {len(diagnostics) - _MOST} more places"
-    return [
-        *diagnostics[:_MOST],
-        Diagnostic(Code.DAMAGED_CHUNK, more, place, diagnostics[0].help, Severity.WARNING),
-    ]
+    more, help_ = len(diagnostics) - _MOST, diagnostics[0].help
+    return [*diagnostics[:_MOST], diagnostic("more_damage", place, more=more, help=help_)]
 
 
 # One topic
@@ -157,29 +106,23 @@ def few(diagnostics: list[Diagnostic], place: Span) -> list[Diagnostic]:
 
 def no_message(topic: str, span: Span | None) -> Diagnostic:
     """F405: the log declares the topic and has no message of it."""
-    return Diagnostic(
-        Code.NO_TOPIC,
-        f"the log holds no message of `{topic}`",
-        span,
-        "the topic was recorded, but nothing was published on it",
-    )
+    return diagnostic("no_message", span, topic=topic)
 
 
 def no_topic(topic: str, topics: Collection[str], span: Span | None) -> Diagnostic:
     """F405, with the topics that are in the log."""
-    near = suggestion(topic, topics)
     listed = ", ".join(sorted(topics)[:8]) + (", ..." if len(topics) > 8 else "")
-    return Diagnostic(
-        Code.NO_TOPIC,
-        f"the topic `{topic}` is not in the log",
+    return diagnostic(
+        "no_topic",
         span,
-        f"did you mean `{near}`?" if near else f"it holds {listed}",
+        topic=topic,
+        help=did_you_mean(topic, topics, f"it holds {listed}"),
     )
 
 
 def no_field(signal: Signal, error: FieldError) -> Diagnostic:
     """A message without the number that the signal reads."""
-    return Diagnostic(Code.NO_FIELD, f"in `{signal.path.topic}` {error}", signal.span, error.fix)
+    return diagnostic("no_field", signal.span, topic=signal.path.topic, error=error, help=error.fix)
 
 
 def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
@@ -187,13 +130,14 @@ def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
     name = ".".join(signal.path.fields)
     numbers = [path.removesuffix("[:]") for path in paths]
     what = "word" if signal.values else "number"
-    near = suggestion(name, numbers)
     first = f"{', '.join(numbers[:8])}{', ...' if len(numbers) > 8 else ''}"
-    return Diagnostic(
-        Code.NO_FIELD,
-        f"no message of `{signal.path.topic}` states a {what} in `{name}`",
+    return diagnostic(
+        "never_stated",
         signal.span,
-        f"did you mean `{near}`?" if near else f"they state {first or f'no {what} at all'}",
+        topic=signal.path.topic,
+        what=what,
+        name=name,
+        help=did_you_mean(name, numbers, f"they state {first or f'no {what} at all'}"),
     )
 
 
@@ -202,22 +146,19 @@ def no_constant(signal: Signal, known: Mapping[str, int]) -> Diagnostic:
     name = ".".join(signal.path.fields)
     missing = [word for word in signal.values if word not in known]
     if not missing:
-        message = f"two values of `{signal.name}` have the same number in `{name}`"
-        fix = "remove one of them"
-    else:
-        near = _constant(missing[0], known)
-        listed = f"it names {', '.join(list(known)[:8])}{', ...' if len(known) > 8 else ''}"
-        message = (
-            f"`{name}` of `{signal.path.topic}` is a number, and the definition of its messages "
-            f"has no constant `{missing[0]}`"
-        )
-        fix = (
-            f"did you mean `{near}`?"
-            if near
-            else f"{listed if known else 'it names none'}; or write the number of each value: "
-            f"`values = {{ {as_key(missing[0])} = 0 }}`"
-        )
-    return Diagnostic(Code.UNKNOWN_WORD, message, signal.span, fix)
+        return diagnostic("equal_constants", signal.span, signal=signal.name, name=name)
+    near = _constant(missing[0], known)
+    listed = f"it names {', '.join(list(known)[:8])}{', ...' if len(known) > 8 else ''}"
+    fix = (
+        f"did you mean `{near}`?"
+        if near
+        else f"{listed if known else 'it names none'}; or write the number of each value: "
+        f"`values = {{ {as_key(missing[0])} = 0 }}`"
+    )
+    topic = signal.path.topic
+    return diagnostic(
+        "no_constant", signal.span, name=name, topic=topic, constant=missing[0], help=fix
+    )
 
 
 def _constant(word: str, known: Mapping[str, int]) -> str | None:
@@ -229,126 +170,101 @@ def _constant(word: str, known: Mapping[str, int]) -> str | None:
 
 def foreign_value(signal: Signal, foreign: UnmappedSamples, count: int, after: int) -> Diagnostic:
     """F423: some samples are not among the signal's values; the first comes at `after` seconds."""
-    near = suggestion(foreign.text, signal.values)
     is_number = re.fullmatch(r"-?[\d.]+", foreign.text) is not None
     if is_number and not signal.numbers:
         fix = "give the number of each value: `values = { drive = 0 }`"
     elif signal.numbers and not is_number:
         fix = 'the field is a text: `values = ["drive"]`'
     else:
-        fix = f"did you mean `{near}`?" if near else "add this one if it is valid"
-    return Diagnostic(
-        Code.FOREIGN_VALUE,
-        f"{foreign.count} of {count} samples of `{signal.name}` are not among its values, the "
-        f"first one `{foreign.text}` at {_seconds(after)}: they are unknown",
+        fix = did_you_mean(foreign.text, signal.values, "add this one if it is valid")
+    return diagnostic(
+        "foreign_value",
         signal.span,
-        f"its values are {listed(signal.values)}; {fix}",
-        Severity.WARNING,
+        unmapped=foreign.count,
+        count=count,
+        signal=signal.name,
+        sample=foreign.text,
+        time=_seconds(after),
+        values=listed(signal.values),
+        advice=fix,
     )
 
 
 def no_truth(signal: Signal, foreign: UnmappedSamples, count: int, after: int) -> Diagnostic:
     """F424: some samples of a signal that is read as a truth value are neither 0 nor 1."""
-    return Diagnostic(
-        Code.NO_TRUTH,
-        f"`{signal.name}` stands for a truth value, and {foreign.count} of {count} samples are "
-        f"neither 1 nor 0, the first one {foreign.text} at {_seconds(after)}: they are unknown",
+    return diagnostic(
+        "no_truth",
         signal.span,
-        f"if it is a number, compare it: `{signal.name} > 0`",
-        Severity.WARNING,
+        signal=signal.name,
+        unmapped=foreign.count,
+        count=count,
+        sample=foreign.text,
+        time=_seconds(after),
     )
 
 
 def wrong_type(signal: Signal, actual: str) -> Diagnostic:
     """A topic with another type than the signal declares."""
-    return Diagnostic(
-        Code.WRONG_TYPE,
-        f"`{signal.path.topic}` is of type `{short_type(actual)}` in the log, "
-        f"not `{short_type(signal.type or '')}`",
+    return diagnostic(
+        "wrong_type",
         signal.span,
-        f'write `type = "{short_type(actual)}"`, and check that `path` still fits',
+        topic=signal.path.topic,
+        type=short_type(actual),
+        declared=short_type(signal.type or ""),
     )
 
 
 def several_types(signal: Signal, types: Sequence[str]) -> Diagnostic:
     """F421: the topic has messages of more than one type, and the signal names none."""
     *names, last = [f"`{name}`" if name else "no type" for name in types]
-    return Diagnostic(
-        Code.SEVERAL_TYPES,
-        f"`{signal.path.topic}` has messages of {', '.join(names)} and {last}: "
-        f"`{signal.name}` is read from all of them",
+    return diagnostic(
+        "several_types",
         signal.span,
-        "a field of the same name may mean something else there; "
-        f'with `type = "{types[0] or types[-1]}"` a log with any other is refused',
-        Severity.WARNING,
+        topic=signal.path.topic,
+        names=", ".join(names),
+        last=last,
+        signal=signal.name,
+        first=types[0] or types[-1],
     )
 
 
 def unknown_encoding(signal: Signal, why: str) -> Diagnostic:
     """A topic whose messages cannot be decoded, or only with an extra that is not installed."""
     if isinstance(why, MissingExtra):
-        return Diagnostic(
-            Code.MISSING_EXTRA,
-            f"`{signal.path.topic}` cannot be read: {why}",
+        return diagnostic(
+            "encoding_needs_extra",
             signal.span,
-            install_help(why.extra),
+            topic=signal.path.topic,
+            why=why,
+            help=install_help(why.extra),
         )
-    return Diagnostic(
-        Code.UNKNOWN_ENCODING,
-        f"`{signal.path.topic}` cannot be read: {why}",
-        signal.span,
-        "fretc reads messages of ROS 2 (cdr with ros2msg or ros2idl), ROS 1 (ros1 with ros1msg), "
-        "JSON (with or without jsonschema) and Protobuf",
-    )
+    return diagnostic("unknown_encoding", signal.span, topic=signal.path.topic, why=why)
 
 
 def bad_messages(signal: Signal, bad: int, count: int) -> Diagnostic:
     """A topic with single messages that cannot be decoded."""
-    return Diagnostic(
-        Code.BAD_MESSAGE,
-        f"{bad} of {count} messages of `{signal.path.topic}` cannot be decoded: their samples are "
-        "unknown",
-        signal.span,
-        "the recorder and the publisher may differ in the type's definition",
-    )
+    return diagnostic("bad_messages", signal.span, bad=bad, count=count, topic=signal.path.topic)
 
 
 def out_of_order(signal: Signal, late: int, count: int) -> Diagnostic:
     """A topic whose messages are out of order."""
-    return Diagnostic(
-        Code.OUT_OF_ORDER,
-        f"{late} of {count} messages of `{signal.path.topic}` are out of order: they are sorted "
-        "by time",
-        signal.span,
-        "check the clocks of publisher and recorder",
-        Severity.WARNING,
-    )
+    return diagnostic("out_of_order", signal.span, late=late, count=count, topic=signal.path.topic)
 
 
 def unstamped(signal: Signal, shift: int) -> Diagnostic:
     """A topic without stamps; the stamps of others differ by `shift` nanoseconds from log times."""
-    message = f"the messages of `{signal.path.topic}` have no header.stamp: their log_time is used"
     if shift < _SECOND:
-        return Diagnostic(Code.NO_FIELD, message, signal.span, severity=Severity.NOTE)
-    return Diagnostic(
-        Code.NO_FIELD,
-        f"{message}, which is {duration(shift / _SECOND)} away from the stamps of the other topics",
-        signal.span,
-        'two clocks are mixed: use `time = "log_time"` under `[clock]`',
-        Severity.WARNING,
-    )
+        return diagnostic("unstamped", signal.span, topic=signal.path.topic)
+    away = duration(shift / _SECOND)
+    return diagnostic("unstamped_beside_others", signal.span, topic=signal.path.topic, away=away)
 
 
 def zero_stamps(
     topic: str, place: Span | None, zero: int, count: int, time: TimeSource
 ) -> Diagnostic:
     """F416: the publisher or the recorder never set the time of some messages."""
-    return Diagnostic(
-        Code.ZERO_STAMP,
-        f"{zero} of {count} messages of `{topic}` have the time 0: their samples are unknown",
-        place,
-        _other_time(time),
-        Severity.WARNING,
+    return diagnostic(
+        "zero_stamps", place, zero=zero, count=count, topic=topic, help=_other_time(time)
     )
 
 
@@ -356,13 +272,15 @@ def still_clock(
     topic: str, place: Span | None, same: int, count: int, time: TimeSource
 ) -> Diagnostic:
     """F420: many messages in a row have the same time."""
-    return Diagnostic(
-        Code.STILL_CLOCK,
-        f"the clock of `{topic}` stands still: {same} of {count} messages have the {time} of "
-        f"{STILL_RUN - 1} or more neighbours",
+    return diagnostic(
+        "still_clock",
         place,
-        f"{_other_time(time)}; what happened between them counts as one instant",
-        Severity.WARNING,
+        topic=topic,
+        same=same,
+        count=count,
+        time=time,
+        neighbours=STILL_RUN - 1,
+        advice=_other_time(time),
     )
 
 
@@ -375,27 +293,24 @@ def _other_time(time: TimeSource) -> str:
 def clock_jumps(signal: Signal, jumps: int, largest: int) -> Diagnostic:
     """F417: declared time minus log time changes by more than a second between messages."""
     times = "once" if jumps == 1 else f"{jumps} times, at most"
-    return Diagnostic(
-        Code.CLOCK_JUMP,
-        f"the clock of `{signal.path.topic}` jumps against log_time {times} by "
-        f"{duration(largest / _SECOND)}",
+    return diagnostic(
+        "clock_jumps",
         signal.span,
-        "a clock was set, a simulation was restarted, or messages were delayed: durations around "
-        "the jump are unreliable",
-        Severity.WARNING,
+        topic=signal.path.topic,
+        times=times,
+        largest=duration(largest / _SECOND),
     )
 
 
 def mixed_clocks(signal: Signal, other: str, apart: int) -> Diagnostic:
     """F418: the stamps of two topics differ by more than a second, measured by log times."""
-    return Diagnostic(
-        Code.MIXED_CLOCKS,
-        f"the stamps of `{signal.path.topic}` are {duration(abs(apart) / _SECOND)} "
-        f"{'ahead of' if apart > 0 else 'behind'} those of `{other}`, measured by their "
-        "recording times",
+    return diagnostic(
+        "mixed_clocks",
         signal.span,
-        'two clocks are mixed: use `time = "log_time"` under `[clock]`, or set the clocks',
-        Severity.WARNING,
+        topic=signal.path.topic,
+        apart=duration(abs(apart) / _SECOND),
+        direction="ahead of" if apart > 0 else "behind",
+        other=other,
     )
 
 

@@ -38,6 +38,7 @@ from fretc.logs.watch_records import watched
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import with_budget
 
@@ -224,7 +225,7 @@ def _file(
     if isinstance(part, Diagnostic):
         return part
     if part.span is None:
-        return log_diagnostics.empty(place)
+        return diagnostic("empty_log", place)
     damages, notes = (
         [(place, *damage) for damage in part.damages],
         (*part.notes, *_alone(path, place)),
@@ -255,7 +256,7 @@ def _beginning(
     run = _file(path, log, asked, sink, integrity, place)
     if isinstance(run, Diagnostic):
         return run
-    return replace(run, notes=(*run.notes, storage_diagnostics.grown(log.size, place)))
+    return replace(run, notes=(*run.notes, diagnostic("grown_log", place, size=f"{log.size:,}")))
 
 
 def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
@@ -287,7 +288,7 @@ def _folder(
     if isinstance(about, Diagnostic):
         return about
     if about.compressed:
-        return storage_diagnostics.compressed_folder(about.compressed, place)
+        return diagnostic("compressed_run", place, mode=about.compressed)
     paths = [os.path.join(about.path, name) for name in about.files]
     places = [Source(name_of(path), "").span() for path in paths]
     found: list[Part | Diagnostic] = []
@@ -303,7 +304,7 @@ def _folder(
     spans = [part.span for part in parts if part.span is not None]
     if not spans:
         wrong = [part for part in found if isinstance(part, Diagnostic)]
-        return wrong[0] if wrong else log_diagnostics.empty(place)
+        return wrong[0] if wrong else diagnostic("empty_log", place)
     damages = list(_losses(about, places, found))
     if about.messages not in (None, sink.counted) and not damages:
         lost = (min(a for a, _ in spans), max(b for _, b in spans))

@@ -28,7 +28,8 @@ from fretc.logs.signals.traces import proposition_states
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.expressions import ticks_back
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from monitors.kernel.verdicts import Truth
 from monitors.ticking import Ticking, late
 
@@ -238,25 +239,12 @@ class Stream:
 
     def _untimely(self, topic: str, time: int) -> Diagnostic | None:
         if time == 0:
-            return Diagnostic(
-                Code.ZERO_STAMP,
-                f"a message of `{topic}` has the time 0: its clock was never set",
-                help="drop the message, or give it the time at which it was received",
-            )
+            return diagnostic("stream_time_zero", topic=topic)
         if not 0 < time < LATEST:
-            return Diagnostic(
-                Code.BAD_MESSAGE,
-                f"a message of `{topic}` has the time {time}, which is out of range",
-                help="give the time in nanoseconds",
-            )
+            return diagnostic("stream_time_out_of_range", topic=topic, time=time)
         passed = self._ticking.passed
         if time < passed:
-            return Diagnostic(
-                Code.OUT_OF_ORDER,
-                f"a message of `{topic}` is {passed - time} ns late: the ticks up to "
-                f"{passed} ns are judged",
-                help="advance the time only as far as no earlier message can arrive any more",
-            )
+            return diagnostic("stream_message_late", topic=topic, late=passed - time, passed=passed)
         return None
 
     @property
@@ -293,11 +281,7 @@ class Stream:
         if (over := self._over()) is not None:
             return over
         if not 0 <= time < LATEST:
-            return Diagnostic(
-                Code.BAD_MESSAGE,
-                f"time cannot advance to {time}: it is out of range",
-                help="give the time in nanoseconds",
-            )
+            return diagnostic("stream_time_cannot_advance", time=time)
         if (many := _too_many(self._ticking.due(time))) is not None:
             return many
         times = self._ticking.until(time)
@@ -325,7 +309,7 @@ class Stream:
     def _over(self) -> Diagnostic | None:
         if not self._ended:
             return None
-        return Diagnostic(Code.BAD_USAGE, "the stream has ended", help="begin a new stream")
+        return diagnostic("stream_ended")
 
     def _ticks(self, times: Sequence[int], end: int) -> tuple[Tick, ...]:
         """The values at each of the new ticks, in a log that continues up to `end`."""
@@ -434,11 +418,12 @@ class _Queue:
             return None
         if not self.times or self.times[0] >= passed:
             return None
-        return Diagnostic(
-            Code.SEVERAL_TYPES,
-            f"`{self.signal.name}` was of {_words(self.kind)}, and now is of {_words(kind)}",
+        return diagnostic(
+            "stream_types_differ",
             self.signal.span,
-            help="give all samples of a signal as numbers of one kind",
+            signal=self.signal.name,
+            before=_words(self.kind),
+            now=_words(kind),
         )
 
     def put(self, time: int, value: float, kind: np.dtype[Any] | None, foreign: str) -> None:
@@ -483,17 +468,10 @@ def _topics(declarations: Declarations) -> frozenset[str]:
 def _too_many(times: Sequence[int]) -> Diagnostic | None:
     if not isinstance(times, range) or len(times) <= MOST_TICKS:
         return None
-    return Diagnostic(
-        Code.TOO_LARGE,
-        f"{len(times)} ticks would pass at once",
-        help="give times in nanoseconds, all on one clock",
-    )
+    return diagnostic("too_many_ticks_at_once", ticks=len(times))
 
 
 def _needs_messages(declarations: Declarations) -> Diagnostic:
-    return Diagnostic(
-        Code.MESSAGE_CLOCK,
-        f"the clock ticks with {declarations.clock}: a sample of one signal is not a message",
-        declarations.source.span(0, 0),
-        help="give whole messages, with their topic",
+    return diagnostic(
+        "stream_needs_messages", declarations.source.span(0, 0), clock=declarations.clock
     )

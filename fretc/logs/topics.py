@@ -108,12 +108,4 @@ def _counted(column: Column) -> Topic:
         type=column.type,
         encoding=column.encoding,
         count=column.count,
-        first_ns=None,
-        last_ns=None,
-        longest_gap_ns=None,
-        out_of_order=None,
-        equal_stamps=None,
-        unstamped=None,
-        zero_stamps=None,
-        clock_jumps=None,
     )

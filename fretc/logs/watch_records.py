@@ -21,7 +21,8 @@ from fretc.logs.signals.samples import Gap
 from fretc.logs.topic_columns import Columns
 from fretish.bindings.amounts import seconds
 from fretish.clock import Clock, TimeSource, in_words
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 
 GRID, WATCH = "fretc.grid", "fretc.watch"
@@ -156,31 +157,15 @@ def _taken_over(origin: int | None, until: int, columns: Columns, place: Span) -
         parts.append(f"the grid of ticks begins {in_words(origin - start)} after the first message")
     if until > start:
         parts.append(f"it was watched for {seconds((until - start) / 1e9)}")
-    return Diagnostic(
-        Code.GRID_OF_WATCH,
-        f"recorded by a watch: {', and '.join(parts)}",
-        place,
-        severity=Severity.NOTE,
-    )
+    return diagnostic("watch_grid_taken", place, taken=", and ".join(parts))
 
 
 def _refused(why: str, place: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.FOREIGN_GRID,
-        f"the watch that the log records is ignored: {why}",
-        place,
-        "audit the recording with the same clock as the watch",
-        Severity.WARNING,
-    )
+    return diagnostic("watch_grid_ignored", place, why=why)
 
 
 def _missing(gaps: Sequence[Gap], place: Span) -> Diagnostic:
     length = sum(b - a for a, b in gaps)
     times = "once" if len(gaps) == 1 else f"{len(gaps)} times"
     how = f"{times}, for {seconds(length / 1e9)} in all: messages of these times are unknown"
-    return Diagnostic(
-        Code.MISSED,
-        f"the watch has missed messages {how if gaps else 'at unknown times'}",
-        place,
-        severity=Severity.WARNING,
-    )
+    return diagnostic("watch_missed_messages", place, when=how if gaps else "at unknown times")

@@ -16,13 +16,8 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import TRAITS, Trait, Uninterpreted, boolean, obligation
 from compiler.logic import formula as f
 from compiler.targets.javascript.monitor import Body, body
-from compiler.targets.python.comparisons import (
-    NUMBER,
-    CompiledComparison,
-    InputAdapter,
-    numbers,
-    threshold,
-)
+from compiler.targets.python.comparisons import NUMBER, CompiledComparison, numbers, threshold
+from compiler.targets.python.input_adapter import InputAdapter
 from compiler.targets.target import stem
 from fretc.play.starts import MOST, Start
 from fretc.report.model.phrases import visible

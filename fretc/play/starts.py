@@ -12,7 +12,8 @@ from compiler.explanation.explain import explanation
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.evidence import Document
 from fretc.testing.suite import Suite
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.printer import sentence as printed
 
 Value = bool | int | float | str | None
@@ -104,9 +105,4 @@ def of_analysis(document: Document, changed: Sequence[str]) -> Iterator[Start]:
 
 def stale(path: str, why: str, again: str) -> Diagnostic:
     """A warning that traces of a file are left out because they are outdated."""
-    return Diagnostic(
-        Code.BAD_EVIDENCE,
-        f"traces of `{path}` are left out: {why}",
-        help=f"generate it again: `{again}`",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("stale_traces", path=path, why=why, again=again)

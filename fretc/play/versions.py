@@ -6,16 +6,19 @@ meaning in the bindings, so that both versions have the same runs.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons
+from compiler.project.project import Refused
+from compiler.targets.javascript.monitor import refuse
 from fretc.play.starts import MOST, Start
 from fretc.testing.runs import Absence, difference
 from fretish.bindings.canonical import bound, clock
 from fretish.bindings.declarations import Declarations
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
 
@@ -34,6 +37,25 @@ class Side:
     def ids(self) -> tuple[str, ...]:
         """The ids of all requirements of this version."""
         return (*(requirement.id for requirement in self.requirements), *self.refused)
+
+
+def side(
+    requirements: Sequence[FormalizedRequirement],
+    refusals: Iterable[Refused],
+    declared: Declarations | None,
+) -> tuple[Side, list[Diagnostic]]:
+    """One version, and why some requirements without errors have no monitor.
+
+    Args:
+        requirements: the requirements without errors.
+        refusals: the requirements with errors.
+        declared: the declarations.
+    """
+    mistaken = {refusal.requirement.id: refusal.why[0] for refusal in refusals}
+    refused = {each.id: why for each in requirements if (why := refuse(each)) is not None}
+    reasons = {id: why.message for id, why in (mistaken | refused).items()}
+    known = [each for each in requirements if each.id not in refused]
+    return Side(known, reasons, declared), [*refused.values()]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,33 +7,29 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from types import MappingProxyType
 
 from compiler.files.build_id import __version__
-from compiler.logic.claims import Proof
 from compiler.project.project import Project
-from fretc.analysis.evidence import AnalyzedSet
-from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
 from fretc.audit.evidence.probabilities import AVERAGE
 from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummaries
 from fretc.audit.evidence.schema import Selection
 from fretc.audit.evidence.verdicts import NOT_EXERCISED, RETIRED
-from fretc.audit.measurements.confidence_intervals import CONFIDENCE, SUPPORTED
+from fretc.audit.measurements.confidence_intervals import SUPPORTED
 from fretc.audit.selection.choice import in_words
 from fretc.report.across.assembly import across
 from fretc.report.diagnostics import idle_waivers, stale_evidence
 from fretc.report.front.front import front
 from fretc.report.model import phrases
-from fretc.report.model.assessments import Assessment, assessments
+from fretc.report.model.assessments import Assessment, Inputs, assessments
+from fretc.report.model.marks import verdict_mark
+from fretc.report.model.results import ResultView
 from fretc.report.model.views import (
     SCHEMA,
     Count,
     NotShown,
     Report,
     RequirementView,
-    ResultView,
     Withdrawal,
-    verdict_mark,
     worst_first,
 )
 from fretc.report.sections import reviews
@@ -42,71 +38,36 @@ from fretc.report.sections.matrix import hazard_views, matrix, orphans
 from fretc.report.sections.overall import overall
 from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.reproduction import commands, folder_of, manifest
-from fretc.report.sections.requirement import remark, section
+from fretc.report.sections.requirement import remark, section, situation_views
 from fretc.report.sections.results import is_bounded
 from fretc.report.sections.runs import Run, run_summaries, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.set_analysis.assembly import in_front, in_overall, set_analysis
-from fretc.report.situations import situations
 from fretc.traceability.acceptances import warnings
 from fretc.traceability.artefacts import joint_monitors, shared_products
 from fretc.traceability.lock import Lock, withdrawn_requirements
-from fretc.traceability.waivers import Waiver
-from fretc.verification.ajpf_results import merged
-from fretc.verification.reader import Proofs
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors import kernel
 
 
-def report(
-    project: Project,
-    evidence: EvidenceSource | None,
-    path: str,
-    lock: Lock | None = None,
-    waivers: Mapping[str, Waiver] = MappingProxyType({}),
-    proofs: Proofs | None = None,
-    ajpf: Sequence[Proof] = (),
-    book: SignatureBook = NO_SIGNATURES,
-    together: AnalyzedSet | None = None,
-) -> tuple[Report, Details, tuple[Diagnostic, ...]]:
-    """The report, the evidence behind its rows, and diagnostics about its files.
-
-    Args:
-        project: with or without errors; the report lists unformalized requirements.
-        evidence: None if no run was audited.
-        path: path of the evidence file, which need not exist.
-        lock: None if no requirement is reviewed.
-        waivers: requirement → waiver, for waivers that are valid today.
-        proofs: None if nothing was verified.
-        ajpf: the results of AJPF.
-        book: the checked signatures.
-        together: the file of `fretc analyze`; None if there is none.
-    """
+def report(inputs: Inputs) -> tuple[Report, Details, tuple[Diagnostic, ...]]:
+    """The report, the evidence behind its rows, and diagnostics about its files."""
+    project, evidence = inputs.project, inputs.evidence
+    lock, together = inputs.lock, inputs.together
     briefs = ResultSummaries.of(evidence) if evidence else None
     runs_by_key = runs(briefs)
     all_runs = tuple(runs_by_key.values())
-    all_proofs = merged(proofs.proofs if proofs else (), ajpf)
-    assessed = assessments(project, briefs, lock, waivers, all_proofs, together)
+    assessed = assessments(project, briefs, lock, inputs.waivers, inputs.proofs, together)
     chains = [assessment.standing.chain for assessment in assessed]
     withdrawn = withdrawn_requirements(project.requirements, chains, lock)
     anchors = {assessment.id: assessment.anchor for assessment in reversed(assessed)}
-    shared = shared_products(project.declarations) if all_proofs else ()
-    joint = joint_monitors(project.formalized, all_proofs)
-    exercised = situations(assessed, evidence)
+    shared = shared_products(project.declarations) if inputs.proofs else ()
+    [proof for proof in inputs.proofs if proof.requirement in SHARED]
+    joint = joint_monitors(project.formalized, inputs.proofs)
+    exercised = situation_views(assessed, evidence)
     sections = tuple(
-        section(
-            assessment,
-            project,
-            runs_by_key,
-            anchors,
-            evidence is not None,
-            all_proofs,
-            shared,
-            joint,
-            book,
-            exercised.get(assessment.id),
-        )
-        for assessment in assessed
+        section(each, inputs, runs_by_key, anchors, shared, joint, exercised.get(each.id))
+        for each in assessed
     )
     details = Details(
         evidence, project, {assessment.anchor: assessment for assessment in assessed}, runs_by_key
@@ -119,7 +80,7 @@ def report(
     changes = reviews.changes(assessed, project)
     groups = reviews.change_groups(assessed, changes)
     changed = tuple(reviews.change_sentences(changes, groups))
-    signature_list = signatures(book, assessed, evidence, proofs, together)
+    signature_list = signatures(inputs, assessed)
     overall_result = overall(
         project, assessed, sections, all_runs, reservations, withdrawn, signature_list, changed
     )
@@ -148,23 +109,29 @@ def report(
         fretc=__version__,
         project=folder_of(project),
         components=components,
-        evidence=phrases.place(path) if evidence else "",
+        evidence=phrases.place(inputs.path) if evidence else "",
         audited_by=evidence.fretc if evidence else "",
         overall=overall_result,
         front=in_front(first_screen, analysis),
         runs=run_list,
         claims=_claims(assessed, len(all_runs), evidence.selection if evidence else None),
         counts=_counts(assessed),
-        not_shown=tuple(_not_shown(view) for view in worst_first(sections) if view.reasons),
+        not_shown=tuple(
+            NotShown(view.id, view.title, view.anchor, view.mark, view.reasons)
+            for view in worst_first(sections)
+            if view.reasons
+        ),
         reservations=reservations,
         planned=tuple(plan for view in sections for plan in view.planned if view.status != RETIRED),
-        proofs=proof_views((proof for proof in all_proofs if proof.requirement in SHARED), shared),
-        verification=phrases.place(proofs.file) if proofs else "",
+        proofs=proof_views(
+            (proof for proof in inputs.proofs if proof.requirement in SHARED), shared
+        ),
+        verification=phrases.place(inputs.verification.file) if inputs.verification else "",
         remarks=tuple(remark(diagnostic) for diagnostic in (*project.diagnostics, *checked)),
         hazards=hazard_views(project),
         matrix=rows,
         orphans=orphans(project, assessed, briefs),
-        reviewed=reviews.summary(assessed, book),
+        reviewed=reviews.summary(assessed, inputs.book),
         changes=all_changes,
         withdrawn=tuple(
             Withdrawal(withdrawal.review.requirement, withdrawal.text) for withdrawal in withdrawn
@@ -173,25 +140,20 @@ def report(
         signatures=signature_list,
         requirements=sections,
         assumptions=_assumptions(project, all_runs),
-        commands=commands(project, sections, all_runs, path, proofs, _confidence(evidence)),
-        manifest=manifest(project, sections, all_runs, evidence, proofs, book.signers, together),
+        commands=commands(inputs, sections, all_runs),
+        manifest=manifest(inputs, sections, all_runs),
         across=across(details, [view.anchor for view in worst_first(sections)]),
         change_groups=groups,
         analysis=analysis,
     )
     diagnostics = (
         *(diagnostic for diagnostic in checked if diagnostic.accepted),
-        *stale_evidence(assessed, briefs, path),
+        *stale_evidence(assessed, briefs, inputs.path),
         *idle_waivers(assessed),
-        *book.diagnostics(),
-        *idle_signatures(book, assessed),
+        *inputs.book.diagnostics(),
+        *idle_signatures(inputs.book, assessed),
     )
     return whole, details, diagnostics
-
-
-def _confidence(evidence: EvidenceSource | None) -> float:
-    estimations = evidence.probabilities if evidence else ()
-    return next((estimation.confidence for estimation in estimations), CONFIDENCE)
 
 
 def _checks(
@@ -208,10 +170,6 @@ def _checks(
 _OF_REVIEWS = (Code.CHANGED_SINCE_REVIEW, Code.NOT_REVIEWED)
 
 
-def _not_shown(view: RequirementView) -> NotShown:
-    return NotShown(view.id, view.title, view.anchor, view.mark, view.reasons)
-
-
 def _longest_waits(
     assessed: Sequence[Assessment], sections: Sequence[RequirementView], details: Details
 ) -> Mapping[str, ResultView]:
@@ -222,7 +180,7 @@ def _longest_waits(
         if view.mark.shows and not is_bounded(assessment.requirement)
         if (waiting := [row for row in view.results if row.at_once < row.answers])
     ]
-    return {row.requirement: result for row, result in details.results(rows)}
+    return {row.section: result for row, result in details.results(rows)}
 
 
 def _reservations(view: RequirementView, longest: Mapping[str, ResultView]) -> Sequence[str]:

@@ -9,8 +9,8 @@ from fretc.audit.evidence.verdicts import WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.sections.matrix import unknown_ids
-from fretc.traceability.waivers import idle_waiver
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 
 
@@ -26,25 +26,20 @@ def stale_evidence(
     for assessment in assessments:
         suspicions.setdefault(_suspicions(assessment), []).append(assessment)
     suspect = [
-        Diagnostic(
-            Code.STALE_EVIDENCE,
-            f"the evidence of {phrases.joined([each.id for each in some])} is suspect in "
-            f"{phrases.times(count, 'run')}{' each' if len(some) > 1 else ''}: {why}",
+        diagnostic(
+            "suspect_evidence",
             some[0].entry.wording,
+            requirements=phrases.joined([each.id for each in some]),
+            runs=phrases.times(count, "run"),
+            each=" each" if len(some) > 1 else "",
+            why=why,
             help=again,
-            severity=Severity.WARNING,
         )
         for (count, why), some in suspicions.items()
         if count
     ]
     strange = [
-        Diagnostic(
-            Code.STALE_EVIDENCE,
-            f"there is evidence for {id}, which is not among the requirements",
-            Source(path, "").span(),
-            help=again,
-            severity=Severity.WARNING,
-        )
+        diagnostic("evidence_of_unknown_requirement", Source(path, "").span(), id=id, help=again)
         for id in unknown_ids(assessments, briefs)
     ]
     return (*suspect, *strange)
@@ -60,7 +55,13 @@ def _suspicions(assessment: Assessment) -> tuple[int, str]:
 def idle_waivers(assessments: Sequence[Assessment]) -> tuple[Diagnostic, ...]:
     """F543 for each waiver of another verdict than the present one."""
     return tuple(
-        idle_waiver(assessment.waiver, assessment.verdict)
+        diagnostic(
+            "idle_waiver",
+            assessment.waiver.span,
+            requirement=assessment.waiver.requirement,
+            waived=assessment.waiver.verdict,
+            verdict=assessment.verdict,
+        )
         for assessment in assessments
         if assessment.waiver is not None and assessment.verdict != WAIVED
     )

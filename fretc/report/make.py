@@ -17,13 +17,14 @@ from fretc.audit.store.anywhere import source
 from fretc.audit.store.container import StoreError
 from fretc.report.assembly import report
 from fretc.report.forms.json_text import json_pieces
+from fretc.report.model.assessments import Inputs
 from fretc.report.model.views import Report
 from fretc.report.page.html import html
 from fretc.report.sections.details import Details
 from fretc.traceability.lock import read as read_lock
 from fretc.traceability.waivers import Waiver
 from fretc.traceability.waivers import read as read_waivers
-from fretc.verification.ajpf_results import ajpf_proofs
+from fretc.verification.ajpf_results import ajpf_proofs, merged
 from fretc.verification.reader import read as read_proofs
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -103,18 +104,19 @@ def make(
     proofs_of_ajpf, ajpf_diagnostics = ajpf_proofs(project.formalized, ajpf)
     # A missing file of evidence is only a note: the report shows that nothing was exercised.
     present, notes = (None, (audits,)) if isinstance(audits, Diagnostic) else (audits, ())
+    inputs = Inputs(
+        project,
+        evidence,
+        present,
+        reviews,
+        waivers_in_force,
+        proofs,
+        merged(proofs.proofs if proofs else (), proofs_of_ajpf),
+        signatures,
+        together,
+    )
     try:
-        full_report, details, report_diagnostics = report(
-            project,
-            present,
-            path=evidence,
-            lock=reviews,
-            waivers=waivers_in_force,
-            proofs=proofs,
-            ajpf=proofs_of_ajpf,
-            book=signatures,
-            together=together,
-        )
+        full_report, details, report_diagnostics = report(inputs)
     except StoreError as error:
         return ReportBuild(None, (error.diagnostic,))
     return ReportBuild(

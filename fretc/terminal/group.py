@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, MutableMapping, Sequence
+from collections import UserDict
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from shlex import quote
@@ -13,7 +14,8 @@ from click.shell_completion import CompletionItem
 
 from fretc.terminal.options import PATH
 from fretc.terminal.output import fail
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, suggestion
+from fretish.diagnostics.messages import diagnostic
 
 _OWN = ("-h", "--help", "--version", "--parents")
 """Options of `fretc` itself."""
@@ -21,34 +23,15 @@ DEFAULT = "compile"
 """The command that `fretc FILE...` stands for."""
 
 
-class Registry(MutableMapping[str, click.Command]):
-    """Commands by name; a command's module is imported when it is looked up."""
-
-    def __init__(self, places: Mapping[str, str]) -> None:
-        """The registry of `module:attribute` paths; nothing is imported."""
-        self._places = places
-        self._commands: dict[str, click.Command] = {}
+class Registry(UserDict[str, Any]):
+    """Commands by name, given as `module:attribute`; a module is imported for the first look-up."""
 
     def __getitem__(self, name: str) -> click.Command:
-        if name not in self._commands:
-            module, _, attribute = self._places[name].partition(":")
-            self._commands[name] = getattr(import_module(module), attribute)
-        return self._commands[name]
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._places
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._places)
-
-    def __len__(self) -> int:
-        return len(self._places)
-
-    def __setitem__(self, name: str, command: click.Command) -> None:
-        raise TypeError("a command is added to the places")
-
-    def __delitem__(self, name: str) -> None:
-        raise TypeError("a command is removed from the places")
+        if isinstance(self.data[name], str):
+            module, _, attribute = self.data[name].partition(":")
+            self.data[name] = getattr(import_module(module), attribute)
+        command: click.Command = self.data[name]
+        return command
 
 
 class Commands(click.Group):
@@ -129,15 +112,11 @@ def _is_path(word: str) -> bool:
 
 def _unknown_command(word: str, commands: Sequence[str]) -> Diagnostic:
     if is_sentence(word):
-        return Diagnostic(
-            Code.UNKNOWN_COMMAND,
-            "the argument is a sentence, not a command or a file",
-            help=f"use `fretc explain {quote(word)}`, or pipe the sentence into `fretc -`",
-        )
+        return diagnostic("sentence_as_command", word=quote(word))
     near = suggestion(word, [c for c in commands if c != DEFAULT])
     names = ", ".join(c for c in commands if c != DEFAULT)
-    return Diagnostic(
-        Code.UNKNOWN_COMMAND,
-        f"`{word}` is neither a command of fretc nor a file",
+    return diagnostic(
+        "unknown_command",
+        word=word,
         help=f"did you mean `fretc {near}`?" if near else f"commands: {names}; or name a file",
     )

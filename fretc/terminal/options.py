@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 from click.shell_completion import CompletionItem
 
 from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE, fail
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
+T = TypeVar("T")
 Command = Callable[..., Any]
 LOG_EXTRAS = {
     "bags": "bags (.bag, .db3) and messages defined in IDL",
@@ -100,6 +101,13 @@ requirements_option = path_option(
 bindings_option = path_option(
     "--bindings", help="Bindings file.  [default: bindings.toml beside the requirements]"
 )
+first_bindings_option = path_option(
+    "--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]"
+)
+files_argument = click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
+component_option = click.option(
+    "--component", metavar="NAME", help="Only requirements of this component."
+)
 hazards_option = path_option(
     "--hazards", help="Hazards file.  [default: hazards.toml beside the requirements]"
 )
@@ -110,20 +118,12 @@ def evidence_path(named: str | None) -> str:
     if named is not None:
         return named
     if os.path.lexists(EVIDENCE) and os.path.lexists(STORE):
-        fail(
-            Diagnostic(
-                Code.TWO_EVIDENCES,
-                f"evidence is in `{EVIDENCE}` and in `{STORE}`: one of them is from an earlier "
-                "audit",
-                help="remove the old one, or name the one to use",
-            )
-        )
+        fail(diagnostic("two_evidences", evidence=EVIDENCE, store=STORE))
     return STORE if os.path.lexists(STORE) else EVIDENCE
 
 
 evidence_option = path_option(
     "--evidence",
-    callback=lambda _context, _option, named: evidence_path(named),
     help=f"Evidence, as `fretc audit` writes it.  [default: {EVIDENCE} or {STORE}]",
 )
 verification_option = path_option(
@@ -162,6 +162,11 @@ limit_option = click.option(
 )
 
 
+def grouped(kind: type[T], options: Mapping[str, Any]) -> T:
+    """A dataclass of options; each field has the value of the parameter with its name."""
+    return kind(**{name: options[name] for name in kind.__annotations__})
+
+
 def is_given(name: str) -> bool:
     """Whether the user gave this parameter on the command line."""
     source = click.get_current_context().get_parameter_source(name)
@@ -171,11 +176,5 @@ def is_given(name: str) -> bool:
 def places(arguments: Sequence[str], requirements: str) -> list[str]:
     """Paths of requirements: the arguments, or else `--requirements`; F907 for both."""
     if arguments and is_given("requirements"):
-        fail(
-            Diagnostic(
-                Code.BAD_USAGE,
-                f"requirements are named twice: `{arguments[0]}` and `--requirements`",
-                help="keep one of them",
-            )
-        )
+        fail(diagnostic("requirements_named_twice", argument=arguments[0]))
     return [*arguments] or [requirements]

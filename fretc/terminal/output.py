@@ -9,11 +9,12 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from shlex import quote
-from typing import Any, NoReturn, TextIO
+from typing import Any, NoReturn, TextIO, TypeVar
 
 import click
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import Part, plain, render_all, visible
 from fretish.reading.natural_order import by_place
 
@@ -31,6 +32,16 @@ def fail(*diagnostics: Diagnostic) -> NoReturn:
     """Print the diagnostics and exit with 2."""
     print_diagnostics(diagnostics)
     raise SystemExit(EXIT_USAGE)
+
+
+T = TypeVar("T")
+
+
+def or_fail(value: T | Diagnostic) -> T:
+    """The value; a diagnostic is printed instead, and the command exits with 2."""
+    if isinstance(value, Diagnostic):
+        fail(value)
+    return value
 
 
 _FAILED = "fretc.failed"
@@ -210,6 +221,4 @@ def _styled(text: str, colour: str | None) -> str:
 
 def not_written(path: str, why: str) -> Diagnostic:
     """F905: a file cannot be written."""
-    return Diagnostic(
-        Code.NOT_WRITTEN, f"`{path}` cannot be written: {why}", help="name another file"
-    )
+    return diagnostic("output_not_written", path=path, why=why)

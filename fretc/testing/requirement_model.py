@@ -14,8 +14,8 @@ from typing import assert_never
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Obligation, obligation
 from compiler.formalization.predicates import Past as PastWords
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from compiler.logic.formula import Formula, atoms
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.budget import Budget

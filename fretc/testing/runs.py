@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.resolution import candidates
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams.decision_diagrams import Function
 from compiler.logic.evaluation import evaluate
 from compiler.logic.formula import Formula
 from compiler.situations.mutants import Mutant, mutants

@@ -14,9 +14,9 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import boolean
 from compiler.formalization.predicates import Past
 from compiler.formalization.reference import Letter as Parts
-from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet, Tick, Value
 from fretc.testing.search import Letter

@@ -37,7 +37,7 @@ def warnings(
     """
     refused = unreviewable(project)
     pairs = zip(project.requirements, standings, strict=True)
-    sound = [each for requirement, each in pairs if id(requirement) not in refused]
+    sound = [each for requirement, each in pairs if requirement not in refused]
     new = unreviewed(project, sound) if lock is not None and lock.reviews else ()
     found = project.answered((*checks(project, sound), *new))
     if not project.acceptances:  # No finding about the logs is accepted, so they need not be read.

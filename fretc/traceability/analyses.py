@@ -45,9 +45,7 @@ def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Answ
     if analyzed is None:
         return {}
     document = analyzed.document
-    requirements = [
-        requirement for requirement in project.formalized if requirement.entry.status != "retired"
-    ]
+    requirements = project.in_force
     assumed, _ = assumptions(requirements, project.declarations)
     old = _differences(document.requirements, members(requirements))
     promises = _differences(document.assumptions, members(assumed))

@@ -14,6 +14,7 @@ from compiler.targets.interceptor_options import ASSUMED, assumptions_digest
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.target import Options, Target
 from fretish.bindings.declarations import Declarations
+from fretish.documents import RequirementEntry
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,11 +43,13 @@ def products(requirement: FormalizedRequirement | None) -> tuple[Product, ...]:
     return tuple(product for name in names for product in _of_target(TARGETS[name], requirement))
 
 
-def monitors(products_of: Mapping[int, Sequence[Product]]) -> Mapping[int, str]:
-    """Key of `products_of` → SHA-256 of the monitor, for each monitor that can be generated."""
+def monitors(
+    products_of: Mapping[RequirementEntry, Sequence[Product]],
+) -> Mapping[RequirementEntry, str]:
+    """Requirement → SHA-256 of the monitor, for each monitor that can be generated."""
     return {
-        id: product.sha256
-        for id, some in products_of.items()
+        entry: product.sha256
+        for entry, some in products_of.items()
         for product in some
         if product.target == monitor.TARGET.name and product.sha256
     }

@@ -139,9 +139,9 @@ def _verdict(result: ResultSummary) -> Node:
 def chains(
     project: Project,
     briefs: ResultSummaries | None,
-    artefacts: Mapping[int, Sequence[Product]] | None = None,
+    artefacts: Mapping[RequirementEntry, Sequence[Product]] | None = None,
     proofs: Sequence[Proof] = (),
-    known: Mapping[int, Basis] | None = None,
+    known: Mapping[RequirementEntry, Basis] | None = None,
     analyzed: AnalyzedSet | None = None,
 ) -> tuple[Chain, ...]:
     """The chain of each requirement, in the order of the project.
@@ -149,12 +149,12 @@ def chains(
     Args:
         project: with or without errors; the chain of an unformalized requirement ends early.
         briefs: results of the evidence; None if no run was audited.
-        artefacts: `id()` of a requirement → its products; None: computed by `products`.
+        artefacts: requirement → its products; None: computed by `products`.
         proofs: the results of verification.
         known: the present inputs of a verdict on each requirement; None: computed by `bases`.
         analyzed: the file of `fretc analyze`; None if there is none.
     """
-    requirements = {id(requirement.entry): requirement for requirement in project.formalized}
+    requirements = {requirement.entry: requirement for requirement in project.formalized}
     results = briefs.by_requirement if briefs else {}
     if artefacts is None:
         artefacts = {entry: products_of(requirement) for entry, requirement in requirements.items()}
@@ -162,8 +162,8 @@ def chains(
     return tuple(
         _ChainBuilder(common, entry).build(
             entry,
-            requirements.get(id(entry)),
-            artefacts.get(id(entry), ()),
+            requirements.get(entry),
+            artefacts.get(entry, ()),
             [each for _, each in results.get(entry.id, ())],
             [proof for proof in proofs if proof.requirement == entry.id],
         )
@@ -177,11 +177,11 @@ class _Common:
 
     project: Project
     texts: Mapping[str, RequirementEntry]
-    bases: Mapping[int, Basis]
+    bases: Mapping[RequirementEntry, Basis]
     audited_by: str
     """The version of fretc that wrote the evidence."""
-    acceptances: Mapping[int | None, Sequence[Acceptance]]
-    """`id()` of a requirement → acceptances in its header; None → acceptances in the settings."""
+    acceptances: Mapping[RequirementEntry | None, Sequence[Acceptance]]
+    """Requirement → acceptances in its header; None → acceptances in the settings."""
     shared: Mapping[str, str]
     """Name of each shared product → its SHA-256; empty if there is no proof."""
     topics: frozenset[str]
@@ -195,9 +195,9 @@ class _Common:
 def _common(
     project: Project,
     briefs: ResultSummaries | None,
-    artefacts: Mapping[int, Sequence[Product]],
+    artefacts: Mapping[RequirementEntry, Sequence[Product]],
     proofs: Sequence[Proof],
-    known: Mapping[int, Basis] | None,
+    known: Mapping[RequirementEntry, Basis] | None,
     analyzed: AnalyzedSet | None,
 ) -> _Common:
     shared = shared_products(project.declarations) if proofs else ()
@@ -217,12 +217,10 @@ def _common(
 
 def _by_requirement(
     acceptances: Iterable[Acceptance],
-) -> Mapping[int | None, Sequence[Acceptance]]:
-    found: dict[int | None, list[Acceptance]] = {}
+) -> Mapping[RequirementEntry | None, Sequence[Acceptance]]:
+    found: dict[RequirementEntry | None, list[Acceptance]] = {}
     for acceptance in acceptances:
-        found.setdefault(id(acceptance.requirement) if acceptance.requirement else None, []).append(
-            acceptance
-        )
+        found.setdefault(acceptance.requirement, []).append(acceptance)
     return found
 
 
@@ -231,7 +229,7 @@ class _ChainBuilder:
 
     def __init__(self, common: _Common, requirement: RequirementEntry) -> None:
         self._common, self._project, self._id = common, common.project, requirement.id
-        self._basis = common.bases[id(requirement)]
+        self._basis = common.bases[requirement]
         self._prints: dict[Node, str] = {}
         self._links: dict[Link, None] = {}
         self._outdated_proofs: dict[Node, tuple[Node, ...]] = {}
@@ -325,7 +323,7 @@ class _ChainBuilder:
         """Add the warnings that a reviewer accepts; no verdict depends on them."""
         topics = _topics(requirement, self._project)
         known = self._common.acceptances
-        for acceptance in (*known.get(id(entry), ()), *known.get(None, ())):
+        for acceptance in (*known.get(entry, ()), *known.get(None, ())):
             if acceptance.about != TOPIC or acceptance.subject in ("", *topics):
                 self._accept[acceptance.name] = acceptance.reason
                 self._add(Node(ACCEPTANCE, acceptance.name), print_of_words(acceptance.reason))

@@ -19,7 +19,8 @@ from compiler.targets.target import Options
 from fretc.traceability.changes import in_words
 from fretc.traceability.lock import ReviewedRequirement
 from fretish.bindings.declarations import Role
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors, suggestion
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.expressions import names
 from fretish.printer import expression as printed
@@ -36,11 +37,7 @@ def checks(project: Project, standings: Sequence[ReviewedRequirement]) -> tuple[
         project: with or without errors; requirements that an error affects are skipped.
         standings: requirements with their reviews.
     """
-    requirements = [
-        requirement
-        for requirement in project.sound.formalized
-        if requirement.entry.status != "retired"
-    ]
+    requirements = project.sound.in_force
     diagnostics = [
         d
         for requirement in requirements
@@ -74,14 +71,12 @@ def _own_triggers(requirement: FormalizedRequirement, project: Project) -> Itera
         bound = declared.propositions.get(name)
         if bound is None or bound.role is not Role.OUTPUT or bound.kind != _COMMAND:
             continue
-        yield Diagnostic(
-            Code.OWN_TRIGGER,
-            f"{requirement.id} is triggered by `{name}`, which {requirement.sentence.component} "
-            "itself commands: the requirement holds if nothing is ever commanded",
+        yield diagnostic(
+            "own_trigger",
             _place(requirement, name),
-            help="use a trigger that depends on sensor values, or declare `role` and `kind` "
-            "of the proposition",
-            severity=Severity.WARNING,
+            requirement=requirement.id,
+            name=name,
+            component=requirement.sentence.component,
         )
 
 
@@ -94,13 +89,12 @@ def _place(requirement: FormalizedRequirement, name: str) -> Span:
 def _never_so(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
     """F210 for each part of the sentence that no numbers make true, or none false."""
     for part, value in constant_parts(requirement):
-        yield Diagnostic(
-            Code.NEVER_SO,
-            f"`{printed(part)}` of {requirement.id} is {'always' if value else 'never'} true, "
-            "whatever the signals are",
+        yield diagnostic(
+            "never_so",
             next((name.span for name in names(part)), None) or requirement.entry.wording,
-            help="check the numbers and the direction of each comparison",
-            severity=Severity.WARNING,
+            part=printed(part),
+            requirement=requirement.id,
+            when="always" if value else "never",
         )
 
 
@@ -116,13 +110,13 @@ def _planned(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
             continue
         refused = target.refuse(requirement)
         if refused is not None:
-            yield Diagnostic(
-                Code.UNREACHABLE_PLAN,
-                f"{requirement.id} plans `{method}`, but this method cannot give a result: "
-                f"{refused.message}",
+            yield diagnostic(
+                "unreachable_plan",
                 requirement.entry.place("verify"),
+                requirement=requirement.id,
+                method=method,
+                message=refused.message,
                 help=refused.help,
-                severity=Severity.WARNING,
             )
             continue
         remark = target.remark(requirement)
@@ -134,13 +128,12 @@ def _misspelt(requirement: FormalizedRequirement, method: str) -> Iterator[Diagn
     """F528 for a misspelt method name; other unknown names are the user's own methods."""
     near = suggestion(method, _METHODS, cutoff=0.75)
     if method not in _METHODS and near is not None:
-        yield Diagnostic(
-            Code.MISSPELT_METHOD,
-            f"{requirement.id} plans `{method}`, which is not a method of fretc: the plan stays "
-            "open",
+        yield diagnostic(
+            "misspelt_method",
             requirement.entry.place("verify"),
-            help=f"did you mean `{near}`?",
-            severity=Severity.WARNING,
+            requirement=requirement.id,
+            method=method,
+            near=near,
         )
 
 
@@ -149,34 +142,20 @@ def _misspelt(requirement: FormalizedRequirement, method: str) -> Iterator[Diagn
 
 def _links(project: Project) -> Iterator[Diagnostic]:
     """F522, F523 and F527: hazards without a requirement, requirements without a hazard."""
-    active = [r for r in project.requirements if r.status != "retired"]
+    active = [r for r in project.requirements if r.is_in_force]
     above = {parent for requirement in active for parent in requirement.parents}
     for hazard in project.hazards.values():
         if hazard.id not in above:
-            yield Diagnostic(
-                Code.UNCOVERED_HAZARD,
-                f"no requirement in force names {hazard.id} ({hazard.title}) as its parent",
-                help="write a requirement for it, or name it in the `parents` of one",
-                severity=Severity.WARNING,
-                subject=hazard.id,
+            yield diagnostic(
+                "uncovered_hazard", hazard=hazard.id, title=hazard.title, subject=hazard.id
             )
     for requirement in active if project.hazards or project.parents else ():
         if not requirement.parents:
-            yield Diagnostic(
-                Code.NO_PARENT,
-                f"{requirement.id} names no parent",
-                requirement.place("id"),
-                help="name in `parents` the hazard or requirement that it refines",
-                severity=Severity.WARNING,
-            )
+            yield diagnostic("no_parent", requirement.place("id"), requirement=requirement.id)
     declared = {*project.hazards, *project.parents}
     for requirement in without_hazard(active, declared) if declared else ():
-        yield Diagnostic(
-            Code.REACHES_NO_HAZARD,
-            f"the parents of {requirement.id} lead to no hazard",
-            requirement.place("parents"),
-            help="name the hazard in its `parents`, or in the `parents` of a requirement above it",
-            severity=Severity.WARNING,
+        yield diagnostic(
+            "reaches_no_hazard", requirement.place("parents"), requirement=requirement.id
         )
 
 
@@ -190,24 +169,20 @@ def _changes(project: Project, standings: Sequence[ReviewedRequirement]) -> Iter
         if not standing.is_suspect or standing.review is None:
             continue
         id = standing.chain.requirement
-        yield Diagnostic(
-            Code.CHANGED_SINCE_REVIEW,
-            f"{id} was reviewed on {standing.review.date}, and has changed since then: "
-            f"{in_words(standing.changes)}",
+        yield diagnostic(
+            "changed_since_review",
             places.get(id, Source("", "").span()),
-            help="inspect the change with `fretc diff`, then accept it: `fretc lock "
-            f"{quote(id)} ...`",
-            severity=Severity.WARNING,
+            requirement=id,
+            date=standing.review.date,
+            changes=in_words(standing.changes),
+            argument=quote(id),
         )
         if standing.has_other_texts:
-            yield Diagnostic(
-                Code.OTHER_TEXTS,
-                f"the texts that the review of {id} keeps do not match its fingerprints: it is "
-                "not known which texts were accepted",
+            yield diagnostic(
+                "other_texts",
                 places.get(id, Source("", "").span()),
-                help="restore the lock from version control, or review again: "
-                f"`fretc lock {quote(id)} ...`",
-                severity=Severity.WARNING,
+                requirement=id,
+                argument=quote(id),
             )
 
 
@@ -216,11 +191,5 @@ def unreviewed(project: Project, standings: Sequence[ReviewedRequirement]) -> It
     by_id = {requirement.id: requirement for requirement in project.requirements}
     for standing in standings:
         requirement = by_id[standing.chain.requirement]
-        if standing.review is None and requirement.status != "retired":
-            yield Diagnostic(
-                Code.NOT_REVIEWED,
-                f"{requirement.id} was never reviewed",
-                requirement.place("id"),
-                help=f"review it, then accept it: `fretc lock {requirement.id} ...`",
-                severity=Severity.WARNING,
-            )
+        if standing.review is None and requirement.is_in_force:
+            yield diagnostic("never_reviewed", requirement.place("id"), requirement=requirement.id)

@@ -38,6 +38,7 @@ from fretc.traceability.texts import ReviewedTexts, as_table
 from fretc.traceability.texts import read as read_texts
 from fretish.bindings.canonical import digest
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
 from fretish.reading.natural_order import natural
@@ -47,9 +48,6 @@ from monitors import kernel
 
 NAME = "fretc.lock"
 SCHEMA = "fretc-lock-3"
-_SCHEMAS = ("fretc-lock-2", SCHEMA)
-"""Schemas that are read; a lock of the first one has no texts."""
-_OLDER = ("fretc-lock-1",)
 _TABLE = "review"
 _TEXTS = ("reviewer", "role", "date", "comment")
 _SHA256 = re.compile(r"[0-9a-f]{64}|")
@@ -71,7 +69,7 @@ class Review:
     verdicts: Mapping[str, str]
     """Run → its verdict."""
     texts: ReviewedTexts | None = None
-    """The accepted texts; None if an earlier version of fretc wrote the review."""
+    """The accepted texts; None if they could not be kept."""
 
     @property
     def was_in_force(self) -> bool:
@@ -168,11 +166,7 @@ def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tup
         if c.answer is not None and c.answer.verdict is Verdict.UNREALIZABLE
     } | violations
     return tuple(
-        Diagnostic(
-            Code.UNREVIEWED_VIOLATION,
-            f"{id} is {verdicts}",
-            help="fix it, or accept the violation: add `--accept-violations`",
-        )
+        diagnostic("violation_not_named", id=id, verdicts=verdicts)
         for id, verdicts in violations.items()
     )
 
@@ -240,20 +234,11 @@ def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
         if causes:
             what = ", ".join(f"{cause.kind} {cause.name}" for cause in causes)
             diagnostics.append(
-                Diagnostic(
-                    Code.OUTDATED_RESULT,
-                    f"the evidence for {chain.requirement} is about another version: {what}",
-                    help="run `fretc audit`, `verify` or `analyze` again, then lock",
-                )
+                diagnostic("outdated_result", requirement=chain.requirement, what=what)
             )
         if chain.unhashed:
             diagnostics.append(
-                Diagnostic(
-                    Code.UNKNOWN_LOG,
-                    f"the evidence does not identify the log `{chain.unhashed[0]}` of "
-                    f"{chain.requirement}, because it has no SHA-256",
-                    help="audit again on a machine that can read the log, then lock",
-                )
+                diagnostic("log_without_hash", log=chain.unhashed[0], requirement=chain.requirement)
             )
     return tuple(diagnostics)
 
@@ -293,12 +278,7 @@ def read(path: str) -> Lock | Diagnostic:
 
 
 def _none_yet(path: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NO_SUCH_FILE,
-        f"no requirement is reviewed: there is no `{path}`",
-        help="accept the present state: `fretc lock --reviewer NAME --role ROLE --comment TEXT`",
-        severity=Severity.NOTE,
-    )
+    return diagnostic("nothing_reviewed", path=path)
 
 
 def _reviews(tables: Tables) -> Iterable[tuple[str, Any]]:
@@ -307,12 +287,7 @@ def _reviews(tables: Tables) -> Iterable[tuple[str, Any]]:
 
 
 def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
-    schema = tables.data.get("schema")
-    # A table `schema` is the review of a requirement of that name.
-    if schema in _OLDER or isinstance(schema, dict):
-        yield _older(tables)
-        return
-    if schema not in _SCHEMAS:
+    if tables.data.get("schema") != SCHEMA:
         yield _wrong(tables, f"the lock does not have the schema `{SCHEMA}`", "schema")
     for name, value in tables.data.items():
         if name not in ("schema", _TABLE) or (name == _TABLE and not isinstance(value, dict)):
@@ -355,16 +330,6 @@ def _broken(tables: Tables, lock: Lock) -> Iterator[Diagnostic]:
         elif is_in_future(review.date):
             what = f"the review of {id} is of {review.date}, a date in the future"
             yield _wrong(tables, what, _TABLE, id, "date")
-
-
-def _older(tables: Tables) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_LOCK,
-        "the lock was written by an earlier version of fretc, which computed fingerprints "
-        "differently",
-        tables.place("schema"),
-        help="rename it, compare with what was accepted, and review again: `fretc lock`",
-    )
 
 
 def _wrong(tables: Tables, what: str, *path: str) -> Diagnostic:

@@ -14,7 +14,8 @@ from compiler.files.dates import is_date
 from compiler.files.text_files import read as read_text
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretish.bindings.canonical import digest
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.toml_text import Tables, unknown_key
 from fretish.reading.toml_text import read as read_tables
@@ -98,8 +99,7 @@ def _mistakes(
         yield _wrong(tables, f"`{id}` is not a waiver", f"write `[{id}]`, then its fields", id)
         return
     if ids is not None and id not in ids:
-        near = suggestion(id, ids)
-        fix = f"did you mean `{near}`?" if near else "name a requirement of the project"
+        fix = did_you_mean(id, ids, "name a requirement of the project")
         yield _wrong(tables, f"{id} is waived, but is not among the requirements", fix, id)
     for key in fields:
         if key not in _FIELDS:
@@ -126,21 +126,8 @@ def _no_verdict(tables: Tables, id: str, value: object) -> Diagnostic:
             'add `verdict = "',
         )
         return _wrong(tables, what, f'{fix}no data"`; it may be {listed}', id, "reason")
-    near = suggestion(str(value), VERDICTS)
-    fix = f"did you mean `{near}`?" if near else f"it may be {listed}"
+    fix = did_you_mean(str(value), VERDICTS, f"it may be {listed}")
     return _wrong(tables, f"`{value}` is not a verdict that can be waived", fix, id, "verdict")
-
-
-def idle_waiver(waiver: Waiver, verdict: str) -> Diagnostic:
-    """F543: the verdict of the requirement is not the waived one."""
-    return Diagnostic(
-        Code.IDLE_WAIVER,
-        f"the waiver of {waiver.requirement} is for `{waiver.verdict}`, but the verdict is "
-        f"`{verdict}`: the waiver has no effect",
-        waiver.span,
-        help="remove the waiver, or have one granted for the present verdict",
-        severity=Severity.WARNING,
-    )
 
 
 def _wrong(tables: Tables, what: str, fix: str, *path: str) -> Diagnostic:
@@ -148,11 +135,10 @@ def _wrong(tables: Tables, what: str, fix: str, *path: str) -> Diagnostic:
 
 
 def _ended(tables: Tables, waiver: Waiver) -> Diagnostic:
-    return Diagnostic(
-        Code.EXPIRED_WAIVER,
-        f"the waiver of {waiver.requirement} is valid only from {waiver.granted} to "
-        f"{waiver.expires}",
+    return diagnostic(
+        "expired_waiver",
         tables.value(waiver.requirement, "expires"),
-        help="show that the requirement holds, or have the waiver granted again",
-        severity=Severity.WARNING,
+        requirement=waiver.requirement,
+        granted=waiver.granted,
+        expires=waiver.expires,
     )

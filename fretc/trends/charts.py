@@ -7,67 +7,43 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 from statistics import median
+from typing import Any
 
 from fretc.report.model import phrases
-from fretc.report.pictures.histograms import step
-from fretc.report.pictures.plots import places
+from fretc.report.pictures.scales import RIGHT, WIDTH, Scale, frame, places, step
 from fretc.trends.changes import RoundOutcome
 from fretc.trends.comparisons import Comparison, Finding, Measure, Value, amount
 
 _CELL, _TALL = 9, 16
 MOST_CELLS = 60
 """The most rounds of a strip; it has the newest ones."""
-_WIDTH, _LEFT, _RIGHT, _TOP, _BASE = 720, 92, 30, 14, 134
+_LEFT, _TOP, _BASE = 92, 14, 134
 _MOST_DOTS = 40
 """The most dots of a round: the worst ones, and as many others as fit."""
 _LABELS = 14
 """The approximate number of labelled rounds on the axis."""
-_KINDS = {RoundOutcome.VIOLATED: "violated", RoundOutcome.SHOWN: "shown", RoundOutcome.OPEN: "open"}
+_CELLS = {
+    RoundOutcome.VIOLATED: ("violated", _TALL),
+    RoundOutcome.SHOWN: ("shown", 7),
+    RoundOutcome.OPEN: ("open", 12),
+    None: ("absent", 1),
+}
+"""Outcome of a round → kind and height of its cell."""
 
 
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """A round of a strip."""
-
-    kind: str
-    x: int
-    y: int
-    width: int
-    height: int
-
-
-@dataclass(frozen=True, slots=True)
-class Strip:
-    """All rounds of a requirement in a scenario."""
-
-    width: int
-    height: int
-    cells: tuple[Cell, ...]
-    text: str
-
-
-def strip(round_outcomes: Sequence[RoundOutcome | None]) -> Strip:
+def strip(round_outcomes: Sequence[RoundOutcome | None]) -> dict[str, Any]:
     """The newest rounds: a violated one is a tall bar, a shown one low, an open one hollow."""
     first = max(0, len(round_outcomes) - MOST_CELLS)
     shown = round_outcomes[first:]
-    cells = tuple(_cell(i, each) for i, each in enumerate(shown))
-    return Strip(_CELL * len(shown), _TALL, cells, _in_words(shown, first + 1))
-
-
-def _cell(place: int, each: RoundOutcome | None) -> Cell:
-    x, width = place * _CELL + 1, _CELL - 2
-    match each:
-        case RoundOutcome.VIOLATED:
-            return Cell("violated", x, 0, width, _TALL)
-        case RoundOutcome.SHOWN:
-            return Cell("shown", x, _TALL - 7, width, 7)
-        case RoundOutcome.OPEN:
-            return Cell("open", x, _TALL - 12, width, 12)
-        case None:
-            return Cell("absent", x, _TALL - 1, width, 1)
+    cells = []
+    for place, outcome in enumerate(shown):
+        kind, height = _CELLS[outcome]
+        top = _TALL - height
+        cells.append({"kind": kind, "x": place * _CELL + 1, "y": top, "height": height})
+    size = {"width": _CELL * len(shown), "height": _TALL, "cell": _CELL - 2}
+    return {**size, "cells": cells, "text": _in_words(shown, first + 1)}
 
 
 def _in_words(round_outcomes: Sequence[RoundOutcome | None], first: int) -> str:
@@ -76,7 +52,7 @@ def _in_words(round_outcomes: Sequence[RoundOutcome | None], first: int) -> str:
     for each, some in groupby(round_outcomes):
         last = at + len(list(some)) - 1
         which = f"{at}" if at == last else f"{at} to {last}"
-        parts.append(f"{which} {'not judged' if each is None else _KINDS[each]}")
+        parts.append(f"{which} {'not judged' if each is None else _CELLS[each][0]}")
         at = last + 1
     return f"rounds {', '.join(parts)}"
 
@@ -84,37 +60,8 @@ def _in_words(round_outcomes: Sequence[RoundOutcome | None], first: int) -> str:
 # Numbers over rounds ----------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Dot:
-    """The number of one run."""
-
-    x: float
-    y: float
-    is_after: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Chart:
-    """The numbers of all runs over the rounds, with the median of each round."""
-
-    id: str
-    title: str
-    text: str
-    width: int
-    height: int
-    left: int
-    right: int
-    top: int
-    base: int
-    dots: tuple[Dot, ...]
-    medians: tuple[tuple[float, float, float], ...]
-    """Left, right and height of each median."""
-    ticks: tuple[tuple[float, str], ...]
-    marks: tuple[tuple[float, str], ...]
-
-
-def chart(one: Comparison, rounds: int, is_after: Sequence[bool], id: str) -> Chart:
-    """The layout.
+def chart(one: Comparison, rounds: int, is_after: Sequence[bool], id: str) -> dict[str, Any]:
+    """The numbers of all runs over the rounds, with the median of each round.
 
     Args:
         one: the comparison with the values of its runs.
@@ -126,45 +73,32 @@ def chart(one: Comparison, rounds: int, is_after: Sequence[bool], id: str) -> Ch
     low, high = min([0.0, *numbers]), max([0.0, *numbers])
     high = high if high > low else low + 1.0
     high = -(-high // (width := step((high - low) / 4))) * width
-    column = (_WIDTH - _LEFT - _RIGHT) / rounds
-
-    def y(number: float) -> float:
-        return round(_BASE - (number - low) / (high - low) * (_BASE - _TOP), 1)
-
+    x = Scale(0, rounds, _LEFT, WIDTH - RIGHT)
+    y = Scale(low, high, _BASE, _TOP)
     of_round: dict[int, list[Value]] = defaultdict(list)
     for value in one.values:
         of_round[value.round].append(value)
     every = max(1, -(-rounds // _LABELS))
-    return Chart(
-        id=id,
-        title=f"{one.measure.ids}: {one.measure}",
-        text=_text(one, of_round),
-        width=_WIDTH,
-        height=_BASE + 38,
-        left=_LEFT,
-        right=_WIDTH - _RIGHT,
-        top=_TOP,
+    return frame(
+        id,
+        f"{one.measure.ids}: {one.measure}",
+        _text(one, of_round),
+        x,
+        _BASE + 38,
         base=_BASE,
-        dots=tuple(
-            Dot(round(_LEFT + column * (number + share), 1), y(value.number), is_after[value.run])
+        dots=[
+            {"x": x(number + share), "y": y(value.number), "is_after": is_after[value.run]}
             for number, values in of_round.items()
             for share, value in _spread(_chosen(values, one.measure))
-        ),
-        medians=tuple(
-            (
-                round(_LEFT + column * (number + 0.15), 1),
-                round(_LEFT + column * (number + 0.85), 1),
-                y(median(value.number for value in values)),
-            )
+        ],
+        medians=[
+            (x(number + 0.15), x(number + 0.85), y(median(value.number for value in values)))
             for number, values in sorted(of_round.items())
-        ),
-        ticks=tuple(
-            (round(_LEFT + column * (number + 0.5), 1), str(number + 1))
-            for number in range(0, rounds, every)
-        ),
-        marks=tuple(
+        ],
+        ticks=[(x(number + 0.5), str(number + 1)) for number in range(0, rounds, every)],
+        marks=[
             (y(place), phrases.value(place, one.measure.unit)) for place in places(low, high, 4)
-        ),
+        ],
     )
 
 

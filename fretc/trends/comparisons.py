@@ -244,20 +244,13 @@ def _measures(
     judged.sort(key=lambda one: (one.round, histories.runs[one.run].time or -1, one.run))
     basis = judged[-1].basis
     same = [outcome for outcome in judged if outcome.basis == basis]
-    for kind, number in ((Kind.LONGEST, _longest), (Kind.MEDIAN, _median)):
-        values = tuple(_value(histories.runs, one, number(one)) for one in same)
+    for kind in (Kind.LONGEST, Kind.MEDIAN):
+        numbers = [one.longest if kind is Kind.LONGEST else one.median for one in same]
+        values = [_value(histories.runs, *pair) for pair in zip(same, numbers, strict=True)]
         known_values = tuple(value for value in values if value is not None)
         if known_values:
             yield Measure((requirement,), kind, "s"), known_values
     yield from _margins(histories, requirement, same)
-
-
-def _longest(one: RunOutcome) -> float | None:
-    return one.longest
-
-
-def _median(one: RunOutcome) -> float | None:
-    return one.median
 
 
 def _value(runs: Sequence[Run], one: RunOutcome, number: float | None) -> Value | None:
@@ -276,18 +269,13 @@ def _margins(
         for place, thresholds in source.thresholds([requirement]):
             run = places[place]
             for each in thresholds if run in known else ():
-                margin = _margin(each)
+                margin = 0.0 if each.comparison == "crossed" else each.margin
                 if margin is not None:
                     found[_threshold(requirement, each)][run] = margin
     for measure, margins in found.items():
         ordered = [(one, margins[run]) for run, one in known.items() if run in margins]
         values = (_value(histories.runs, one, number) for one, number in ordered)
         yield measure, tuple(value for value in values if value is not None)
-
-
-def _margin(each: Threshold) -> float | None:
-    """The margin; None: the comparison was always unknown."""
-    return 0.0 if each.comparison == "crossed" else each.margin
 
 
 def _threshold(requirement: str, each: Threshold) -> Measure:

@@ -98,7 +98,10 @@ def html(trends: Trends) -> str:
                 "compared": {"before": trends.compared.before, "after": trends.compared.after},
                 "level": f"{trends.level:g}",
                 "regressed": _charts(trends, regressed[:_MOST_CHARTS], "regressed"),
-                "regressed_lines": [_line(one) for one in regressed[_MOST_CHARTS:]],
+                "regressed_lines": [
+                    f"{one.measure.ids}, {one.measure}: {one.worse}"
+                    for one in regressed[_MOST_CHARTS:]
+                ],
                 "others": _charts(trends, pictured, "other"),
                 "few": len(trends.with_finding(Finding.TOO_FEW)),
                 "chance": len(trends.with_finding(Finding.CHANCE)),
@@ -189,7 +192,7 @@ def _rows(items: Sequence[Item]) -> list[dict[str, Any]]:
         {
             "requirement": item.requirement,
             "scenario": str(item.scenario),
-            "strip": asdict(strip(item.round_outcomes)),
+            "strip": strip(item.round_outcomes),
             "now": _now(item),
         }
         for item in items
@@ -203,13 +206,9 @@ def _now(item: Item) -> str:
     return "; ".join([verdicts or "not judged", *notes])
 
 
-def _line(one: Comparison) -> str:
-    return f"{one.measure.ids}, {one.measure}: {one.worse}"
-
-
 def _charts(trends: Trends, some: Sequence[Comparison], kind: str) -> list[dict[str, Any]]:
     after = trends.is_after
     return [
-        asdict(chart(one, len(trends.rounds), after, f"{kind}-{number}"))
+        chart(one, len(trends.rounds), after, f"{kind}-{number}")
         for number, one in enumerate(some, 1)
     ]

@@ -35,7 +35,8 @@ from fretc.trends.histories import (
     verdicts_of_rounds,
 )
 from fretc.trends.left_out import is_left_out
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.reading.natural_order import natural
 
 
@@ -187,11 +188,7 @@ def trends(
     if by not in (None, EVIDENCE, DAY) and not any(
         by in facts.labels for source in sources for facts in source.runs()
     ):
-        return Diagnostic(
-            Code.NOT_COMPARABLE,
-            f"no run has the label `{by}`",
-            help="name a label that `[run.label]` or `--label` gives, or `evidence` or `day`",
-        )
+        return diagnostic("no_run_with_label", by=by)
     read_histories = histories(sources, by)
     items = [_item(read_histories, *key, judged) for key, judged in read_histories.judged.items()]
     order = list(Change)

@@ -33,7 +33,8 @@ from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.ajpf.runner import ERROR, HOLDS, SCHEMA, VIOLATED, verdict
 from compiler.targets.target import DEFAULT, Options
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.recursion import with_recursion_limit
 
@@ -163,21 +164,17 @@ def read(path: str) -> AjpfResult | Diagnostic:
 
 
 def _wrong(source: Source, what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_AJPF_RESULT,
-        f"`{source.name}` {what}",
-        Source(source.name, "").span(),
-        help="run AJPF again: `python3 run.py` in the folder of the bundle",
+    return diagnostic(
+        "bad_ajpf_result", Source(source.name, "").span(), source=source.name, what=what
     )
 
 
 def _foreign(result: AjpfResult) -> Diagnostic:
-    return Diagnostic(
-        Code.FOREIGN_AJPF_RESULT,
-        f"`{result.file}` is about {result.requirement}, and there is no such requirement",
+    return diagnostic(
+        "foreign_ajpf_result",
         Source(result.file, "").span(),
-        "the result is ignored: name the file of the requirement, or remove the result",
-        Severity.WARNING,
+        file=result.file,
+        requirement=result.requirement,
     )
 
 

@@ -5,17 +5,13 @@ The file is not trusted: values outside the types of `compiler.logic.claims` are
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from compiler.files.checked_json import SchemaError, parsed
-from compiler.files.records import decoded
-from compiler.files.text_files import read as read_text
+from compiler.files import records
 from compiler.files.text_files import sha256
 from compiler.logic.claims import Document, Proof, Result
-from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.source import Source
+from fretish.diagnostics.diagnostic import Diagnostic
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,20 +40,11 @@ DEFAULT = "build/verification.json"
 
 def read(path: str) -> Proofs | Diagnostic:
     """Read and check a file of `fretc verify`."""
-    source = read_text(path)
-    if isinstance(source, Diagnostic):
-        return source
-    try:
-        document = decoded(parsed(source.text).value, Document)
-        return Proofs(source.name, sha256(source.text), document)
-    except json.JSONDecodeError as error:
-        return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
-    except SchemaError as error:
-        return _wrong(source, f"is not what `fretc verify` writes: {error}")
-    except RecursionError:
-        return _wrong(source, "is not JSON that fretc can read: it is nested too deeply")
-    except ValueError as error:
-        return _wrong(source, f"is not JSON that fretc can read: {error}")
+    found = records.read(path, Document, "fretc verify", "verify again: `fretc verify FILE...`")
+    if isinstance(found, Diagnostic):
+        return found
+    source, document = found
+    return Proofs(source.name, sha256(source.text), document)
 
 
 def known(path: str | None) -> tuple[Proof, ...] | Diagnostic:
@@ -72,12 +59,3 @@ def known(path: str | None) -> tuple[Proof, ...] | Diagnostic:
 def default_path() -> str | None:
     """Default path of the proofs, if the file exists."""
     return DEFAULT if Path(DEFAULT).exists() else None
-
-
-def _wrong(source: Source, what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EVIDENCE,
-        f"`{source.name}` {what}",
-        Source(source.name, "").span(),
-        help="verify again: `fretc verify FILE...`",
-    )

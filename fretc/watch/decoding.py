@@ -7,7 +7,7 @@ message with a time, it waits for that. Times are nanoseconds.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isnan
 
@@ -174,8 +174,3 @@ def stream_of(channel: Channel, id: int = 1) -> Stream:
         ),
         schema,
     )
-
-
-def bound_topics(declarations: Declarations) -> Sequence[str]:
-    """Every topic that a watch reads, in order."""
-    return sorted(Decoder(declarations).topics)

@@ -126,16 +126,7 @@ def line(event: WatchEvent) -> dict[str, Any]:
 def _line(event: WatchEvent) -> Line:
     match event:
         case StateChange(state, _, time):
-            return RequirementLine(
-                state.requirement,
-                state.verdict,
-                state.owed,
-                state.triggered_ns,
-                state.open_ns,
-                state.deadline_ns,
-                state.violated_ns,
-                time,
-            )
+            return RequirementLine(**state._asdict(), time_ns=time)
         case LateMessages(ticks, messages):
             return LateLine(ticks, dict(messages))
         case DiagnosticEvent(diagnostic):

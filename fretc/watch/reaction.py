@@ -13,7 +13,8 @@ from typing import Any
 
 from compiler.files.processes import isolate_imports
 from compiler.files.templating import to_json
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 PATIENCE = 60
 """Seconds that a command may take."""
@@ -101,14 +102,7 @@ class Reaction:
                 self._failed(f"ended with exit status {process.returncode}")
 
     def _failed(self, how: str) -> None:
-        self._problems.append(
-            Diagnostic(
-                Code.REACTION_FAILED,
-                f"`{self._command[0]}` {how}",
-                help="run the command by hand to see the error; the watch continues without it",
-                severity=Severity.WARNING,
-            )
-        )
+        self._problems.append(diagnostic("reaction_failed", command=self._command[0], how=how))
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:

@@ -79,8 +79,8 @@ class RequirementMonitors:
         ticks, last = min(1, self.count), self.ledger.last or {}
         columns = {name: _column(last.get(name), ticks) for name in monitor.PROPOSITIONS}
         engine = partial(_outcome, before=ticks)
-        judgement = judge(monitor, columns, cut, ticks, intact=intact, end=self._end, engine=engine)
-        return self.audit_verdict(monitor.REQUIREMENTS[0].id, str(judgement.verdict))
+        (own,) = judge(monitor, columns, cut, ticks, intact=intact, end=self._end, engine=engine)
+        return self.audit_verdict(monitor.REQUIREMENTS[0].id, str(own.verdict))
 
     def audit_verdict(self, requirement: str, verdict: str) -> str:
         """The verdict in an audit of the run; a run that alone decides nothing is inconclusive."""

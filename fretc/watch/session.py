@@ -81,9 +81,10 @@ class Session:
         self._stream = Stream(plan.declarations, self._monitors.propositions)
         self._decoder = Decoder(plan.declarations)
         self._latest: dict[str, int] = {}
-        self._now = 0
-        """The latest time of all messages, on the declared clock."""
-        self._received = 0
+        self.now = 0
+        """The latest time of all messages on the declared clock; 0 before the first."""
+        self.received = 0
+        """The receive time up to which arrivals are complete; 0 before the first."""
         self.disordered = 0
         """Messages that arrived after later ones whose ticks had been judged, in a log that is
         followed."""
@@ -113,11 +114,6 @@ class Session:
     def missed(self) -> tuple[Gap, ...]:
         """The intervals of missed messages, by receive time."""
         return tuple(self._missed)
-
-    @property
-    def received(self) -> int:
-        """The receive time up to which arrivals are complete; 0 before the first."""
-        return self._received
 
     @property
     def origin(self) -> int | None:
@@ -150,11 +146,6 @@ class Session:
         return self._monitors.ledger.late
 
     @property
-    def now(self) -> int:
-        """The latest time of all messages on the declared clock; 0 before the first."""
-        return self._now
-
-    @property
     def waiting(self) -> tuple[str, ...]:
         """The topics without a message yet, before which the first tick cannot be placed."""
         return self._stream.waiting
@@ -168,9 +159,9 @@ class Session:
             A jump, and nothing was taken: the message belongs to another run. Or what keeps time
             from passing: a jump forward by a million ticks.
         """
-        is_behind = arrival.log_time < self._received
-        self._received = max(self._received, arrival.log_time)
-        wrong = self._pass(self._received - self._patience)
+        is_behind = arrival.log_time < self.received
+        self.received = max(self.received, arrival.log_time)
+        wrong = self._pass(self._time_passed)
         if wrong is not None:
             return wrong
         messages, problems = self._decoder.read(arrival)
@@ -193,7 +184,7 @@ class Session:
     def _take(self, message: Timed) -> bool:
         """Add a message; whether a tick that it affects was already judged."""
         self._latest[message.topic] = max(message.time, self._latest.get(message.topic, 0))
-        self._now = max(self._now, message.time)
+        self.now = max(self.now, message.time)
         if self._gap_from is not None and not self.interrupted:
             before, self._gap_from = self._gap_from, None
             self._withdraw(self._stream.miss(min(before, message.time), max(before, message.time)))
@@ -209,7 +200,7 @@ class Session:
     def interrupt(self) -> None:
         """Record that the connection is lost: no tick is judged until `miss` is called."""
         self.interrupted = True
-        self._gap_from = self._gap_from or self._now or None
+        self._gap_from = self._gap_from or self.now or None
 
     def miss(self, since: int, until: int) -> None:
         """Record that messages received from `since` to `until` were lost.
@@ -225,12 +216,12 @@ class Session:
             self._gap_from = None
             self._withdraw(self._stream.miss(since, until))
         else:
-            self._gap_from = self._gap_from or self._now or None
+            self._gap_from = self._gap_from or self.now or None
 
     def idle(self, now: int) -> Diagnostic | None:
         """Record that all messages received before `now` have been added."""
-        self._received = max(self._received, now)
-        return self._pass(self._received - self._patience) if self._now else None
+        self.received = max(self.received, now)
+        return self._pass(self._time_passed) if self.now else None
 
     def _pass(self, time: int) -> Diagnostic | None:
         if self.interrupted:
@@ -254,7 +245,7 @@ class Session:
         """
         monitors = self._monitors
         if ahead and self._ahead is None:
-            rows = [tick.truth for tick in self._stream.glance(max(self._now, self._time_passed))]
+            rows = [tick.truth for tick in self._stream.glance(max(self.now, self._time_passed))]
             self._ahead = monitors.owed(rows)
         owed = self._ahead if ahead and self._ahead is not None else monitors.owed()
         owed = (None,) * len(owed) if self.interrupted else owed
@@ -276,7 +267,7 @@ class Session:
 
     @property
     def _time_passed(self) -> int:
-        return self._received - self._patience
+        return self.received - self._patience
 
     def _verdict(self, standing: Standing) -> str:
         """The verdict of a run that has ended; a run with missed messages satisfies nothing."""
@@ -298,7 +289,7 @@ class Session:
     def end(self) -> EndedRun | Diagnostic:
         """End the run."""
         if self._gap_from is not None:
-            self._withdraw(self._stream.miss(self._gap_from, self._now))
+            self._withdraw(self._stream.miss(self._gap_from, self.now))
         stream_end = self._stream.end()
         if not isinstance(stream_end, End):
             return stream_end

@@ -20,7 +20,8 @@ from fretc.watch.sources.source import (
     Reconnected,
 )
 from fretish.bindings.amounts import duration
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from monitors.guard import State
 
 MOST_RUNS = 100
@@ -236,7 +237,7 @@ class Watch:
         verdicts = ended.verdicts
         if session.disordered:
             log = path or (self._log if not self.runs and not begins_anew else None)
-            judged = _no_log() if log is None else session.judge_again(log)
+            judged = diagnostic("run_not_recorded") if log is None else session.judge_again(log)
             yield DiagnosticEvent(_disordered(session.disordered, log, judged))
             verdicts = verdicts if isinstance(judged, Diagnostic) else judged
         yield from self._changes(ahead=False)
@@ -246,56 +247,23 @@ class Watch:
 
 
 def _silent(topic: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NOTHING_COMES,
-        f"no message has arrived of `{topic}` for {duration(SILENCE / 1e9)}: propositions that "
-        "read it are unknown",
-        help="compare its name with the topics of the robot",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("silent_topic", topic=topic, length=duration(SILENCE / 1e9))
 
 
 def _set_back(jump: Jump) -> Diagnostic:
-    return Diagnostic(
-        Code.CLOCK_SET_BACK,
-        f"the clock of `{jump.topic}` was set back by {duration(jump.by / 1e9)}: a new run begins",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("clock_set_back", topic=jump.topic, length=duration(jump.by / 1e9))
 
 
 def _two_clocks(jump: Jump) -> Diagnostic:
-    return Diagnostic(
-        Code.CLOCK_SET_BACK,
-        f"the clock of `{jump.topic}` was set back {MOST_RUNS} times: the watch gives up",
-        help="check whether two publishers of the topic use different clocks",
-    )
+    return diagnostic("clock_set_back_too_often", topic=jump.topic, most=MOST_RUNS)
 
 
 def _disordered(count: int, log: str | None, judged: object) -> Diagnostic:
     messages = f"{count} message{'s' * (count > 1)} of the log came after later ones"
     if not isinstance(judged, Diagnostic):
-        return Diagnostic(
-            Code.DISORDERED,
-            f"{messages}, when their ticks were judged: the run was judged again by `{log}`, as an "
-            "audit sorts it",
-            severity=Severity.WARNING,
-        )
-    return Diagnostic(
-        Code.DISORDERED,
-        f"{messages}, when their ticks were judged: these are unknown, and an audit, which sorts "
-        f"messages, may know more ({judged.message})",
-        help="audit the log with `fretc audit`",
-        severity=Severity.WARNING,
-    )
-
-
-def _no_log() -> Diagnostic:
-    return Diagnostic(Code.DISORDERED, "nothing but this run is recorded; add `--record FILE`")
+        return diagnostic("run_judged_again", messages=messages, log=log)
+    return diagnostic("unknown_after_disorder", messages=messages, message=judged.message)
 
 
 def _not_recorded(path: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_RECORDED,
-        f"`{path}` cannot be written any further: {why}; the watch continues without it",
-        help="free some space, and watch again with another file",
-    )
+    return diagnostic("recording_stopped", path=path, why=why)

@@ -102,6 +102,11 @@ def _side(number: float, bound: float) -> int:
 # Times ----------------------------------------------------------------------------------------
 
 
+def count_of(count: int, noun: str) -> str:
+    """`1 run`, `1,024 runs`."""
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+
+
 def decimal(number: float, thousands: str = "") -> str:
     """At most three decimals, and no zeros at the end: `39.8`, `0.001`, `2`.
 

@@ -14,7 +14,8 @@ from fretish import expressions as e
 from fretish.bindings import expressions as binding
 from fretish.bindings.declarations import Signal
 from fretish.bindings.expressions import MOST_TICKS_BACK, is_base, ticks_back
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic, DiagnosticError
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.units import (
     DIMENSIONLESS,
@@ -23,7 +24,6 @@ from fretish.units import (
     is_vague,
     number,
     times,
-    too_long,
     unit,
     unit_product,
     unit_quotient,
@@ -37,12 +37,8 @@ FUNCTIONS = {
 """Function in a sentence → the same function in bindings."""
 
 
-class _ComparisonError(Exception):
+class _ComparisonError(DiagnosticError):
     """Carries a diagnostic out of the recursion."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,7 +259,7 @@ class _Writer:
         """A part of bare numbers only, with the target's unit attached where bindings need it."""
         for operand in e.parts(part):
             if isinstance(operand, e.Number) and not _is_number(operand.digits):
-                raise _ComparisonError(too_long(self._span(operand)))
+                raise _ComparisonError(diagnostic("number_too_long", self._span(operand)))
         zero = isinstance(part, e.Number) and number(part.digits) == 0
         if (target.mixed or target.vague) and not zero:
             raise _ComparisonError(_ambiguous_unit(self._span(part), target))
@@ -388,19 +384,13 @@ def _describe(measure: _Measure) -> str:
 
 
 def _mismatch(left: _Measure, right: _Measure, place: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.UNIT_MISMATCH,
-        f"{_describe(left)} cannot be compared with or added to {_describe(right)}",
-        place,
-        help="a bare number is in the unit of the signal beside it",
-    )
+    return diagnostic("quantities_differ", place, left=_describe(left), right=_describe(right))
 
 
 def _ambiguous_unit(place: Span, target: _Measure) -> Diagnostic:
     plain = target.unit.dimension == DIMENSIONLESS
-    return Diagnostic(
-        Code.WHICH_UNIT,
-        "this number has no unit, and its unit is ambiguous",
+    return diagnostic(
+        "ambiguous_number",
         place,
         help="write it in percent: 2 is `200 %`" if plain else "write its unit: `5 m/s`",
     )

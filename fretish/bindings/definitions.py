@@ -13,7 +13,8 @@ from functools import partial
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import conditions, too_deep
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.recursion import MOST, with_recursion_limit
 from fretish.syntax import Sentence
@@ -103,7 +104,7 @@ def expanded(sentence: Sentence, needed: Definitions) -> Sentence | Diagnostic:
     for name, value in needed.items():
         sizes[name], depths[name] = _size(value, sizes), _depth(value, depths)
     if sum(_size(condition, sizes) for condition in conditions(sentence)) > MOST_PARTS:
-        return _too_large(sentence.span)
+        return diagnostic("sentence_too_large", sentence.span, most=MOST_PARTS)
     if max(_depth(condition, depths) for condition in conditions(sentence)) > MOST:
         return too_deep(sentence)
     return s.with_expressions(sentence, partial(_substitute, values=needed))
@@ -144,12 +145,3 @@ def _with_span(tree: e.Expression, span: Span | None, values: Definitions) -> e.
             return replace(placed, span=span)
         case _:
             return placed
-
-
-def _too_large(place: Span | None) -> Diagnostic:
-    return Diagnostic(
-        Code.TOO_LARGE,
-        f"with the values of its variables the sentence has more than {MOST_PARTS} parts",
-        place,
-        help="shorten the values of variables, or bind some of them as propositions",
-    )

@@ -17,7 +17,8 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedInput, VisitError
 from lark.visitors import Transformer_NonRecursive
 
 from fretish import expressions as e
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError, did_you_mean
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.caching import cache_by_identity
 from fretish.reading.grammars import Grammar
@@ -47,10 +48,8 @@ def parse(text: Span) -> e.Expression | Diagnostic:
         raise
 
 
-class _ExpressionError(Exception):
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
+class _ExpressionError(DiagnosticError):
+    """Carries a diagnostic out of the callbacks of the parser."""
 
 
 @cache
@@ -88,7 +87,7 @@ class _TreeBuilder(Transformer_NonRecursive[Token, Any]):
             text = str(token)
             before = len(text) - len(text.lstrip())
             place = self._span(token).part(before, len(text))
-            raise _ExpressionError(_bad_duration(text.strip(), place))
+            raise _ExpressionError(diagnostic("not_a_duration", place, text=text.strip()))
         return e.Persistence(arg, duration)
 
     def either(self, children: list[Any]) -> e.Expression:
@@ -264,17 +263,11 @@ def _power(
     exact = Fraction(exponent.digits) if isinstance(exponent, e.Number) else Fraction(0)
     times = int(exact)
     if times != exact or not 1 <= times <= e.MOST_EXPONENT:
-        message, part = f"an exponent must be a whole number from 1 to {e.MOST_EXPONENT}", exponent
-    elif not is_base(base):
-        message, part = "a power of this expression may become too large", base
-    else:
-        return tuple(times * power for power in dimension)
-    return Diagnostic(
-        Code.BAD_EXPRESSION,
-        message,
-        getattr(part, "span", None) or place,
-        help="write, for example, `x^2` or `10^3`; for a power of a power write a product",
-    )
+        span = getattr(exponent, "span", None) or place
+        return diagnostic("bad_exponent", span, most=e.MOST_EXPONENT)
+    if not is_base(base):
+        return diagnostic("power_too_large", getattr(base, "span", None) or place)
+    return tuple(times * power for power in dimension)
 
 
 def is_base(base: e.Expression) -> bool:
@@ -362,63 +355,35 @@ def plain_percents(
         if not measured or not measured <= {*percents} or not isinstance(limit, e.Number):
             continue
         if Fraction(limit.digits) > 1:
-            yield Diagnostic(
-                Code.PLAIN_PERCENT,
-                f"`{', '.join(sorted(measured))}` is in %, and {limit.digits} is not a "
-                "percentage: it "
-                f"is {limit.digits} times 100 %",
+            yield diagnostic(
+                "plain_percent",
                 limit.span or place,
-                help=f"write `{limit.digits} %`",
-                severity=Severity.WARNING,
+                signals=", ".join(sorted(measured)),
+                digits=limit.digits,
             )
 
 
-def _bad_duration(text: str, span: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.UNKNOWN_UNIT,
-        f"`{text}` is not a duration",
-        span,
-        help="write `for 200 ms`; units are ns, us, ms, s, min, h",
-    )
-
-
 def _unknown_name(id: str, kinds: Mapping[str, Kind], span: Span) -> Diagnostic:
-    near = suggestion(id, kinds)
     declared = ", ".join(sorted(kinds)) or "nothing"
-    return Diagnostic(
-        Code.UNKNOWN_NAME,
-        f"`{id}` is not declared",
+    return diagnostic(
+        "undeclared_name",
         span,
-        help=f"did you mean `{near}`?" if near else f"declared here: {declared}",
+        id=id,
+        help=did_you_mean(id, kinds, f"declared here: {declared}"),
     )
 
 
 def _ambiguous(name: str, part: str, span: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.AMBIGUOUS_UNIT,
-        f"`{part}` in `{name}` is ambiguous: a unit, or the declared `{part}`",
-        span,
-        help=f"rename `{part}`; to divide by it, write `(2 m) / {part}`",
-    )
+    return diagnostic("ambiguous_unit", span, part=part, name=name)
 
 
 def _unknown_function(name: str, span: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.UNKNOWN_NAME,
-        f"unknown function `{name}`",
-        span,
-        help=f"bindings have the functions {', '.join(FUNCTIONS)}",
-    )
+    return diagnostic("unknown_function", span, name=name, functions=", ".join(FUNCTIONS))
 
 
 def _unexpected(error: UnexpectedInput, text: Span) -> Diagnostic:
     if text.text.startswith("TODO"):
-        return Diagnostic(
-            Code.BAD_EXPRESSION,
-            "the expression is not written yet",
-            text,
-            help="write when the proposition is true, such as `min_range < 5 cm`",
-        )
+        return diagnostic("empty_expression", text)
     at = error.pos_in_stream
     length = 1
     if not isinstance(error, UnexpectedCharacters):
@@ -426,10 +391,6 @@ def _unexpected(error: UnexpectedInput, text: Span) -> Diagnostic:
         length = len(token) if token.type != "$END" else 0
         at = len(text.text) if token.type == "$END" else token.start_pos
     span = text.part(at or 0, (at or 0) + length)
-    message = f"`{span.text}` does not fit here" if span.text else "the expression ends too early"
-    return Diagnostic(
-        Code.BAD_EXPRESSION,
-        message,
-        span,
-        help="write, for example, `min_range < 5 cm` or `abs(v) < 0.01 m/s and ready for 200 ms`",
-    )
+    if not span.text:
+        return diagnostic("expression_ends", span)
+    return diagnostic("misplaced_in_expression", span, text=span.text)

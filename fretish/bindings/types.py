@@ -13,7 +13,8 @@ from fractions import Fraction
 
 from fretish import expressions as e
 from fretish.bindings.declarations import Variable
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.printer import expression as printed
 from fretish.units import number
@@ -201,9 +202,4 @@ def _kind_name(kind: Kind) -> str:
 
 
 def _type_error(why: str, id: str, place: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.VARIABLE_TYPE,
-        f"`{id}` {why}",
-        place,
-        help=f"fix the sentence or the value, or the type of `[variable.{id}]`",
-    )
+    return diagnostic("variable_type", place, id=id, why=why)

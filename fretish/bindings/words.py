@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from fretish import expressions as e
 from fretish.bindings.declarations import Signal
 from fretish.bindings.expressions import FUNCTIONS
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, DiagnosticError, did_you_mean
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.recursion import with_recursion_limit
 
@@ -44,10 +45,8 @@ def resolve_words(
         return error.diagnostic
 
 
-class _WordError(Exception):
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
+class _WordError(DiagnosticError):
+    """Carries a diagnostic out of the recursion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,12 +62,7 @@ class _Resolver:
                     self._check_truth(self.signals[id], span)
                 return tree
             case e.Word(text, span):
-                raise self._error(
-                    Code.BAD_EXPRESSION,
-                    f'`"{text}"` is a word, and a truth value is needed',
-                    span,
-                    f'compare a signal with it: `mode = "{text}"`',
-                )
+                raise _WordError(diagnostic("text_as_truth", span or self.place, text=text))
             case e.Comparison():
                 return self._comparison(tree)
             case e.Not(arg):
@@ -173,12 +167,13 @@ class _Resolver:
             if other.name in signal.values:
                 raise self._ambiguous_word(other.name, signal, getattr(part, "span", None))
         if first.values != second.values:
-            raise self._error(
-                Code.BAD_EXPRESSION,
-                f"`{first.name}` and `{second.name}` have different values: they cannot be "
-                "compared",
-                getattr(left, "span", None),
-                "give both the same list of `values`, in one order",
+            raise _WordError(
+                diagnostic(
+                    "different_values",
+                    getattr(left, "span", None) or self.place,
+                    first=first.name,
+                    second=second.name,
+                )
             )
 
     def _check_word(self, left: e.Expression, right: e.Expression) -> None:
@@ -191,80 +186,60 @@ class _Resolver:
         if isinstance(other, e.Name) and other.id not in self.signals:
             return
         side = f"`{other.id}`" if isinstance(other, e.Name) else "the other side"
-        raise self._error(
-            Code.BAD_EXPRESSION,
-            f'`"{word.text}"` is a word, and {side} has no `values`',
-            word.span,
-            f'declare the words of the signal: `values = ["{word.text}"]`',
+        raise _WordError(
+            diagnostic("word_without_values", word.span or self.place, word=word.text, side=side)
         )
 
     def _check_truth(self, signal: Signal, span: Span | None) -> None:
         """F308 if the signal cannot be used as a truth value."""
         name = signal.name
         if signal.values:
-            raise self._error(
-                Code.BAD_EXPRESSION,
-                f"`{name}` is a word, and a truth value is needed",
-                span,
-                f'compare it: `{name} = "{signal.values[0]}"`',
+            raise _WordError(
+                diagnostic("word_as_truth", span or self.place, name=name, word=signal.values[0])
             )
         if signal.unit_name:
-            raise self._error(
-                Code.BAD_EXPRESSION,
-                f"`{name}` is in {signal.unit_name}, and a truth value is needed",
-                span,
-                f"compare it: `{name} > 0 {signal.unit_name}`; only a plain number may be a truth "
-                "value, 1 or 0",
+            raise _WordError(
+                diagnostic(
+                    "quantity_as_truth", span or self.place, name=name, unit=signal.unit_name
+                )
             )
 
     # Mistakes
 
-    def _error(self, code: Code, message: str, span: Span | None, fix: str) -> _WordError:
-        return _WordError(Diagnostic(code, message, span or self.place, help=fix))
-
     def _number_needed(self, what: str, signal: Signal | None, span: Span | None) -> _WordError:
         name, word = (signal.name, signal.values[0]) if signal else ("mode", "word")
-        return self._error(
-            Code.BAD_EXPRESSION,
-            f"{what} is a word, and a number is needed",
-            span,
-            f'a word can be compared only by `=` and `!=`: `{name} = "{word}"`',
+        return _WordError(
+            diagnostic("word_as_number", span or self.place, what=what, name=name, word=word)
         )
 
     def _order_error(
         self, op: str, left: e.Expression, right: e.Expression, span: Span | None
     ) -> _WordError:
         place = span or getattr(left, "span", None) or getattr(right, "span", None)
-        return self._error(
-            Code.BAD_EXPRESSION,
-            f"words have no order: `{op}` cannot compare them",
-            place,
-            "write `=` or `!=`, and join several by `or`",
-        )
+        return _WordError(diagnostic("words_without_order", place or self.place, operator=op))
 
     def _kind_error(self, signal: Signal, what: str, span: Span | None) -> _WordError:
-        return self._error(
-            Code.BAD_EXPRESSION,
-            f"`{signal.name}` is a word, and {what}: they cannot be compared",
-            span,
-            f"its values are {listed(signal.values)}",
+        return _WordError(
+            diagnostic(
+                "word_with_other",
+                span or self.place,
+                signal=signal.name,
+                what=what,
+                values=listed(signal.values),
+            )
         )
 
     def _ambiguous_word(self, text: str, signal: Signal, span: Span | None) -> _WordError:
-        return self._error(
-            Code.AMBIGUOUS_WORD,
-            f"`{text}` is ambiguous: a signal, or a value of `{signal.name}`",
-            span,
-            f"rename the signal; in `expr`, write the value in quotes: `'{text}'`",
+        return _WordError(
+            diagnostic("ambiguous_word", span or self.place, text=text, signal=signal.name)
         )
 
     def _unknown_word(self, text: str, signal: Signal, span: Span | None) -> _WordError:
-        near = suggestion(text, signal.values)
-        return self._error(
-            Code.UNKNOWN_WORD,
-            f"`{text}` is not a value of `{signal.name}`",
-            span,
-            f"{f'did you mean `{near}`? ' if near else ''}its values are {listed(signal.values)}",
+        guess, values = did_you_mean(text, signal.values, ""), listed(signal.values)
+        help_ = f"{guess} its values are {values}".lstrip()
+        place = span or self.place
+        return _WordError(
+            diagnostic("unknown_word", place, text=text, signal=signal.name, help=help_)
         )
 
 

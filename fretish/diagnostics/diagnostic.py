@@ -1,7 +1,7 @@
 """Diagnostics: code, message, span and help; and the table of all codes.
 
-A user's mistake is returned as a `Diagnostic`. The function that makes it is beside the check that
-needs it. The numbers of codes are permanent: never moved, never reused.
+A user's mistake is returned as a `Diagnostic`. Its text is in a table, by name
+(`messages.py`). The numbers of codes are permanent: never moved, never reused.
 """
 
 from __future__ import annotations
@@ -300,6 +300,14 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
     return any(diagnostic.is_error for diagnostic in diagnostics)
 
 
+class DiagnosticError(Exception):
+    """Carries a diagnostic to a caller further up."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
 def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
     """The known word that is most similar to a misspelt one, or None.
 
@@ -316,6 +324,12 @@ def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | No
     by_folded = {name.casefold(): name for name in known if _claim(name) == _claim(word)}
     near = get_close_matches(word.casefold(), by_folded, n=1, cutoff=cutoff)
     return by_folded[near[0]] if near else None
+
+
+def did_you_mean(word: str, known: Iterable[str], otherwise: str) -> str:
+    """A help text for a misspelt word: the most similar known word, or else another text."""
+    near = suggestion(word, known)
+    return f"did you mean `{near}`?" if near else otherwise
 
 
 def _claim(word: str) -> list[str]:

@@ -6,13 +6,12 @@ file (`kind = "fret"`, the default; `declared` holds its bindings) or a bindings
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.messages import code_tables
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,9 +59,10 @@ def explanation(code: Code) -> Explanation:
 @cache
 def _of_kind(kind: str) -> dict[str, Explanation]:
     """The explanations of the codes whose number begins with this digit."""
-    (file,) = (Path(__file__).parent / "codes").glob(f"{kind}_*.toml")
-    tables = tomllib.loads(file.read_text(encoding="utf-8"))
-    return {number: Explanation(**fields) for number, fields in tables.items()}
+    return {
+        number: Explanation(**{name: text for name, text in table.items() if name != "messages"})
+        for number, table in code_tables(kind).items()
+    }
 
 
 def text(code: Code) -> str:

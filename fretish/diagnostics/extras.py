@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from importlib.util import find_spec
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 
 
@@ -29,7 +30,7 @@ def missing_extra(
     """
     *some, last = [f"`{name}`" for name in packages]
     names = f"{', '.join(some)} and {last}" if some else last
-    return Diagnostic(Code.MISSING_EXTRA, f"{need} {names}", place, install_help(extra))
+    return diagnostic("missing_extra", place, need=need, names=names, help=install_help(extra))
 
 
 def unless_installed(need: str, packages: Sequence[str], extra: str) -> Diagnostic | None:

@@ -6,6 +6,7 @@ import re
 
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.fixes import Fix, removal
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.error_rules.precedence import is_unambiguous
 from fretish.error_rules.unexpected import STARTS_EXPRESSION, Lexeme, Unexpected, not_fretish
@@ -104,23 +105,17 @@ def _join_error(u: Unexpected, lexeme: Lexeme) -> Diagnostic | None:
             lexeme.span, _JOIN_SPELLINGS[word], is_safe=is_unambiguous(u.text, lexeme.span, word)
         )
     if word in _NEGATED_JOINS:
-        words = f"use the operators of FRETish: `{_NEGATED_JOINS[word]}`"
-        return not_fretish(f"FRETish has no `{lexeme.word}`", lexeme.span, words)
+        operators = _NEGATED_JOINS[word]
+        return diagnostic("negated_join", lexeme.span, word=lexeme.word, operators=operators)
     if lexeme.kind == "_COMMA":
-        return not_fretish(
-            "`,` cannot join expressions", lexeme.span, "join the parts by `&` or by `|`"
-        )
+        return diagnostic("comma_as_join", lexeme.span)
     if lexeme.kind == "IS":
-        return not_fretish(
-            "`is` cannot compare here", lexeme.span, "use a comparison operator: `p < 3`"
-        )
+        return diagnostic("is_as_comparison", lexeme.span)
     return None
 
 
 def _operator_error(span: Span, spelt: str, *, is_safe: bool = True) -> Diagnostic:
-    return not_fretish(
-        f"`{span.text}` is not an operator of FRETish", span, Fix(span, spelt, is_safe)
-    )
+    return diagnostic("foreign_operator", span, operator=span.text, fix=Fix(span, spelt, is_safe))
 
 
 _UPWARD, _DOWNWARD = ("<", "<="), (">", ">=")
@@ -154,24 +149,17 @@ def malformed_number(u: Unexpected) -> Diagnostic | None:
         return not_fretish(message, u.lexeme.span, fix if number else words, words)
     if u.lexeme.kind != "NUMBER" or u.previous is None or u.previous.kind != "NUMBER":
         return None
-    return not_fretish(
-        "a number must not begin with 0",
-        u.previous.span.to(u.lexeme.span),
-        "remove the leading zeros",
-    )
+    return diagnostic("leading_zeros", u.previous.span.to(u.lexeme.span))
 
 
 def unmatched_parenthesis(u: Unexpected) -> Diagnostic | None:
     """F101 for a missing or superfluous parenthesis; no fix is safe."""
     if u.lexeme.kind == "RPAR" and u.expects("$END", "SATISFY", "SHALL"):
-        fix = removal(u.lexeme.span)
-        words = "remove it, or write the `(` that it closes"
-        return not_fretish("there is no `(` for this `)`", u.lexeme.span, fix, words)
+        return diagnostic("unopened_parenthesis", u.lexeme.span, fix=removal(u.lexeme.span))
     if not u.lexeme.at_end or not u.expects("RPAR"):
         return None
     unquoted = re.sub(r'"[^"\n]*"', "", u.text_before.text)
     missing = unquoted.count("(") - unquoted.count(")")
     fix = Fix(u.lexeme.span, ")" * missing)
-    message = f"{missing} `(` {'is' if missing == 1 else 'are'} not closed"
-    words = f"write `{fix.text}` here, or where the part in parentheses must end"
-    return not_fretish(message, u.lexeme.span, fix, words)
+    count = f"{missing} `(` {'is' if missing == 1 else 'are'}"
+    return diagnostic("unclosed_parenthesis", u.lexeme.span, count=count, end=fix.text, fix=fix)

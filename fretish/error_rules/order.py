@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.fixes import Fix, removal
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.error_rules.operators import JOIN
 from fretish.error_rules.unexpected import Unexpected, not_fretish
@@ -29,23 +30,14 @@ def further_sentence(u: Unexpected) -> Diagnostic | None:
     if not u.expects("$END") or u.lexeme.kind not in _BEGINNINGS:
         return None
     if u.follows("_DOT") and u.lexeme.kind not in ("ID", "QUOTED"):
-        return _sentence_error(u)
+        return diagnostic("second_sentence", u.lexeme.span)
     ended = u.follows("_DOT") or "\n" in _space_before(u)
     named = u.lexeme.kind in ("ID", "QUOTED")
     direct = named and re.match(r'("[^"\n]+"|[\w.%]+)\s+shall\b', u.rest.text, re.IGNORECASE)
     plain = ended or not (named or u.lexeme.kind in TIMINGS)
     if not direct and not (plain and _SHALL.search(u.rest.text)):
         return None
-    return _sentence_error(u)
-
-
-def _sentence_error(u: Unexpected) -> Diagnostic:
-    return Diagnostic(
-        Code.SEVERAL_SENTENCES,
-        "a second sentence begins here",
-        u.lexeme.span,
-        help="give each sentence a header with an `id` between two lines `+++`, or its own file",
-    )
+    return diagnostic("second_sentence", u.lexeme.span)
 
 
 def _space_before(u: Unexpected) -> str:
@@ -94,8 +86,7 @@ def misplaced_part(u: Unexpected) -> Diagnostic | None:
     if u.lexeme.kind in _SIMPLE_TIMINGS | _DURATIONS and u.follows("SATISFY"):
         return _timing_after_satisfy(u)
     if u.lexeme.kind == "WITH" and u.expects("SHALL", "WHENEVER"):
-        words = "write it there: `shall with probability ... satisfy ...`"
-        return not_fretish("the probability must stand after `shall`", u.lexeme.span, words)
+        return diagnostic("misplaced_probability", u.lexeme.span)
     if u.lexeme.kind == "PROBABILITY":
         fix = Fix(u.lexeme.span.part(0, 0), "with ", is_safe=u.expects("WITH"))
         words = "write `with probability ...`"
@@ -132,11 +123,7 @@ def wrong_timing(u: Unexpected) -> Diagnostic | None:
         return _not(u)
     if u.lexeme.kind not in TIMINGS or u.expects(u.lexeme.kind):
         return None
-    return not_fretish(
-        "a sentence has one timing, and this is a second one",
-        u.lexeme.span,
-        "write a requirement for each timing",
-    )
+    return diagnostic("second_timing", u.lexeme.span)
 
 
 def _not(u: Unexpected) -> Diagnostic:
@@ -167,18 +154,14 @@ def missing_part(u: Unexpected) -> Diagnostic | None:
     word, kind = u.previous.word, u.previous.kind
     if u.lexeme.word.lower() == word.lower() and word.isalpha():
         leave = removal(u.lexeme.span, is_safe=True)
-        return not_fretish(f"`{word}` is written twice", u.lexeme.span, leave)
+        return diagnostic("word_written_twice", u.lexeme.span, word=word, fix=leave)
     part = next((part for part, kinds in _PARTS.items() if kind in kinds), "")
     begins = u.lexeme.kind in ("SATISFY", "SHALL") or _is_component(u.rest.text)
     if not part or not (u.lexeme.at_end or begins):
         return None
     if part == "stop condition" and not _SHALL.search(u.text_before.text):
         part = "mode"  # `before` without `shall` before it begins a scope.
-    return not_fretish(
-        f"the {part} is missing after `{word}`",
-        u.lexeme.span,
-        f"write it there: `{word} p`",
-    )
+    return diagnostic("part_missing", u.lexeme.span, part=part, word=word)
 
 
 def _is_component(rest: str) -> bool:

@@ -11,7 +11,7 @@ from typing import Any
 
 import tomli_w
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean
 from fretish.diagnostics.source import Span
 from fretish.reading.limits import with_budget
 
@@ -151,10 +151,9 @@ def as_key(name: str) -> str:
 def unknown_key(code: Code, key: str, allowed: Iterable[str], span: Span, where: str) -> Diagnostic:
     """The diagnostic of an unknown key; it suggests a similar one, or lists all."""
     names = tuple(allowed)
-    near = suggestion(key, names)
     return Diagnostic(
         code,
         f"unknown field `{key}` in {where}",
         span,
-        help=f"did you mean `{near}`?" if near else f"the fields are {', '.join(names)}",
+        help=did_you_mean(key, names, f"the fields are {', '.join(names)}"),
     )

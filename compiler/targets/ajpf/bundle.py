@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib.resources import files
 from pathlib import PurePosixPath
 from typing import Any
@@ -28,7 +29,8 @@ from compiler.targets.ajpf.safety_function import Reaction, Sif, sif
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Modality
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.expressions import MIRRORED
 from fretish.reading.recursion import with_recursion_limit
 
@@ -108,12 +110,11 @@ def _not_kept(requirement: FormalizedRequirement, evidence: Sequence[Proof]) -> 
     for line in evidence:
         if line.result is Result.PROVED:
             continue
-        return Diagnostic(
-            Code.NOT_KEPT,
-            f"the agent generated from {requirement.id} is not shown to satisfy it: {line.detail}",
+        return diagnostic(
+            "agent_not_shown",
             requirement.entry.wording,
-            help="an agent needs time to react: use `eventually`, no scope or stop condition that "
-            "may come first, and few triggers",
+            requirement=requirement.id,
+            detail=line.detail,
         )
     return None
 
@@ -313,14 +314,6 @@ def _comparisons(declarations: Declarations, expression: e.Expression) -> Iterat
         yield from _comparisons(declarations, part)
 
 
-def _refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(requirement)
-
-
-def _refuse_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(requirement, _WEAKEN)
-
-
 @with_recursion_limit
 def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
     """A warning about the properties (F605, F606, F607); else about the agent (F615)."""
@@ -328,25 +321,13 @@ def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Di
     agent = checked_agent(requirement, options) if warning is None else warning
     if not isinstance(agent, CheckedAgent) or not agent.sif.over_responds:
         return warning
-    return Diagnostic(
-        Code.OVER_RESPONDS,
-        f"the agent of {requirement.id} responds to every event of its condition, even if the "
-        "rest of the condition does not hold",
+    return diagnostic(
+        "agent_over_responds",
         requirement.sentence.condition.span
         if requirement.sentence.condition
         else requirement.entry.wording,
-        "percepts are believed one after the other, so an agent that also checks the rest may "
-        "miss its trigger; if it responds too often, bind the whole condition to one proposition",
-        Severity.WARNING,
+        requirement=requirement.id,
     )
-
-
-def _remark(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return remark(requirement)
-
-
-def _remark_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return remark(requirement, _WEAKEN)
 
 
 _SUMMARY = "an agent, its environment and its properties, ready for AJPF"
@@ -354,8 +335,14 @@ TARGET = Target(
     "ajpf-bundle",
     _SUMMARY,
     emit,
-    _refuse,
-    _remark,
+    refusal,
+    remark,
     names=names.everything,
-    weak=Target("ajpf-bundle", _SUMMARY, emit, _refuse_weak, _remark_weak),
+    weak=Target(
+        "ajpf-bundle",
+        _SUMMARY,
+        emit,
+        partial(refusal, options=_WEAKEN),
+        partial(remark, options=_WEAKEN),
+    ),
 )

@@ -11,13 +11,12 @@ parser of MCAPL. Controls: Kupferman and Vardi, Vacuity detection in temporal mo
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import PurePosixPath
+from functools import partial
 from typing import Literal, assert_never
 
 from compiler.agents.psl_printing import property_text
-from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Uninterpreted, boolean, obligation
@@ -30,15 +29,16 @@ from compiler.targets.target import (
     DEFAULT,
     Options,
     Target,
+    file_of_each,
     not_expressible,
-    stem,
     too_long,
 )
 from fretish import syntax as s
 from fretish.bindings.comparisons import FUNCTIONS
 from fretish.bindings.declarations import Modality
 from fretish.checking import LOOK_AHEAD, LOOK_BACK, NUMBERS_BACK, calls, conditions
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.expressions import Comparison
 from fretish.expressions import names as names_of
 from fretish.printer import timing as printing_of
@@ -192,11 +192,11 @@ def _refused_form(
     requirement: FormalizedRequirement, formula: f.Formula | None
 ) -> Diagnostic | None:
     if formula is None:
-        return Diagnostic(
-            Code.NOT_PROVED,
-            f"the AJPF property of {requirement.id} is not proved equivalent to the requirement",
+        return diagnostic(
+            "ajpf_property_not_proved",
             requirement.entry.wording,
-            help=f"this is a fault of fretc: report it, and {_MONITOR}",
+            requirement=requirement.id,
+            monitor=_MONITOR,
         )
     if isinstance(formula, f.Const):
         return _not(requirement, "a formula that is constant", "it says nothing")
@@ -279,47 +279,17 @@ def _key(id: str) -> str:
 
 def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
     """F605, F606, F607: limits of AJPF's verdict on the property."""
+    place = requirement.sentence.timing_span or requirement.entry.wording
     loss = weakened(requirement, options)
     if loss is not None:
-        message = f"the property of {requirement.id} is weaker than the requirement: {loss}"
-        return _warning(
-            requirement, Code.WEAKENED, message, "check the bound with `--emit monitor`"
-        )
+        return diagnostic("weakened_property", place, requirement=requirement.id, loss=loss)
     sentence = requirement.sentence
     scope = sentence.scope.kind if sentence.scope else None
     if not _begins_at_once(sentence.timing) or (scope is not None and scope.negates):
         return None
     if sentence.condition is None and scope in (None, s.ScopeKind.NOT_IN, s.ScopeKind.BEFORE):
-        return _warning(
-            requirement,
-            Code.STATE_ZERO,
-            f"{requirement.id} demands its response in the first state, where no percept is "
-            "believed yet",
-            "make the response an initial belief, or state it with a condition and `eventually`",
-        )
-    return _warning(
-        requirement,
-        Code.NO_TIME_TO_REACT,
-        f"{requirement.id} demands its response in the very state of its trigger: it is false of "
-        "every agent that has to react",
-        "an agent needs some nine states from a percept to its answer: state it with `eventually`",
-    )
-
-
-def _warning(requirement: FormalizedRequirement, code: Code, message: str, fix: str) -> Diagnostic:
-    place = requirement.sentence.timing_span or requirement.entry.wording
-    return Diagnostic(code, message, place, fix, Severity.WARNING)
-
-
-@with_recursion_limit
-def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
-) -> tuple[Artifact, ...]:
-    """`<id>.psl` for each requirement: the property, named by its id, and its controls."""
-    return tuple(
-        Artifact(PurePosixPath(f"{stem(requirement)}.psl"), text(requirement, options))
-        for requirement in requirements
-    )
+        return diagnostic("state_zero", place, requirement=requirement.id)
+    return diagnostic("no_time_to_react", place, requirement=requirement.id)
 
 
 def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
@@ -334,31 +304,18 @@ def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
     )
 
 
-def _refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(requirement)
-
-
-def _refuse_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(requirement, _WEAKEN)
-
-
-def _remark(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return remark(requirement)
-
-
-def _remark_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
-    return remark(requirement, _WEAKEN)
-
-
+_EMIT = file_of_each("psl", text)
 _SUMMARY = "a property file for the AJPF model checker"
 TARGET = Target(
     "ajpf",
     _SUMMARY,
-    emit,
-    _refuse,
-    _remark,
+    _EMIT,
+    refusal,
+    remark,
     names=names.everything,
-    weak=Target("ajpf", _SUMMARY, emit, _refuse_weak, _remark_weak),
+    weak=Target(
+        "ajpf", _SUMMARY, _EMIT, partial(refusal, options=_WEAKEN), partial(remark, options=_WEAKEN)
+    ),
 )
 
 

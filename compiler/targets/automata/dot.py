@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import PurePosixPath
 
-from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
@@ -21,10 +19,9 @@ from compiler.targets.automata.chart import PLACES, chart
 from compiler.targets.automata.expressibility import refusal
 from compiler.targets.automata.folding import OPEN, SATISFIED, VIOLATED, Edge, Node, folded_chart
 from compiler.targets.comparison_names import comparison_names, notes, with_renamed_atoms
-from compiler.targets.target import DEFAULT, Options, Target, stem
+from compiler.targets.target import Target, file_of_each
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.meaning import meaning
-from fretish.reading.recursion import with_recursion_limit
 
 _LONGEST = 32
 """Maximum number of characters of an expression on an edge; a longer one gets a name, and is
@@ -36,17 +33,6 @@ _WIDTH = 76
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F601 for a probability or a temporal predicate, F670 for too many states."""
     return refusal(requirement, "DOT")
-
-
-@with_recursion_limit
-def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
-) -> tuple[Artifact, ...]:
-    """`<id>.dot` for each requirement."""
-    return tuple(
-        Artifact(PurePosixPath(f"{stem(requirement)}.dot"), _text(requirement))
-        for requirement in requirements
-    )
 
 
 def _text(requirement: FormalizedRequirement) -> str:
@@ -132,7 +118,7 @@ def _lines(texts: Iterable[str]) -> str:
 TARGET = Target(
     "dot",
     "a picture of the automaton, for Graphviz",
-    emit,
+    file_of_each("dot", lambda requirement, _: _text(requirement)),
     refuse,
     next_step="`dot -Tsvg -O {}` draws it",
 )

@@ -7,7 +7,8 @@ from compiler.formalization.letters import temporal_predicate
 from compiler.formalization.reference import TooManyStatesError
 from compiler.targets.automata.chart import MOST_STATES, explored
 from compiler.targets.target import not_expressible
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 
 def refusal(requirement: FormalizedRequirement, target: str) -> Diagnostic | None:
@@ -36,10 +37,10 @@ def _too_large(requirement: FormalizedRequirement) -> Diagnostic | None:
     try:
         explored(requirement)
     except TooManyStatesError:
-        return Diagnostic(
-            Code.TOO_LARGE,
-            f"the automaton of {requirement.id} has more than {MOST_STATES} states",
+        return diagnostic(
+            "automaton_too_large",
             requirement.entry.wording,
-            help="state a shorter duration, use a clock with longer ticks, or `--emit smv`",
+            requirement=requirement.id,
+            most=MOST_STATES,
         )
     return None

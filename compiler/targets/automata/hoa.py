@@ -10,9 +10,7 @@ requires one event again and again. Source: Babiak et al., The Hanoi Omega-Autom
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from pathlib import PurePosixPath
 
-from compiler.files.artifact import Artifact
 from compiler.files.build_id import __version__
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
@@ -24,25 +22,13 @@ from compiler.logic.implicants import Term
 from compiler.targets.automata.chart import PLACES, Chart, chart, kind, words
 from compiler.targets.automata.expressibility import refusal
 from compiler.targets.comparison_names import comparison_names, notes
-from compiler.targets.target import DEFAULT, Options, Target, stem
+from compiler.targets.target import Target, file_of_each
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.reading.recursion import with_recursion_limit
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F601 for a probability or a temporal predicate, F670 for too many states."""
     return refusal(requirement, "HOA")
-
-
-@with_recursion_limit
-def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
-) -> tuple[Artifact, ...]:
-    """`<id>.hoa` for each requirement."""
-    return tuple(
-        Artifact(PurePosixPath(f"{stem(requirement)}.hoa"), _text(requirement))
-        for requirement in requirements
-    )
 
 
 def _text(requirement: FormalizedRequirement) -> str:
@@ -168,4 +154,9 @@ class _Aliases:
         return f"@{name}"
 
 
-TARGET = Target("hoa", "a deterministic Büchi automaton in the HOA format", emit, refuse)
+TARGET = Target(
+    "hoa",
+    "a deterministic Büchi automaton in the HOA format",
+    file_of_each("hoa", lambda requirement, _: _text(requirement)),
+    refuse,
+)

@@ -8,11 +8,9 @@ language: Cavada et al., NuSMV 2.6 User Manual, chapters 2 and 3.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import PurePosixPath
 
-from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of, impossible_combinations
@@ -25,25 +23,13 @@ from compiler.logic.spelling.reserved_words import SMV
 from compiler.targets.automata.expressibility import no_automaton
 from compiler.targets.automata.smv_symbols import monitor
 from compiler.targets.comparison_names import comparison_names, in_words
-from compiler.targets.target import DEFAULT, Options, Target, identifier, stem
+from compiler.targets.target import Target, file_of_each, identifier
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.reading.recursion import with_recursion_limit
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F601 for a probability or a temporal predicate."""
     return no_automaton(requirement, "NuSMV")
-
-
-@with_recursion_limit
-def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
-) -> tuple[Artifact, ...]:
-    """`<id>.smv` for each requirement."""
-    return tuple(
-        Artifact(PurePosixPath(f"{stem(requirement)}.smv"), _text(requirement))
-        for requirement in requirements
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,7 +130,7 @@ def _specs(
 TARGET = Target(
     "smv",
     "a model with the monitor as a module, for NuSMV and nuXmv",
-    emit,
+    file_of_each("smv", lambda requirement, _: _text(requirement)),
     refuse,
     next_step="`NuSMV {}` checks its properties",
     names=_names,

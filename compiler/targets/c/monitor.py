@@ -13,44 +13,24 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from compiler.files.artifact import Artifact
-from compiler.files.build_id import __version__
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.identifiers import legal_names
-from compiler.logic.spelling.reserved_words import C_LIBRARY, C
-from compiler.program.lowering import program
-from compiler.program.program import Counter
-from compiler.program.rails import Reading, Ring, rail
+from compiler.logic.spelling.reserved_words import C_LIBRARY, C, ReservedWords
+from compiler.program.rails import Ring
 from compiler.signals.functions import Functions, functions
 from compiler.targets.c import signals
 from compiler.targets.c.printer import Printer
-from compiler.targets.comparison_names import comparison_names, in_words
-from compiler.targets.python.monitor import description_of, module, prefixes_of, refusal, remark
-from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
+from compiler.targets.fixed_memory import input_names, inputs, rail_of, too_large
+from compiler.targets.python.monitor import description, refusal, remark
+from compiler.targets.python.names import module, prefixes_of
+from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
-
-_MOST_BITS = 2**23
-"""Maximum number of bits of a ring: a mebibyte for certain, and one for possible values."""
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """The refusals of a monitor in Python; and F601 for bounds that need too much memory."""
     return refusal(requirement, "C") or too_large(requirement, "C")
-
-
-@with_recursion_limit
-def too_large(requirement: FormalizedRequirement, language: str) -> Diagnostic | None:
-    """F601 if a counter or a ring needs too much memory."""
-    cells = rail(program({requirement.id: requirement.watch}), {requirement.id: "r"}).cells
-    if any(isinstance(cell, Counter) and cell.most >= 2**31 for cell in cells):
-        what, fix = "a bound of 2^31 ticks or more", "counters have 32 bits: choose a longer tick"
-    elif any(isinstance(cell, Ring) and cell.length > _MOST_BITS for cell in cells):
-        what = f"a demand about a single tick more than {_MOST_BITS} ticks ago"
-        fix = "it would keep more than a mebibyte: choose a longer tick"
-    else:
-        return None
-    return not_expressible(f"a monitor in {language}", requirement, what, fix)
 
 
 def emit(
@@ -113,21 +93,14 @@ def _files(
 ) -> tuple[Artifact, ...]:
     """The header and the source of one monitor for all of the requirements."""
     printer = c_printer(name, requirements)
-    meanings = {
-        atom: text for requirement in requirements for atom, text in in_words(requirement).items()
-    }
-    values = _values(printer) | {"base": base, "header": f"{name}.h"}
-    values["title"] = ", ".join(requirement.id for requirement in requirements)
+    values = _values(printer) | description(requirements)
+    values |= {"base": base, "header": f"{name}.h"}
     source = render("c/monitor.c.j2", **values)
-    inputs = printer.names.items()
     header = render(
         "c/monitor.h.j2",
         **values,
         guard=signals.guard(name),
-        formalized=[description_of(requirement) for requirement in requirements],
-        tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
-        version=__version__,
-        inputs=[{"name": own, "text": meanings.get(name, name)} for name, own in inputs],
+        inputs=inputs(requirements, printer.names),
         bytes=2 * printer.bytes,
         operations=_operations(source, len(requirements)),
     )
@@ -168,51 +141,26 @@ def c_printer(name: str, requirements: Sequence[FormalizedRequirement]) -> Print
         name: the name of its header, without extension.
         requirements: requirements that are not refused.
     """
-    prefixes = prefixes_of([requirement.id for requirement in requirements])
-    members = legal_names(prefixes, C | {signals.guard(name)}, names=prefixes)
-    cells = rail(
-        program({requirement.id: requirement.watch for requirement in requirements}), members
-    )
-    return Printer.of(cells, _names(name, requirements))
+    reserved = _reserved(name)
+    return Printer.of(rail_of(requirements, reserved), input_names(requirements, reserved))
 
 
-def _names(name: str, requirements: Sequence[FormalizedRequirement]) -> Mapping[str, str]:
-    """Proposition → the member of the inputs."""
-    propositions = (
-        proposition for requirement in requirements for proposition in requirement.watched
-    )
-    spoken = {
-        proposition: word
-        for requirement in requirements
-        for proposition, word in comparison_names(requirement).items()
-    }
-    return legal_names(propositions, C | {signals.guard(name)}, names=spoken)
+def _reserved(name: str) -> ReservedWords:
+    return C | {signals.guard(name)}
 
 
 def _values(printer: Printer) -> dict[str, Any]:
     """The variables of both templates."""
-    program = printer.rail
     return {
         "members": printer.members(),
         "literals": [*printer.literals()],
         "rings": [
             {"name": cell.name, "words": -(-cell.length // 32)}
-            for cell in program.cells
+            for cell in printer.rail.cells
             if isinstance(cell, Ring)
         ],
-        "stages": [
-            {"comment": stage.comment, "lines": [*printer.lines(stage)]} for stage in program.stages
-        ],
-        "readings": [_reading(reading, printer) for reading in program.readings],
-    }
-
-
-def _reading(reading: Reading, printer: Printer) -> Mapping[str, Any]:
-    return {
-        "id": reading.id,
-        "prefix": reading.prefix,
-        "left": printer.left(reading.deadline, reading.truths["open"]),
-        "truths": {name: printer.value(value) for name, value in reading.truths.items()},
+        "stages": printer.stages(),
+        "readings": printer.readings(),
     }
 
 
@@ -242,5 +190,7 @@ TARGET = Target(
     remark,
     joins=True,
     next_step="`cc -std=c99 -c {}` compiles it",
-    names=lambda requirement: _names(f"{module(stem(requirement))}_monitor", [requirement]),
+    names=lambda requirement: input_names(
+        [requirement], _reserved(f"{module(stem(requirement))}_monitor")
+    ),
 )

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
-from compiler.files.build_id import __version__
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.identifiers import legal_names
@@ -19,8 +18,10 @@ from compiler.program.lowering import program
 from compiler.targets.javascript import signals
 from compiler.targets.javascript.constants import Constants, scale, truth
 from compiler.targets.javascript.printer import Printer
-from compiler.targets.python.comparisons import TRUTH, InputAdapter, Spelling, Writer, input_adapter
-from compiler.targets.python.monitor import description_of, module, refusal, remark
+from compiler.targets.python.comparisons import TRUTH, Spelling, Writer
+from compiler.targets.python.input_adapter import InputAdapter, input_adapter
+from compiler.targets.python.monitor import description, description_of, refusal, remark, watched
+from compiler.targets.python.names import module
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
@@ -61,10 +62,7 @@ def text(*requirements: FormalizedRequirement) -> str:
     code = body(*requirements)
     return render(
         "js/monitor.mjs.j2",
-        title=", ".join(requirement.id for requirement in requirements),
-        version=__version__,
-        formalized=[description_of(requirement) for requirement in requirements],
-        tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
+        **description(requirements),
         body=code.text,
         exports=code.exports,
     )
@@ -84,9 +82,7 @@ class Body:
 @with_recursion_limit
 def body(*requirements: FormalizedRequirement) -> Body:
     """The code of one monitor for all requirements, with the conditions of `text`."""
-    propositions = tuple(
-        dict.fromkeys(name for requirement in requirements for name in requirement.watched)
-    )
+    propositions = watched(requirements)
     compared = input_adapter(requirements, propositions)
     inputs = compared.inputs if compared else {}
     names = legal_names((*propositions, *inputs), ())

@@ -19,7 +19,8 @@ from compiler.targets.interceptor_options import repetition, ticks
 from compiler.targets.target import DEFAULT, Options, Target
 from fretish.bindings.declarations import Declarations, Interception, InterceptorForm
 from fretish.bindings.tables.interceptor import TABLE
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from monitors.source_text import interceptor as core
 
@@ -35,12 +36,8 @@ def refuse(options: Options) -> Diagnostic | None:
         return None
     source = Source("bindings.toml", "") if declared is None else declared.source
     subject = "there are no bindings, and so" if declared is None else "the bindings declare"
-    return Diagnostic(
-        Code.NO_INTERCEPTOR,
-        f"{subject} no interceptor",
-        source.span().part(0, 0),
-        help=f"add this table to {source.name}, with the topics of your robot:",
-        paste=TABLE,
+    return diagnostic(
+        "no_interceptor", source.span().part(0, 0), who=subject, source=source.name, paste=TABLE
     )
 
 
@@ -59,46 +56,19 @@ def remarks(options: Options) -> tuple[Diagnostic, ...]:
     return (*latched, *_unwatched(node), *_short_hold(declared, node))
 
 
-def _warning(code: Code, message: str, node: Interception, fix: str) -> Diagnostic:
-    return Diagnostic(code, message, node.span, fix, Severity.WARNING)
-
-
 def _latching(node: Interception) -> Diagnostic:
-    return _warning(
-        Code.LATCHING,
-        "the interceptor latches: after the first stop the robot moves only after a restart, "
-        "whatever the safety function requests",
-        node,
-        "write `latching = false`, or state in a requirement that a stop is final",
-    )
+    return diagnostic("latching", node.span)
 
 
 def _event_driven(node: Interception) -> Diagnostic:
-    return _warning(
-        Code.EVENT_DRIVEN,
-        "the interceptor publishes only when a command comes: if the planner stops publishing, "
-        "the wheels keep their last velocity, even if a stop is requested",
-        node,
-        'write `form = "timer"` and a `period`',
-    )
+    return diagnostic("event_driven", node.span)
 
 
 def _unwatched(node: Interception) -> Iterator[Diagnostic]:
     if not node.stop_timeout:
-        yield _warning(
-            Code.UNWATCHED,
-            f"no `stop_timeout`: if the safety function dies, or `{node.stop}` is lost, the "
-            "robot keeps moving",
-            node,
-            "add `stop_timeout`: a few times the longest silence of the safety function",
-        )
+        yield diagnostic("no_stop_timeout", node.span, stop=node.stop)
     if not node.scan_timeout:
-        yield _warning(
-            Code.UNWATCHED,
-            "no `scan_timeout`: if the sensor dies, only the safety function can notice",
-            node,
-            "add `scan` and `scan_timeout`: a few times the period of the sensor",
-        )
+        yield diagnostic("no_scan_timeout", node.span)
 
 
 def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnostic]:
@@ -110,13 +80,12 @@ def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnost
     gap = assumed.lost * period * (repetition(assumed, period) or 1)
     if sure > gap:
         return
-    yield _warning(
-        Code.SHORT_HOLD,
-        f"zero is held for {_duration(sure)} for certain, but messages may be lost for "
-        f"{_duration(gap)}: a robot that was stopped may move between two "
-        "requests",
-        node,
-        f"make `hold` longer than {_duration(gap + node.period)}",
+    yield diagnostic(
+        "short_hold",
+        node.span,
+        held=_duration(sure),
+        gap=_duration(gap),
+        least=_duration(gap + node.period),
     )
 
 

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
+from typing import Any
 
 from compiler.files.artifact import Artifact
 from compiler.files.build_id import __version__
@@ -19,19 +20,18 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement, without_probability
 from compiler.formalization.obligation import TRAITS, Trait, obligation
 from compiler.logic import printing
-from compiler.logic.identifiers import legal_names, underlined
-from compiler.logic.spelling.reserved_words import PYTHON
 from compiler.program.program import MARKS, SIGNALS
-from compiler.targets.python.comparisons import (
-    ANNOTATIONS,
-    NAMES,
-    InputAdapter,
-    Writer,
-    input_adapter,
+from compiler.targets.python.comparisons import ANNOTATIONS, Writer
+from compiler.targets.python.input_adapter import InputAdapter, input_adapter
+from compiler.targets.python.names import (
+    MOST_PARAMETERS,
+    class_prefix,
+    module,
+    parameters_of,
+    prefixes_of,
 )
 from compiler.targets.python.program import (
     Program,
-    locals_of,
     marks_of,
     program,
 )
@@ -39,7 +39,8 @@ from compiler.targets.target import DEFAULT, Options, Target, not_expressible, s
 from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, calls, conditions
 from fretish.clock import assumed_ticks
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.expressions import depth
 from fretish.reading.recursion import with_recursion_limit
 from monitors.source_text import kernel, kernel_of_variables
@@ -90,11 +91,8 @@ def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | N
         )
     if assumed_ticks(requirement.sentence, requirement.clock) is None:
         return None
-    return Diagnostic(
-        Code.NO_CLOCK,
-        f"no clock says how many ticks the duration of {requirement.id} is",
-        requirement.sentence.timing_span,
-        help='declare `[clock]` with `tick = "100 ms"` in bindings.toml, or write ticks',
+    return diagnostic(
+        "no_clock_for_duration", requirement.sentence.timing_span, requirement=requirement.id
     )
 
 
@@ -121,12 +119,10 @@ def remark(requirement: FormalizedRequirement) -> Diagnostic | None:
     later = Trait.UNMET in owed and Trait.LAST not in owed
     if sentence.condition is None or not later or not s.ends_with_run(scope):
         return None
-    return Diagnostic(
-        Code.NEVER_DECIDED,
-        f"no run, however long, can violate {requirement.id} or confirm it: it sets no bound",
+    return diagnostic(
+        "never_decided",
         sentence.timing_span or requirement.entry.wording,
-        help="state a bound: `within ...` instead of `eventually`",
-        severity=Severity.WARNING,
+        requirement=requirement.id,
     )
 
 
@@ -154,9 +150,7 @@ def text(*requirements: FormalizedRequirement) -> str:
         requirement for requirement in requirements if requirement.sentence.probability
     ]
     requirements = tuple(map(without_probability, requirements))
-    names = tuple(
-        dict.fromkeys(name for requirement in requirements for name in requirement.watched)
-    )
+    names = watched(requirements)
     prefixes = prefixes_of([requirement.id for requirement in requirements])
     compared = input_adapter(requirements, names)
     variables = compared.inputs if compared else {}
@@ -169,12 +163,9 @@ def text(*requirements: FormalizedRequirement) -> str:
     inputs = [_Input(name, parameters[name], _is_negated(name, code)) for name in names]
     return render(
         "monitor/monitor.py.j2",
-        title=", ".join(requirement.id for requirement in requirements),
-        class_name=_class_name(requirements[0].id) if len(requirements) == 1 else "All",
-        version=__version__,
-        formalized=[description_of(requirement) for requirement in requirements],
+        **description(requirements),
+        class_name=class_prefix(requirements[0].id) if len(requirements) == 1 else "All",
         probabilistic=[_probability_note(requirement) for requirement in probabilistic],
-        tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         inputs=inputs,
         row=_tuple([p.name for p in inputs]),
         by_mapping=len(inputs) > MOST_PARAMETERS,
@@ -306,6 +297,23 @@ def _probability_note(requirement: FormalizedRequirement) -> dict[str, str]:
     }
 
 
+def watched(requirements: Sequence[FormalizedRequirement]) -> tuple[str, ...]:
+    """The propositions that a monitor of all requirements reads, each once."""
+    return tuple(
+        dict.fromkeys(name for requirement in requirements for name in requirement.watched)
+    )
+
+
+def description(requirements: Sequence[FormalizedRequirement]) -> dict[str, Any]:
+    """The description at the top of a monitor, as values for a template."""
+    return {
+        "title": ", ".join(requirement.id for requirement in requirements),
+        "version": __version__,
+        "formalized": [description_of(requirement) for requirement in requirements],
+        "tick": str(requirements[0].clock) if requirements[0].clock else "not declared",
+    }
+
+
 def description_of(requirement: FormalizedRequirement) -> dict[str, object]:
     """The description of a requirement at the top of a monitor."""
     return {
@@ -319,64 +327,7 @@ def description_of(requirement: FormalizedRequirement) -> dict[str, object]:
     }
 
 
-_RUN_TIME = frozenset(re.findall(r"^class (\w+)", kernel_of_variables().text, re.MULTILINE))
-"""The classes of the copied kernel."""
-
-
-def _class_name(id: str) -> str:
-    """The prefix of the two classes of a requirement; `Variable_` for `Variable`."""
-    name = _identifier(id)
-    wanted = underlined(f"{name[0].upper()}{name[1:]}")
-    return next(n for n in wanted if _RUN_TIME.isdisjoint({f"{n}Rail", f"{n}Monitor"}))
-
-
-def _identifier(id: str) -> str:
-    name = re.sub(r"\W", "_", id, flags=re.ASCII)
-    return name if name[0].isalpha() else f"R{name}"
-
-
-def module(name: str) -> str:
-    """The file name as a module name that can be imported."""
-    return re.sub(r"[^a-z0-9_]", "_", name)
-
-
-def prefixes_of(ids: Iterable[str]) -> dict[str, str]:
-    """An identifier for each id, all different."""
-    prefixes: dict[str, str] = {}
-    for id in ids:
-        prefix = _identifier(id).lower()
-        while prefix in prefixes.values():
-            prefix += "_"
-        prefixes[id] = prefix
-    return prefixes
-
-
 _MOST_LEVELS = 60
-MOST_PARAMETERS = 60
-"""Maximum number of parameters of a step, which takes a mapping if there are more: Python compares
-each argument of a call with one parameter after the other."""
-_SPOKEN = {"<=": "_le_", ">=": "_ge_", "!=": "_ne_", "<": "_lt_", ">": "_gt_", "=": "_eq_"}
-
-
-def parameters_of(
-    names: Iterable[str], prefixes: Iterable[str], variables: Iterable[str] = ()
-) -> dict[str, str]:
-    """A unique parameter for each proposition: its name as an identifier.
-
-    If a monitor is stepped by variables, these get parameters, too.
-    """
-    variables = tuple(variables)
-    marks = {name for prefix in prefixes for name in marks_of(prefix)}
-    everything = (*names, *variables)
-    return dict(
-        legal_names(
-            everything,
-            PYTHON | {*marks, *(NAMES if variables else ())},
-            names={name: _parameter(name) for name in everything},
-            variants=underlined,
-            brings=lambda name: locals_of([name]),
-        )
-    )
 
 
 def _names(requirement: FormalizedRequirement) -> Mapping[str, str]:
@@ -385,20 +336,6 @@ def _names(requirement: FormalizedRequirement) -> Mapping[str, str]:
     compared = input_adapter([without_probability(requirement)], names)
     variables = compared.inputs if compared else ()
     return parameters_of(names, prefixes_of([requirement.id]).values(), variables)
-
-
-def _parameter(name: str) -> str:
-    """The name as an identifier; a comparison is spelt in words."""
-    text = _spoken(name) if printing.is_compound(name) else printing.identifier(name)
-    return text if text[0].isalpha() else f"p_{text}"
-
-
-def _spoken(text: str) -> str:
-    """`(kias <= 90.0)` as `kias_le_90_0`."""
-    for operator, word in _SPOKEN.items():
-        text = text.replace(operator, word)
-    name = re.sub(r"\W+", "_", text, flags=re.ASCII).strip("_")
-    return re.sub(r"_+", "_", name) or "p"
 
 
 TARGET = Target(

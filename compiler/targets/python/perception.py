@@ -19,7 +19,8 @@ from compiler.signals import numbers as n
 from compiler.signals.policies import Meaning, Policy, instant
 from fretish.bindings.declarations import Declarations, Reduce
 from fretish.clock import TimeSource
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from monitors.source_text import perception as runtime
 
 
@@ -29,10 +30,11 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     if reason is None:
         return None
     what, fix = reason
-    return Diagnostic(
-        Code.NOT_EXPRESSIBLE,
-        f"a live node cannot judge {requirement.id}: {what}",
+    return diagnostic(
+        "not_judged_live",
         requirement.entry.wording,
+        requirement=requirement.id,
+        what=what,
         help=fix,
     )
 

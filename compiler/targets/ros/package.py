@@ -23,7 +23,8 @@ from compiler.targets.witness_traces import witness_traces
 from fretish.bindings.declarations import Interception, Signal, short_type
 from fretish.bindings.tables.interceptor import TABLE
 from fretish.clock import TimeSource
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.expressions import names
 from monitors.guard import LONGEST
@@ -161,13 +162,7 @@ def refuse_project(options: Options) -> Diagnostic | None:
     missing = options.attribution.missing
     if not missing:
         return None
-    return Diagnostic(
-        Code.NO_ATTRIBUTION,
-        f"the manifest of a package needs fields that `[project]` of {SETTINGS} lacks: "
-        f"{', '.join(missing)}",
-        help=f"add them to {SETTINGS}, in the folder of the requirements or above it:",
-        paste=EXAMPLE,
-    )
+    return diagnostic("no_attribution", settings=SETTINGS, fields=", ".join(missing), paste=EXAMPLE)
 
 
 def remarks(options: Options) -> tuple[Diagnostic, ...]:
@@ -176,14 +171,11 @@ def remarks(options: Options) -> tuple[Diagnostic, ...]:
     if declared is None or declared.interceptor is not None:
         return interceptor.remarks(options)
     return (
-        Diagnostic(
-            Code.NO_INTERCEPTOR,
-            "the package has no interceptor: nothing in it executes a stop",
+        diagnostic(
+            "package_without_interceptor",
             declared.source.span().part(0, 0),
-            help=f"add this table to {declared.source.name}, or let your robot base subscribe to "
-            "the stop topic:",
+            source=declared.source.name,
             paste=TABLE,
-            severity=Severity.WARNING,
         ),
     )
 

@@ -29,7 +29,7 @@ def emit(
 def _files(package: shared.Package) -> Iterator[tuple[str, str]]:
     given = {
         "package": package,
-        "programs": _programs(package),
+        "programs": ["monitor_node.py", *([interceptor.NAME] if package.interception else [])],
         "remaps": _remaps(package),
         "version": __version__,
     }
@@ -54,10 +54,6 @@ _TEMPLATES = {
     "monitor_node.py": "scripts/monitor_node.py",
 }
 """Each template with its path in the package."""
-
-
-def _programs(package: shared.Package) -> list[str]:
-    return ["monitor_node.py", *([interceptor.NAME] if package.interception else [])]
 
 
 def _remaps(package: shared.Package) -> list[tuple[str, str]]:

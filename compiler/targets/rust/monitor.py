@@ -6,21 +6,16 @@ values. A step takes the same time for any unknown values and any bound.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import PurePosixPath
-from typing import Any
 
 from compiler.files.artifact import Artifact
-from compiler.files.build_id import __version__
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.identifiers import legal_names
 from compiler.logic.spelling.reserved_words import RUST
-from compiler.program.lowering import program
-from compiler.program.rails import Reading, rail
-from compiler.targets.c.monitor import too_large
-from compiler.targets.comparison_names import comparison_names, in_words
-from compiler.targets.python.monitor import description_of, module, prefixes_of, refusal, remark
+from compiler.targets.fixed_memory import input_names, inputs, rail_of, too_large
+from compiler.targets.python.monitor import description, refusal, remark
+from compiler.targets.python.names import module
 from compiler.targets.rust import signals
 from compiler.targets.rust.printer import Printer
 from compiler.targets.target import DEFAULT, Options, Target, stem
@@ -51,35 +46,20 @@ def emit(
 def _crate(name: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
     """The files of a crate with one monitor for all of the requirements."""
     name = name if name[0].isalpha() else f"r{name}"
-    propositions = tuple(
-        dict.fromkeys(atom for requirement in requirements for atom in requirement.watched)
-    )
-    meanings = {
-        atom: text for requirement in requirements for atom, text in in_words(requirement).items()
-    }
-    names = _names(requirements)
-    prefixes = prefixes_of([requirement.id for requirement in requirements])
-    members = legal_names(prefixes, RUST, names=prefixes)
-    cells = rail(
-        program({requirement.id: requirement.watch for requirement in requirements}), members
-    )
-    printer = Printer.of(cells, names)
+    names = input_names(requirements, RUST)
+    printer = Printer.of(rail_of(requirements, RUST), names)
     library = render(
         "rust/lib.rs.j2",
-        title=", ".join(requirement.id for requirement in requirements),
-        formalized=[description_of(requirement) for requirement in requirements],
-        tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
-        version=__version__,
-        inputs=[{"name": names[atom], "text": meanings.get(atom, atom)} for atom in propositions],
+        **description(requirements),
+        inputs=inputs(requirements, names),
         literals=[*printer.literals()],
         fields=[*printer.fields()],
-        stages=[
-            {"comment": group.comment, "lines": [*printer.lines(group)]} for group in cells.stages
-        ],
-        readings=[_reading(reading, printer) for reading in cells.readings],
+        stages=printer.stages(),
+        readings=printer.readings(),
     )
     witnesses = {
-        members[requirement.id]: witness_traces(requirement) for requirement in requirements
+        reading.prefix: witness_traces(requirement)
+        for reading, requirement in zip(printer.rail.readings, requirements, strict=True)
     }
     tests = render("rust/words.rs.j2", crate=name, names=names, words=witnesses)
     manifest = render("rust/Cargo.toml.j2", crate=name, monitor=None)
@@ -87,28 +67,6 @@ def _crate(name: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Ar
     files |= {f"{name}/tests/words.rs": tests} if any(witnesses.values()) else {}
     files |= signals.files(name, requirements, names, RUST)
     return tuple(Artifact(PurePosixPath(path), text) for path, text in files.items())
-
-
-def _names(requirements: Sequence[FormalizedRequirement]) -> Mapping[str, str]:
-    """Proposition → the field of the inputs."""
-    spoken = {
-        proposition: word
-        for requirement in requirements
-        for proposition, word in comparison_names(requirement).items()
-    }
-    propositions = (
-        proposition for requirement in requirements for proposition in requirement.watched
-    )
-    return legal_names(propositions, RUST, names=spoken)
-
-
-def _reading(reading: Reading, printer: Printer) -> Mapping[str, Any]:
-    return {
-        "id": reading.id,
-        "prefix": reading.prefix,
-        "left": printer.left(reading.deadline, reading.truths["open"]),
-        "truths": {name: printer.value(value) for name, value in reading.truths.items()},
-    }
 
 
 TARGET = Target(
@@ -119,5 +77,5 @@ TARGET = Target(
     remark,
     joins=True,
     next_step="`cargo test --manifest-path {}` builds it and runs its tests",
-    names=lambda requirement: _names([requirement]),
+    names=lambda requirement: input_names([requirement], RUST),
 )

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol
 
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretish.bindings.declarations import Role
 
 if TYPE_CHECKING:

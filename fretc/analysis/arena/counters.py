@@ -12,8 +12,8 @@ from typing import assert_never
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Kind, Obligation
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.memory import (
     LONGEST_DELAY,

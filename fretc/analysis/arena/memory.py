@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import assert_never
 
-from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
 
 Word = Sequence[Function]

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.counters import counter
 from fretc.analysis.arena.memory import Bit, Counter

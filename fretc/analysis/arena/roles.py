@@ -11,7 +11,8 @@ from compiler.formalization.binding_agreement import first_use
 from compiler.formalization.formalized import FormalizedRequirement
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Role
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.reading.toml_text import as_key
 
 Roles = Mapping[str, Role]
@@ -45,12 +46,13 @@ def _two_roles(
 ) -> Diagnostic:
     """F907."""
     component = requirement.sentence.component
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`{name}` is an {first}, and an {second} of `{component}`: these are two different "
-        "systems",
+    return diagnostic(
+        "two_roles",
         first_use(requirement, name),
-        help=f"analyze one of them: `--component {component}`",
+        name=name,
+        first=first,
+        second=second,
+        component=component,
     )
 
 
@@ -87,23 +89,15 @@ def _no_role(
     unread = str(variable.fret.get("assignment", "")) if variable is not None else ""
     if unread:
         shown = " ".join(unread.split())[:_SHOWN]
-        message = f"`{name}` has no role, and its assignment `{shown}` is not read"
+        what = f"has no role, and its assignment `{shown}` is not read"
     elif variable is not None and variable.role == Role.MODE:
-        message = (
-            f"`{name}` is a mode without a role: it may be chosen by the system or by the "
-            "environment"
-        )
+        what = "is a mode without a role: it may be chosen by the system or by the environment"
     else:
-        message = f"`{name}` has no role: it may be chosen by the environment or by the system"
+        what = "has no role: it may be chosen by the environment or by the system"
     line = f'role = "{likely}"'
-    return Diagnostic(
-        Code.NO_ROLE,
-        message,
-        first_use(requirement, name),
-        help=f'write `role = "input"` (the environment) or `role = "output"` (the system) in '
-        f"`[{table}.{as_key(name)}]` of bindings.toml; `{name}` {why}",
-        paste=f"[{table}.{as_key(name)}]\n{line}",
-    )
+    table = f"[{table}.{as_key(name)}]"
+    place, paste = first_use(requirement, name), f"{table}\n{line}"
+    return diagnostic("no_role", place, name=name, what=what, table=table, why=why, paste=paste)
 
 
 _SHOWN = 60

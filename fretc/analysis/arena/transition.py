@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.memory import Bit, Counter
 
 State = Mapping[int, bool]
@@ -48,17 +48,9 @@ class Transition:
         return self._steps[bit]
 
     def moved(self, states: Function) -> Function:
-        """Function over a state and a valuation: the next state is one of these states.
-
-        The states are renamed first, so that functions of bits before a tick replace bits after it
-        one by one.
-        """
+        """Function over a state and a valuation: the next state is one of these states."""
         read = [number for number in bdd.support(states) if number in self._steps]
-        for number in read:
-            states = bdd.compose(states, number, bdd.variable(self._after[number]))
-        for number in read:
-            states = bdd.compose(states, self._after[number], self._steps[number])
-        return states
+        return bdd.substitute(states, {number: self._steps[number] for number in read}, self._after)
 
     def relation(self, ticks: Function, letters: Function, known: Function) -> Function:
         """Relation over states and next states.
@@ -76,9 +68,8 @@ class Transition:
 
     def moved_from(self, states: Function, known: Function) -> Function:
         """`moved` for a known state, given as a cube: over the other variables of the valuation."""
-        for number in [n for n in bdd.support(states) if n in self._steps]:
-            states = bdd.compose(states, number, bdd.at(self._steps[number], known))
-        return states
+        read = [number for number in bdd.support(states) if number in self._steps]
+        return bdd.substitute(states, {n: bdd.at(self._steps[n], known) for n in read})
 
     def next(self, known: Function) -> State:
         """The next state of a complete state and valuation, given as a cube."""

@@ -8,8 +8,8 @@ import z3
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Term
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.memory import Counter, Memory
@@ -19,7 +19,8 @@ from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.arithmetic.course import SolvedNumericTrace
 from fretc.analysis.arithmetic.durations import Duration, DurationValue, held
-from fretc.analysis.arithmetic.groups import Group, choice, linked, owners
+from fretc.analysis.arithmetic.group_content import choice, linked, owners
+from fretc.analysis.arithmetic.groups import Group
 from fretc.analysis.arithmetic.past import Remembered, remembered
 from fretc.analysis.arithmetic.projection import Limit
 from fretish.bindings.declarations import Role

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from compiler.logic import decision_diagrams as bdd
+from compiler.logic.diagrams import decision_diagrams as bdd
 from fretc.analysis.controllers.machine import Machine, NoMachineError
 
 MOST_NODES = 20_000

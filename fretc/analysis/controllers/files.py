@@ -62,7 +62,7 @@ def _automaton(machine: Mealy, form: ControllerFormat) -> str:
         case ControllerFormat.HOA:
             return _hoa(machine, title)
         case ControllerFormat.DOT:
-            return _dot(machine, title)
+            return render("controller/mealy.dot.j2", title=title, edges=[*_edges(machine)])
         case ControllerFormat.PYTHON:
             raise AssertionError("a program is made of circuits")
         case _:
@@ -91,10 +91,6 @@ def _hoa(machine: Mealy, title: str) -> str:
 
 def _conjunction(term: Term, names: Mapping[str, int]) -> str:
     return " & ".join(f"{'' if value else '!'}{names[name]}" for name, value in term.items())
-
-
-def _dot(machine: Mealy, title: str) -> str:
-    return render("controller/mealy.dot.j2", title=title, edges=[*_edges(machine)])
 
 
 def _edges(machine: Mealy) -> Iterator[tuple[int, str, int]]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
 
-from compiler.logic import decision_diagrams as bdd
+from compiler.logic.diagrams import decision_diagrams as bdd
 
 MOST_PAIRS = 2_000
 """Maximum number of pairs that are tried first."""

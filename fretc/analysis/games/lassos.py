@@ -17,8 +17,8 @@ import z3
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Term, read_by
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.memory import Counter
 from fretc.analysis.arena.product import arena
@@ -36,7 +36,7 @@ _PATIENCE = 5_000
 
 
 @dataclass(frozen=True, slots=True)
-class Lasso:
+class SatisfyingRun:
     """A run that satisfies all requirements, and the tick at which its repeated part begins."""
 
     numbers: tuple[Mapping[str, Term], ...]
@@ -59,7 +59,7 @@ def lasso(
     budget: Budget,
     *,
     as_fret: bool = False,
-) -> Lasso | Impossible | None:
+) -> SatisfyingRun | Impossible | None:
     """An endless run that satisfies all requirements, or proof that there is none; None: unknown.
 
     Args:
@@ -79,7 +79,7 @@ def lasso(
         if budget.spent > budget.seconds / 2:
             return None
         found = search.next()
-        if isinstance(found, Lasso):
+        if isinstance(found, SatisfyingRun):
             letters, tail = _letters(cells, found), length - found.loop
             is_kept = kept(requirements, cells, letters, tail, waiting, as_fret=as_fret)
             return found if is_kept else None
@@ -105,7 +105,7 @@ class _Search:
         self._solver.set("timeout", _PATIENCE)
         self._solver.add([z3.Not(_bit(number, 0)) for number in self._steps])
 
-    def next(self) -> Lasso | Impossible | None:
+    def next(self) -> SatisfyingRun | Impossible | None:
         """A lasso with one more tick, or proof that there is none of this length; None: neither."""
         self._solver.add(list(self._tick(self._length)))
         self._length += 1
@@ -143,7 +143,7 @@ class _Search:
             if counter.fair is not None:
                 yield z3.Or([_term(counter.fair, t, {}) for t in range(tick, self._length)])
 
-    def _found(self, begins: Sequence[Term]) -> Lasso:
+    def _found(self, begins: Sequence[Term]) -> SatisfyingRun:
         model = self._solver.model()
 
         def read(term: Term) -> Term:
@@ -154,7 +154,7 @@ class _Search:
         values = ({name: read(_value(self._atoms, name, tick)) for name in own} for tick in ticks)
         others = ({bit: z3.is_true(read(_bit(bit, tick))) for bit in self._free} for tick in ticks)
         loop = next(tick for tick, begin in enumerate(begins) if z3.is_true(read(begin)))
-        return Lasso(tuple(values), tuple(others), loop)
+        return SatisfyingRun(tuple(values), tuple(others), loop)
 
 
 def _bit(number: int, tick: int) -> Term:
@@ -191,7 +191,7 @@ def _term(function: Function, tick: int, known: dict[Function, Term]) -> Term:
 # Once more ------------------------------------------------------------------------------------
 
 
-def _letters(cells: Cells, found: Lasso) -> tuple[Mapping[int, bool], ...]:
+def _letters(cells: Cells, found: SatisfyingRun) -> tuple[Mapping[int, bool], ...]:
     """Valuations of a run with its loop repeated, computed from its numbers alone."""
     atoms = cells.numbers
     length = len(found.numbers)

@@ -6,11 +6,11 @@ its requirements confirm it.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
+from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.transition import Transition
@@ -127,20 +127,3 @@ def _watched(
     atoms = dict.fromkeys(name for signal in signals for name in f.atoms(signal))
     known, ticks = columns(alphabet, runs, atoms), sum(count for _, count in runs)
     return (evaluate(signal, known, ticks) for signal in signals)
-
-
-def first_breaches(
-    requirements: Sequence[FormalizedRequirement], known: Mapping[str, int], ticks: int
-) -> dict[str, int | None]:
-    """The tick at which each requirement is first violated; None: it is not.
-
-    Args:
-        requirements: requirements whose atoms are all known.
-        known: each atom over time.
-        ticks: length of the run.
-    """
-    found: dict[str, int | None] = {}
-    for requirement in requirements:
-        breach = evaluate(requirement.watch.breach, known, ticks)
-        found[requirement.id] = (breach & -breach).bit_length() - 1 if breach else None
-    return found

@@ -14,8 +14,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.memory import Bit, Counter
 from fretc.analysis.arena.transition import State
@@ -24,7 +24,7 @@ MOST_NODES = 10_000
 """Maximum number of nodes of a relation; larger ones cost more than single ticks."""
 
 
-class TooLargeError(Exception):
+class RelationTooLargeError(Exception):
     """The relation has no small diagram."""
 
 
@@ -57,7 +57,7 @@ class IterativeSquaring:
         """Try a squaring; if a relation is too large, there is no result and no later try."""
         try:
             yield
-        except TooLargeError:
+        except RelationTooLargeError:
             self._wait = None
 
 
@@ -87,7 +87,7 @@ class Relation:
         """States from which a path never ends.
 
         Raises:
-            TooLargeError: the diagrams grow too large.
+            RelationTooLargeError: the diagrams grow too large.
             OutOfTimeError: it takes too long.
         """
         relation, after = self.function, bdd.cube(bit.after for bit in self.bits)
@@ -103,7 +103,7 @@ class Relation:
         """States with a path into the goal, including those of the goal.
 
         Raises:
-            TooLargeError: the diagrams grow too large.
+            RelationTooLargeError: the diagrams grow too large.
             OutOfTimeError: it takes too long.
         """
         after = bdd.cube(bit.after for bit in self.bits)
@@ -120,7 +120,7 @@ class Relation:
         The relation must be a function, and the path must end.
 
         Raises:
-            TooLargeError: the diagrams grow too large.
+            RelationTooLargeError: the diagrams grow too large.
             OutOfTimeError: it takes too long.
         """
         powers = [self.function]
@@ -139,11 +139,10 @@ class Relation:
         """The relation composed with itself."""
         self.budget.check()
         if bdd.size(relation) > MOST_NODES:
-            raise TooLargeError
-        first, then = relation, relation
-        for bit in self.bits:
-            first = bdd.compose(first, bit.after, bdd.variable(bit.later))
-            then = bdd.compose(then, bit.now, bdd.variable(bit.later))
+            raise RelationTooLargeError
+        later = [(bit, bdd.variable(bit.later)) for bit in self.bits]
+        first = bdd.substitute(relation, {bit.after: variable for bit, variable in later})
+        then = bdd.substitute(relation, {bit.now: variable for bit, variable in later})
         return bdd.and_exists(first, then, bdd.cube(bit.later for bit in self.bits))
 
 
@@ -156,6 +155,4 @@ def identity(bits: tuple[Bit, ...]) -> Function:
 
 
 def _renamed(states: Function, bits: tuple[Bit, ...]) -> Function:
-    for bit in bits:
-        states = bdd.compose(states, bit.now, bdd.variable(bit.after))
-    return states
+    return bdd.substitute(states, {bit.now: bdd.variable(bit.after) for bit in bits})

@@ -23,7 +23,8 @@ from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.diagnostics import status_symbols as signs
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import as_json, visible
 
 
@@ -201,11 +202,12 @@ def coverage(
     if not declarations.clock.declared or not declarations.propositions:
         what = "clock" if not declarations.clock.declared else "proposition"
         fix = "[clock]" if what == "clock" else "[proposition.NAME]"
-        return Diagnostic(
-            Code.NOTHING_TO_DO,
-            f"`{declarations.source.name}` declares no {what}",
+        return diagnostic(
+            "nothing_declared",
             declarations.source.span(0, 0),
-            help=f"add `{fix}`; `fretc bind --from LOG` drafts it",
+            source=declarations.source.name,
+            what=what,
+            table=fix,
         )
     look = partial(_log_coverage, declarations=declarations, plan=plan)
     logs = tuple(dict.fromkeys(logs))

@@ -191,9 +191,7 @@ def missing_propositions(project: Project) -> tuple[MissingProposition, ...]:
     declared = project.declarations
     defined = declared.propositions if declared and not declared.mistakes else {}
     users: dict[str, list[FormalizedRequirement]] = {}
-    for requirement in project.formalized:
-        if requirement.entry.status == "retired":
-            continue
+    for requirement in project.in_force:
         for name in requirement.watched:
             if name not in defined and not _unread(requirement, name, declared):
                 users.setdefault(name, []).append(requirement)
@@ -203,9 +201,7 @@ def missing_propositions(project: Project) -> tuple[MissingProposition, ...]:
 def missing_signals(project: Project) -> tuple[MissingSignal, ...]:
     """The undeclared signals in comparisons of the requirements."""
     users: dict[str, dict[str, None]] = {}
-    for requirement in project.formalized:
-        if requirement.entry.status == "retired":
-            continue
+    for requirement in project.in_force:
         for name in requirement.watched:
             for signal in _unread(requirement, name, project.declarations):
                 users.setdefault(signal, {})[requirement.id] = None

@@ -20,7 +20,8 @@ from fretc.logs.signals.samples import Recording
 from fretc.logs.storage.log_names import name_of
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.tables.reader import read_bindings
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.printer import identifier
 
@@ -168,9 +169,4 @@ def _limit(largest: float) -> str:
 
 
 def _no_signal(log: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NOTHING_TO_DO,
-        f"no number of `{name_of(log)}` is known throughout: no requirement can be drafted from it",
-        Source(name_of(log), "").span(),
-        help="list its topics with `fretc info`, or leave out `--from`",
-    )
+    return diagnostic("nothing_to_draft", Source(name_of(log), "").span(), log=name_of(log))

@@ -51,11 +51,11 @@ def judge(
     intact: bool,
     end: Verdict,
     engine: Engine = kernel.evaluate,
-) -> Judgement:
-    """Judge one trace.
+) -> tuple[Judgement, ...]:
+    """Judge one trace, by each requirement of the monitor in its order.
 
     Args:
-        monitor: of one requirement.
+        monitor: of one requirement or more.
         columns: one for each proposition of the monitor.
         cut: the values of the tick that the end of the log cuts short; None: there is none.
         ticks: the length of the trace.
@@ -63,21 +63,6 @@ def judge(
         end: the verdict on demands that are open at the end.
         engine: the evaluator of the monitor.
     """
-    (judgement,) = judge_each(monitor, columns, cut, ticks, intact=intact, end=end, engine=engine)
-    return judgement
-
-
-def judge_each(
-    monitor: Monitor,
-    columns: Mapping[str, Column],
-    cut: Mapping[str, bool | None] | None,
-    ticks: int,
-    *,
-    intact: bool,
-    end: Verdict,
-    engine: Engine = kernel.evaluate,
-) -> tuple[Judgement, ...]:
-    """The judgements of each requirement of a monitor of several, in their order."""
     outcomes = engine(monitor, columns, ticks, end)
     matters = [each.verdict in WITHOUT_VIOLATION and intact for each in outcomes]
     longer: Sequence[str | None] = [None] * len(outcomes)

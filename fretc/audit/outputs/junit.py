@@ -1,29 +1,46 @@
-"""Results of an audit for other tools: JUnit XML, and annotations of GitHub Actions.
+"""Results as JUnit XML, for CI servers.
 
-Sources: the JUnit schema of the Jenkins xUnit plugin, https://github.com/jenkinsci/xunit-plugin;
-GitHub, Workflow commands for GitHub Actions.
+Source: the JUnit schema of the Jenkins xUnit plugin, https://github.com/jenkinsci/xunit-plugin.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from xml.etree import ElementTree
 
 from fretc.audit.evidence import verdicts
-from fretc.audit.evidence.probabilities import AVERAGE, Estimated
+from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import audited_s
 from fretc.audit.evidence.schema import Result
-from fretc.audit.evidence.verdicts import Level
 from fretc.audit.outputs.totals import runs
-from fretc.audit.outputs.violated_values import reason, values
+from fretc.audit.outputs.violated_values import values
 from fretish.bindings.amounts import seconds
-from fretish.diagnostics.rendering import visible
-from fretish.diagnostics.source import Span
 from fretish.documents import RequirementEntry
 
 _NOT_XML = re.compile("[^\t\n\r\u0020-~\u00a0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-_GITHUB = {Level.ERROR: "error", Level.WARNING: "warning", Level.NONE: "notice"}
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A test case; `kind` is the XML element of its outcome, "" if it passes."""
+
+    name: str
+    kind: str
+    message: str = ""
+    text: str = ""
+    time: str = "0"
+    """Its duration in seconds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Suite:
+    """The cases of one run, or of several together; `properties` are (name, value)."""
+
+    name: str
+    cases: Sequence[Case]
+    properties: Sequence[tuple[str, str]] = ()
 
 
 def junit(
@@ -38,61 +55,34 @@ def junit(
         estimates: the answers of all runs, which form a suite of their own.
         requirements: the requirements, for the titles of the cases.
     """
-    root = ElementTree.Element("testsuites", name="fretc audit")
     names = {requirement.id: requirement.name for requirement in requirements}
-    for cases in runs(results):
-        run = cases[0].run
-        counts = counted([verdicts.junit(case.verdict) for case in cases])
-        suite = ElementTree.SubElement(root, "testsuite", {"name": valid(run), **counts})
-        for case in cases:
-            _case(suite, run, case, names)
-    if estimates:
-        _suite_of_all(root, estimates, names)
-    return as_text(root)
-
-
-def as_text(root: ElementTree.Element) -> str:
-    """The text of the whole file, indented."""
-    ElementTree.indent(root)
-    text = ElementTree.tostring(root, encoding="unicode")
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
-
-
-def counted(kinds: Sequence[str]) -> dict[str, str]:
-    """The attributes of a test suite with cases of these kinds; an empty kind: passed."""
-    names = {"failures": "failure", "errors": "error", "skipped": "skipped"}
-    return {"tests": str(len(kinds))} | {n: str(kinds.count(k)) for n, k in names.items()}
-
-
-def _suite_of_all(
-    root: ElementTree.Element, estimates: Sequence[Estimated], titled: Mapping[str, str]
-) -> None:
-    counts = counted([verdicts.junit(estimate.answer) for estimate in estimates])
-    suite = ElementTree.SubElement(root, "testsuite", {"name": "all runs", **counts})
-    for one in estimates:
-        name = valid(titled.get(one.requirement, one.requirement))
-        names = {"name": name, "classname": "all runs", "time": "0.000"}
-        node = ElementTree.SubElement(suite, "testcase", names)
-        kind = verdicts.junit(one.answer)
-        if kind:
-            message = valid(f"{one.answer}: {one.reason}")
-            element = ElementTree.SubElement(node, kind, message=message)
-            element.text = valid("\n".join(one.lines))
-
-
-def _case(suite: ElementTree.Element, run: str, case: Result, titled: Mapping[str, str]) -> None:
-    node = ElementTree.SubElement(
-        suite,
-        "testcase",
-        name=valid(titled.get(case.requirement, case.requirement)),
-        classname=valid(run),
-        time=f"{audited_s(case) or 0.0:.3f}",
-    )
-    kind = verdicts.junit(case.verdict)
-    if kind:
-        message = valid(f"{case.verdict}: {case.reason}")
-        element = ElementTree.SubElement(node, kind, message=message)
-        element.text = valid("\n".join(_lines(case)))
+    suites = [
+        Suite(
+            cases[0].run,
+            [
+                Case(
+                    names.get(case.requirement, case.requirement),
+                    verdicts.junit(case.verdict),
+                    f"{case.verdict}: {case.reason}",
+                    "\n".join(_lines(case)),
+                    f"{audited_s(case) or 0.0:.3f}",
+                )
+                for case in cases
+            ],
+        )
+        for cases in runs(results)
+    ]
+    of_all = [
+        Case(
+            names.get(one.requirement, one.requirement),
+            verdicts.junit(one.answer),
+            f"{one.answer}: {one.reason}",
+            "\n".join(one.lines),
+            "0.000",
+        )
+        for one in estimates
+    ]
+    return xml("fretc audit", [*suites, *([Suite("all runs", of_all)] if of_all else [])])
 
 
 def _lines(case: Result) -> Iterator[str]:
@@ -102,52 +92,31 @@ def _lines(case: Result) -> Iterator[str]:
         yield f"{stretch}: {values(case, broken)}" if broken.values else stretch
 
 
+def xml(name: str, suites: Iterable[Suite]) -> str:
+    """The text of the whole file, indented."""
+    root = ElementTree.Element("testsuites", name=name)
+    for suite in suites:
+        kinds = [case.kind for case in suite.cases]
+        words = {"failures": "failure", "errors": "error", "skipped": "skipped"}
+        counts = {"tests": str(len(kinds)), **{n: str(kinds.count(k)) for n, k in words.items()}}
+        node = _element(root, "testsuite", name=suite.name, **counts)
+        properties = _element(node, "properties") if suite.properties else node
+        for key, value in suite.properties:
+            _element(properties, "property", name=key, value=value)
+        for case in suite.cases:
+            test = _element(node, "testcase", name=case.name, classname=suite.name, time=case.time)
+            if case.kind:
+                _element(test, case.kind, message=case.message).text = valid(case.text)
+    ElementTree.indent(root)
+    text = ElementTree.tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+
+
+def _element(parent: ElementTree.Element, tag: str, **attributes: str) -> ElementTree.Element:
+    texts = {name: valid(text) for name, text in attributes.items()}
+    return ElementTree.SubElement(parent, tag, texts)
+
+
 def valid(text: str) -> str:
     """The text without characters that XML cannot hold or that control a terminal."""
     return _NOT_XML.sub("\ufffd", text)
-
-
-def github(
-    results: Iterable[Result],
-    requirements: Sequence[RequirementEntry],
-    estimates: Sequence[Estimated] = (),
-) -> str:
-    """A line for each result, at the sentence of its requirement.
-
-    A run that only contributes to an estimate (`trials`) gives a notice: the answer of all runs
-    follows.
-
-    Args:
-        results: one for each run and requirement, in declared units.
-        requirements: the requirements of the results.
-        estimates: the answers of all runs.
-    """
-    places = {requirement.id: requirement.wording for requirement in requirements}
-    names = {requirement.id: requirement.name for requirement in requirements}
-    lines = []
-    for result in results:
-        level = "notice" if result.trials is not None else _GITHUB[verdicts.level(result.verdict)]
-        title = f"{names[result.requirement]} {result.verdict}"
-        message = f"{result.run}: {reason(result)}"
-        lines.append(_annotation(level, places[result.requirement], title, message))
-    for estimate in estimates:
-        level, title = (
-            _GITHUB[verdicts.level(estimate.answer)],
-            f"{names[estimate.requirement]} {estimate.answer}",
-        )
-        message = f"all runs: {estimate.reason}; {estimate.lines[1]}; {AVERAGE}"
-        lines.append(_annotation(level, places[estimate.requirement], title, message))
-    return "".join(lines)
-
-
-def _annotation(level: str, place: Span, title: str, message: str) -> str:
-    where = f"file={_property(place.source.name)},line={place.line},title={_property(title)}"
-    return f"::{level} {where}::{_data(message)}\n"
-
-
-def _data(text: str) -> str:
-    return visible(text).replace("%", "%25")
-
-
-def _property(text: str) -> str:
-    return _data(text).replace(":", "%3A").replace(",", "%2C")

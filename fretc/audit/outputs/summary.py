@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from fretc.audit.evidence.reader import VERDICTS
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from monitors import kernel
 
 SCHEMA = "fretc-summary-1"
@@ -158,8 +159,8 @@ def run_query(tables: sqlite3.Connection, query: str) -> Answer | Diagnostic:
     try:
         answer = _answer(tables, query)
     except (sqlite3.Error, sqlite3.Warning, ValueError) as error:
-        return _bad_query(str(error))
-    return answer if answer.columns else _bad_query("it is empty")
+        return diagnostic("query_fails", message=str(error))
+    return answer if answer.columns else diagnostic("query_fails", message="it is empty")
 
 
 def _answer(tables: sqlite3.Connection, query: str) -> Answer:
@@ -169,13 +170,7 @@ def _answer(tables: sqlite3.Connection, query: str) -> Answer:
 
 
 def _mixed(requirement: str, kinds: int) -> Diagnostic:
-    return Diagnostic(
-        Code.STALE_EVIDENCE,
-        f"{requirement} was audited as {kinds} different requirements: its sentence, its bindings "
-        "or its monitor have changed between these runs",
-        help="audit the runs again, or select one version: `--query` with `sentence_sha256`",
-        severity=Severity.WARNING,
-    )
+    return diagnostic("audited_differently", requirement=requirement, kinds=kinds)
 
 
 def _torn(rows_of_all: Sequence[Mapping[str, Any]]) -> Iterator[Diagnostic]:
@@ -187,19 +182,10 @@ def _torn(rows_of_all: Sequence[Mapping[str, Any]]) -> Iterator[Diagnostic]:
         first = rows[0]
         verdicts = " and ".join(sorted(first["verdicts"].split(",")))
         others = "" if len(rows) == 1 else f", and so it is with {len(rows) - 1:,} more"
-        yield Diagnostic(
-            Code.SEVERAL_VERDICTS,
-            f"{requirement} has several verdicts of the log of {first['run']}: "
-            f"{verdicts}{others}; the worst of each log counts",
-            help="audit these logs again, and summarize that table alone",
-            severity=Severity.WARNING,
+        yield diagnostic(
+            "several_verdicts",
+            requirement=requirement,
+            log=first["run"],
+            verdicts=verdicts,
+            others=others,
         )
-
-
-def _bad_query(message: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_QUERY,
-        f"the query fails: {message}",
-        help="write SQLite SQL on the tables `results`, `violations`, `runs`: "
-        "`SELECT run, reason FROM results WHERE verdict = 'violated'`",
-    )

@@ -22,8 +22,9 @@ from fretc.audit.evidence.schema import Health, Result, Violation
 from fretc.audit.store.anywhere import required_source
 from fretc.audit.store.container import StoreError
 from fretc.audit.store.reader import Store
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import unless_installed
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 
 if TYPE_CHECKING:
@@ -121,7 +122,7 @@ def _add(connection: sqlite3.Connection, path: str, names: Sequence[str]) -> Dia
             _insert(connection, "given", (tuple(map(row.get, ROW)) for row in found.to_pylist()))
             return None
         if not start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
-            return _neither(path)
+            return diagnostic("neither_table_nor_evidence", Source(path, "").span(), path=path)
     source = required_source(path)
     if isinstance(source, Diagnostic):
         return source
@@ -241,21 +242,7 @@ def _read_parquet(path: str) -> Table | Diagnostic:
 
 
 def _no_table(path: str, what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EVIDENCE,
-        f"`{path}` {what}",
-        Source(path, "").span(),
-        help=f"audit again: `fretc audit LOG... --parquet {path}`",
-    )
-
-
-def _neither(path: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EVIDENCE,
-        f"`{path}` is neither a table nor evidence",
-        Source(path, "").span(),
-        help="name what `fretc audit LOG... --parquet FILE` or `-o FILE` wrote",
-    )
+    return diagnostic("bad_table", Source(path, "").span(), path=path, what=what)
 
 
 def _schema() -> Schema:

@@ -205,8 +205,4 @@ def longest(result: Result) -> Violation | None:
     """The longest violation of a violated result, the first of equal ones."""
     if result.verdict not in BROKEN:
         return None
-    return max(result.violations, key=_ticks, default=None)
-
-
-def _ticks(violation: Violation) -> int:
-    return violation.last_tick - violation.first_tick + 1
+    return max(result.violations, key=lambda one: one.last_tick - one.first_tick, default=None)

@@ -12,6 +12,7 @@ from fretc.audit.phases.by_shift import Phases
 from fretish.bindings.declarations import Declarations
 from fretish.clock import in_words
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from monitors import kernel
 
@@ -27,24 +28,9 @@ def findings(phases_of: Mapping[str, Phases], declarations: Declarations) -> Ite
     """
     for id, phases in phases_of.items():
         if phases.varies and kernel.VIOLATED in phases.verdicts:
-            yield Diagnostic(
-                Code.PHASE_DEPENDENT,
-                f"whether {id} is violated depends on where the grid of ticks begins",
-                place(declarations),
-                help="declare a `phase` under `[clock]` (`fretc bind --check LOG` proposes one), "
-                f"{_STAMPS}, or use a shorter `tick`",
-                severity=Severity.WARNING,
-            )
+            yield diagnostic("phase_dependent", place(declarations), id=id, stamps=_STAMPS)
         if not phases.exact:
-            yield Diagnostic(
-                Code.PHASES_NOT_JUDGED,
-                f"the verdict on {id} was computed only for some phases of the ticks: too many "
-                "values change within a tick",
-                place(declarations),
-                help="the evidence lists the phases that were not judged; a shorter log needs "
-                "less work",
-                severity=Severity.WARNING,
-            )
+            yield diagnostic("phases_not_judged", place(declarations), id=id)
 
 
 def place(declarations: Declarations) -> Span:

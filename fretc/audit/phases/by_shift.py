@@ -198,7 +198,7 @@ class _Search:
         low, high = self._starts[first], self._starts[last]
         ticks = self._slides.ticks(low)
         columns = {name: slide.column(low, high, ticks) for name, slide in self._columns.items()}
-        return judge(
+        (judgement,) = judge(
             self._monitor,
             columns,
             self._slides.cut(self._columns, low),
@@ -206,6 +206,7 @@ class _Search:
             intact=self._intact,
             end=self._end,
         )
+        return judgement
 
     def _class_of(self, phase: int) -> int:
         return int(self._starts.searchsorted(phase, "right")) - 1

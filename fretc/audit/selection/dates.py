@@ -17,7 +17,8 @@ from fretc.logs.storage.folders import Folder, folder, is_folder
 from fretc.logs.storage.inputs import opened
 from fretc.logs.storage.listings import changed, is_store
 from fretc.logs.storage.log_names import STDIN, is_url, name_of
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.limits import with_budget
 from fretish.units import nanoseconds
@@ -41,12 +42,7 @@ def since(text: str) -> datetime | Diagnostic:
         moment = datetime.fromisoformat(text)
         return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).astimezone(UTC)
     except (ValueError, OverflowError):
-        return Diagnostic(
-            Code.BAD_USAGE,
-            f"`--since {text}` is neither a date nor a length of time",
-            help="write `--since 2026-11-22`, `--since 2026-11-22T18:00`, `--since 24h` or "
-            "`--since 7d`",
-        )
+        return diagnostic("bad_since", text=text)
 
 
 def is_older(log: str, than: datetime) -> bool:

@@ -8,7 +8,8 @@ from fretc.logs.signals.samples import Recording, Times, Topic
 from fretish.bindings.amounts import duration, exact_duration
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.clock import Clock, in_words
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 
 _JITTER = 1.1
@@ -45,7 +46,14 @@ def slow_topics(
         period = topic.median_period_ns
         if signal.max_age is not None:
             if period > signal.max_age:
-                yield _too_old(signal, period, signal.max_age)
+                yield diagnostic(
+                    "sample_too_old",
+                    signal.span,
+                    topic=signal.path.topic,
+                    period=_long(period, signal.max_age),
+                    signal=signal.name,
+                    max_age=exact_duration(signal.max_age / 1000000000.0),
+                )
         elif tick is not None and period > tick * _JITTER and _is_regular(topic):
             if topic.name in slow:
                 continue
@@ -82,17 +90,18 @@ def late_messages(
     """F429; `over` is the largest delay beyond the declared lateness."""
     lateness = clock.effective_lateness or 0
     needed = -(-(lateness + over) // 10**7) * 10**7
-    return Diagnostic(
-        Code.LATE_MESSAGES,
-        f"{count} of {of} messages of `{topic}` came more than {in_words(lateness)} after the "
-        f"tick that they belong to, at most {in_words(lateness + over)}: propositions that read "
-        "them are unknown there",
+    return diagnostic(
+        "late_messages",
         place,
-        f'write `lateness = "{in_words(needed)}"` under `[clock]` to wait for them'
+        count=count,
+        total=of,
+        topic=topic,
+        lateness=in_words(lateness),
+        most=in_words(lateness + over),
+        help=f'write `lateness = "{in_words(needed)}"` under `[clock]` to wait for them'
         if needed <= _MOST_LATENESS
         else "the clocks of publisher and recorder differ: set them, or use "
         '`time = "log_time"` under `[clock]`',
-        Severity.WARNING,
     )
 
 
@@ -113,26 +122,15 @@ def _tick(clock: Clock, recording: Recording) -> int | None:
     return topic.median_period_ns if topic is not None else None
 
 
-def _too_old(signal: Signal, period: int, max_age: int) -> Diagnostic:
-    return Diagnostic(
-        Code.UNKNOWN_BETWEEN,
-        f"`{signal.path.topic}` comes every {_long(period, max_age)}, and a sample of "
-        f"`{signal.name}` counts for {exact_duration(max_age / 1e9)}: in between it is unknown",
-        signal.span,
-        help="raise `max_age` above the time between two messages, or publish more often",
-        severity=Severity.WARNING,
-    )
-
-
 def _slow(signal: Signal, period: int, clock: Clock, tick: int) -> Diagnostic:
     by = "" if clock.period is not None else f" (each message of `{clock.topic}`)"
-    return Diagnostic(
-        Code.SLOW_TOPIC,
-        f"`{signal.path.topic}` comes every {_long(period, tick)}, and the clock ticks every "
-        f"{exact_duration(tick / 1e9)}{by}: most ticks use the sample of an earlier tick",
+    return diagnostic(
+        "slow_topic",
         signal.span,
-        help="state `max_age` if this is intended, use a longer `tick`, or publish more often",
-        severity=Severity.WARNING,
+        topic=signal.path.topic,
+        period=_long(period, tick),
+        tick=exact_duration(tick / 1e9),
+        by=by,
         subject=signal.path.topic,
     )
 

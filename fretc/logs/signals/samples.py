@@ -130,15 +130,15 @@ class Topic:
     type: str
     encoding: str
     count: int
-    first_ns: int | None
-    last_ns: int | None
-    longest_gap_ns: int | None
-    out_of_order: int | None
-    equal_stamps: int | None
+    first_ns: int | None = None
+    last_ns: int | None = None
+    longest_gap_ns: int | None = None
+    out_of_order: int | None = None
+    equal_stamps: int | None = None
     median_period_ns: int | None = None
-    unstamped: int | None = 0
-    zero_stamps: int | None = 0
-    clock_jumps: int | None = 0
+    unstamped: int | None = None
+    zero_stamps: int | None = None
+    clock_jumps: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

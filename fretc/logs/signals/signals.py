@@ -32,7 +32,8 @@ from fretish.bindings.declarations import (
     Reduce,
     Signal,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Diagnostic, did_you_mean
+from fretish.diagnostics.messages import diagnostic
 
 RANGE_MIN = "range_min"
 """The field of a range sensor's messages with the least distance that it can measure."""
@@ -180,11 +181,8 @@ def _attribute(value: object, name: str, parent: str) -> object:
     if name in names:
         return getattr(value, name)
     where = f"`{parent}`" if parent else "the message"
-    near = suggestion(name, names)
-    listed = f"it has {', '.join(names)}" if names else None
-    raise FieldError(
-        f"{where} has no field `{name}`", f"did you mean `{near}`?" if near else listed
-    )
+    fix = did_you_mean(name, names, f"it has {', '.join(names)}") if names else None
+    raise FieldError(f"{where} has no field `{name}`", fix)
 
 
 def fields(message: object) -> tuple[str, ...]:
@@ -412,14 +410,13 @@ def _blind_zone(
     shown_bound, shown_limit = (amounts.scaled(each, signal.unit.factor) for each in (bound, limit))
     unit = "" if signal.unit_name == "1" else signal.unit_name
     where = "" if share == 1 else f" in {round(share * 360)} of 360 degrees"
-    return Diagnostic(
-        Code.BLIND_ZONE,
-        f"`{proposition.name}` compares `{signal.name}` with "
-        f"{amounts.exact(shown_bound, unit)}, and `{signal.path.topic}` reports nothing nearer "
-        f"than {amounts.value(shown_limit, unit, [shown_bound])}: an obstacle nearer than the "
-        f"bound is not detected{where}",
+    return diagnostic(
+        "blind_zone",
         proposition.span,
-        help="raise the bound above what the sensor can measure, or use a sensor that measures "
-        "nearer; only a reading of -inf would report an obstacle that is too near",
-        severity=Severity.WARNING,
+        proposition=proposition.name,
+        signal=signal.name,
+        bound=amounts.exact(shown_bound, unit),
+        topic=signal.path.topic,
+        limit=amounts.value(shown_limit, unit, [shown_bound]),
+        where=where,
     )

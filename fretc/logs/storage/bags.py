@@ -26,6 +26,7 @@ from fretc.logs.messages.ros2_types import standard
 from fretc.logs.signals.samples import Gap
 from fretc.logs.storage import storage_diagnostics
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.extras import missing_extra
 from fretish.diagnostics.source import Span
 
 BAG, DB3 = b"#ROSBAG V", b"SQLite format 3\0"
@@ -64,7 +65,7 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagCont
     try:
         import rosbags  # noqa: F401
     except ModuleNotFoundError:
-        return storage_diagnostics.no_rosbags(place)
+        return missing_extra("a bag cannot be read: that needs", ["rosbags"], "bags", place)
     bag = start.startswith(BAG)
     reader = _bag(same) if bag else _db3(same)
     try:

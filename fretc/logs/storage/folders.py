@@ -15,9 +15,9 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from fretc.logs.signals.samples import Gap
-from fretc.logs.storage import storage_diagnostics
 from fretc.logs.storage.log_names import name_of
 from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.limits import with_budget
 from fretish.reading.yaml_text import loaded
@@ -83,7 +83,7 @@ def folder(path: str) -> Folder | Diagnostic:
     with file.open("rb") as stream:
         data = stream.read(_LARGEST)
     return with_budget(
-        len(data), place, lambda: _described(path, data) or storage_diagnostics.bad_metadata(place)
+        len(data), place, lambda: _described(path, data) or diagnostic("bad_run_metadata", place)
     )
 
 

@@ -28,6 +28,7 @@ from typing import Any, BinaryIO, cast
 from fretc.logs.storage import storage_diagnostics, web
 from fretc.logs.storage.log_names import STDIN, is_url, name_of
 from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.limits import extend_budget
 
@@ -78,7 +79,7 @@ def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
         try:
             log = _opened(path, stack, whole=whole)
         except FileNotFoundError:
-            log = storage_diagnostics.no_such_file(Source(name_of(path), "").span())
+            log = diagnostic("no_such_log", Source(name_of(path), "").span())
         except OSError as error:
             log = storage_diagnostics.unreadable(error, Source(name_of(path), "").span())
         yield log
@@ -91,9 +92,9 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         return _remote(path, stack, whole=whole)
     mode = os.stat(path).st_mode
     if stat.S_ISDIR(mode):
-        return storage_diagnostics.is_a_directory(Source(name_of(path), "").span())
+        return diagnostic("log_is_directory", Source(name_of(path), "").span())
     if not stat.S_ISREG(mode):
-        return storage_diagnostics.not_a_file(Source(name_of(path), "").span())
+        return diagnostic("not_a_regular_file", Source(name_of(path), "").span())
     stream = stack.enter_context(Path(path).open("rb"))  # noqa: SIM115
     before = os.fstat(stream.fileno())
     content = stream.read(before.st_size) if before.st_size <= _SMALL else None
@@ -279,7 +280,7 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         system, path = fsspec.core.url_to_fs(url, **web.options(url))
         about = system.info(path)
         if about.get("type") == "directory":
-            return storage_diagnostics.is_a_directory(place)
+            return diagnostic("log_is_directory", place)
         size = about.get("size")
         if size is None or about.get("partial") is False:
             file = stack.enter_context(closing(_stream(system, path)))

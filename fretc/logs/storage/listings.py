@@ -16,6 +16,7 @@ from fretc.logs.storage import storage_diagnostics, web
 from fretc.logs.storage.inputs import as_os_error
 from fretc.logs.storage.log_names import is_url, name_of
 from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.limits import with_budget
 
@@ -48,7 +49,7 @@ def below(url: str, is_log: Callable[[str], bool]) -> Sequence[str] | Diagnostic
     except ImportError as error:
         return storage_diagnostics.no_package(url, error, place)
     except OSError as error:
-        return storage_diagnostics.unlisted(error, place)
+        return diagnostic("folder_not_listed", place, reason=error.strerror or error)
 
 
 def changed(url: str) -> int | None:

@@ -1,4 +1,4 @@
-"""Diagnostics about bags, folders, URLs and standard input: one function for each message."""
+"""Diagnostics about bags, folders, URLs and standard input."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import errno
 from collections.abc import Collection
 
 from fretish.bindings.declarations import short_type
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import missing_extra
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 
 # Standard input and URLs
@@ -15,34 +16,14 @@ from fretish.diagnostics.source import Source, Span
 
 def no_stdin(why: str) -> Diagnostic:
     """Standard input cannot be read."""
-    return Diagnostic(
-        Code.UNREADABLE,
-        f"standard input cannot be read: {why}",
-        Source("<stdin>", "").span(),
-        "send a log: `fretc audit - < run.mcap`",
-    )
+    return diagnostic("no_stdin", Source("<stdin>", "").span(), why=why)
 
 
 def no_package(url: str, error: ImportError, place: Span) -> Diagnostic:
     """The package for URLs, or for the protocol of a URL, is not installed."""
     if error.name == "fsspec":
-        return no_fsspec(place)
+        return missing_extra("a URL cannot be read: that needs", ["fsspec"], "remote", place)
     return no_protocol_package(url.partition("://")[0], str(error), place)
-
-
-def unlisted(error: OSError, place: Span) -> Diagnostic:
-    """An object store cannot be listed."""
-    return Diagnostic(
-        Code.UNREADABLE,
-        f"the folder cannot be listed: {error.strerror or error}",
-        place,
-        "check the address, the network, and whether your credentials may list it",
-    )
-
-
-def no_fsspec(place: Span) -> Diagnostic:
-    """The extra for URLs is not installed."""
-    return missing_extra("a URL cannot be read: that needs", ["fsspec"], "remote", place)
 
 
 def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
@@ -55,134 +36,33 @@ def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
         return missing_extra(
             f"`{protocol}://` addresses cannot be read: that needs", ["aiohttp"], "remote", place
         )
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"`{protocol}://` addresses cannot be read: {reason}",
-        place,
-        f"install its package: pip install {package}"
-        if package
-        else "fsspec's documentation lists the package for each protocol",
+    if package is None:
+        return diagnostic("unknown_protocol", place, protocol=protocol, reason=reason)
+    return diagnostic(
+        "no_protocol_package", place, protocol=protocol, reason=reason, package=package
     )
 
 
 # Bags and folders
 
 
-def no_rosbags(place: Span) -> Diagnostic:
-    """The extra for bags is not installed."""
-    return missing_extra("a bag cannot be read: that needs", ["rosbags"], "bags", place)
-
-
 def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
     """A bag cannot be read by rosbags."""
-    return Diagnostic(
-        Code.UNREADABLE_LOG,
-        f"the bag cannot be read: {why}",
-        place,
-        "fix it first: `rosbag reindex`, which loses the chunk that was being written (keep the "
-        "`.orig` file beside it, so that audits report the loss); or copy it again from where "
-        "it was recorded"
-        if indexed
-        else "copy it again from where it was recorded",
-    )
-
-
-def bag_of_no_file(place: Span) -> Diagnostic:
-    """A bag from standard input or a URL."""
-    return Diagnostic(
-        Code.NOT_A_LOG, "a bag can only be read from a file", place, "save it as a file first"
-    )
+    return diagnostic("bag_to_reindex" if indexed else "bad_bag", place, why=why)
 
 
 def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
     """The limits of a bag: no check sums, and types whose definitions it lacks."""
-    message = (
-        "a bag has no check sums, and one time for each message: a changed byte within a "
-        "message is not detected, and publish_time is log_time"
-    )
     if not assumed:
-        return Diagnostic(Code.BAG_FORMAT, message, place, severity=Severity.NOTE)
+        return diagnostic("limits_of_bag", place)
     names = ", ".join(sorted({short_type(name) for name in assumed})[:8])
     more = ", ..." if len(set(assumed)) > 8 else ""
-    return Diagnostic(
-        Code.BAG_FORMAT,
-        f"{message}; it defines no types: the definitions of ROS 2, the same in all releases, "
-        f"are used for {names}{more}",
-        place,
-        "if these are packages of your own with the same names, record MCAP instead",
-        Severity.WARNING,
-    )
-
-
-def without_crc(place: Span) -> Diagnostic:
-    """The limits of an MCAP file without CRCs of its messages."""
-    return Diagnostic(
-        Code.BAG_FORMAT,
-        "no CRC covers its messages: a changed byte within a message is not detected",
-        place,
-        "record with `noChunkCRC: false` in rosbag2's `--storage-config-file`",
-        Severity.NOTE,
-    )
-
-
-def bad_metadata(place: Span) -> Diagnostic:
-    """The `metadata.yaml` of a run is invalid."""
-    return Diagnostic(
-        Code.SPLIT_LOG,
-        "it does not list the files of the run",
-        place,
-        "write it again: `ros2 bag reindex FOLDER`",
-    )
+    return diagnostic("limits_of_bag_without_types", place, names=f"{names}{more}")
 
 
 def part_of_a_run(i: int, count: int, run: str, place: Span) -> Diagnostic:
     """One file of several is read as a run of its own; `run` is the name of the whole run."""
-    return Diagnostic(
-        Code.SPLIT_LOG,
-        f"it is file {i + 1} of {count} of one run, but judged alone",
-        place,
-        f"name {run}: its files are one log",
-        Severity.NOTE,
-    )
-
-
-def compressed_folder(mode: str, place: Span) -> Diagnostic:
-    """The files or messages of a run are compressed by rosbag2."""
-    return Diagnostic(
-        Code.NOT_A_LOG,
-        f"rosbag2 has compressed each {mode} of the run",
-        place,
-        "unpack it: `ros2 bag convert`, with `compression_mode: none`; MCAP has a compression of "
-        "its own: `--storage-preset-profile zstd_fast`",
-    )
-
-
-def no_such_file(place: Span) -> Diagnostic:
-    """There is nothing at the path."""
-    return Diagnostic(Code.NO_SUCH_FILE, "there is no such file", place, "check the path")
-
-
-def is_a_directory(place: Span) -> Diagnostic:
-    """The path names a directory."""
-    return Diagnostic(Code.IS_A_DIRECTORY, "it is a directory", place, "name the logs in it")
-
-
-def grown(size: int, place: Span) -> Diagnostic:
-    """F431: the log grew while it was read; only its first bytes are used."""
-    return Diagnostic(
-        Code.GROWN,
-        f"the log grew while it was read: the audit covers the first {size:,} bytes",
-        place,
-        "audit it again when its recording, or its copy, is complete",
-        severity=Severity.WARNING,
-    )
-
-
-def not_a_file(place: Span) -> Diagnostic:
-    """The path names a device, a pipe or the like."""
-    return Diagnostic(
-        Code.UNREADABLE, "it is not a regular file", place, "name a file; `-` is standard input"
-    )
+    return diagnostic("part_of_a_run", place, number=i + 1, count=count, run=run)
 
 
 def unreadable(error: OSError, place: Span) -> Diagnostic:
@@ -193,4 +73,4 @@ def unreadable(error: OSError, place: Span) -> Diagnostic:
         fix = "check the address, the network, and whether your credentials reach it"
     elif error.errno == errno.ENOSPC:
         fix = "free space in the folder for temporary files, or set `TMPDIR` to another folder"
-    return Diagnostic(Code.UNREADABLE, f"it cannot be read: {reason}", place, fix)
+    return diagnostic("unreadable_log", place, reason=reason, help=fix)

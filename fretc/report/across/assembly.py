@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from math import inf
 
 from fretc.audit.evidence.result_summaries import ResultSummary
-from fretc.audit.evidence.schema import Result, Threshold
+from fretc.audit.evidence.schema import Result
 from fretc.report.across.lanes import (
     Known,
     LanePlan,
-    RunStretches,
     Tally,
     left_out,
     plan,
@@ -20,15 +20,14 @@ from fretc.report.across.lanes import (
 )
 from fretc.report.across.maps import MOST_MAPS, RunResult, run_map
 from fretc.report.across.stretches import stretches
-from fretc.report.across.uses import RunNumbers, uses
+from fretc.report.across.uses import RunThresholds, uses
 from fretc.report.model import phrases
-from fretc.report.model.across import Across, RequirementAcross, RunMap
 from fretc.report.model.assessments import Assessment
-from fretc.report.model.audits import SingleAudit
-from fretc.report.model.pictures import WordLane
-from fretc.report.model.views import result_anchor
+from fretc.report.model.pictures import Across, RequirementAcross, RunMap, WordLane
+from fretc.report.model.results import ResultRow
 from fretc.report.pictures.histograms import is_answered, seconds_allowed
 from fretc.report.sections.details import Details, Thresholds
+from fretc.report.sections.results import result_rows
 from fretc.report.sections.runs import run_key
 
 _ROWS, _MARKS = 180, 1_500
@@ -47,7 +46,7 @@ def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> 
         worst: the anchors of the requirements, worst first.
         pictured: how many of these have their own pictures.
     """
-    active = [a for a in details.assessments.values() if a.entry.status != "retired"]
+    active = [a for a in details.assessments.values() if a.entry.is_in_force]
     most = max(_FEWEST, min(_MOST, _ROWS // max(1, len(active))))
     marks = max(10 * _FEWEST, _MARKS // max(1, len(active)))
     in_force = {assessment.anchor for assessment in active}
@@ -140,7 +139,7 @@ def _maps(
     }
     ranked = [run for run in tallies if run in judged]
     ranked.sort(key=lambda run: worst_first(tallies[run]))
-    results: dict[str, list[RunStretches]] = {run: [] for run in ranked[:MOST_MAPS]}
+    results: dict[str, list[ResultRow]] = {run: [] for run in ranked[:MOST_MAPS]}
     for summary in _of_runs(active, details, results):
         results[summary.run].append(summary)
     courses = _courses(details)
@@ -155,7 +154,7 @@ def _maps(
     return maps, " ".join(filter(None, [left, lost if unknown else ""]))
 
 
-def _map(of: Sequence[RunStretches], first: int, details: Details) -> RunMap | None:
+def _map(of: Sequence[ResultRow], first: int, details: Details) -> RunMap | None:
     """The map of a run; None if the evidence has no path of the robot.
 
     Args:
@@ -176,7 +175,7 @@ def _map(of: Sequence[RunStretches], first: int, details: Details) -> RunMap | N
 
 def _of_runs(
     active: Sequence[Assessment], details: Details, runs: Collection[str]
-) -> list[RunStretches]:
+) -> list[ResultRow]:
     """The results of some runs, by their anchors, in the order of all runs."""
     places = {run.anchor: run.number for run in details.runs.values()}
     found = [result for assessment in active for result in _results(assessment, details, runs)]
@@ -185,25 +184,10 @@ def _of_runs(
 
 def _results(
     assessment: Assessment, details: Details, of: Collection[str] | None = None
-) -> list[RunStretches]:
+) -> list[ResultRow]:
     """The results of a requirement in some runs, by their anchors; None: in all runs."""
-    return [
-        RunStretches(
-            run.anchor,
-            run.name,
-            phrases.place(audit.result.run),
-            assessment.id,
-            assessment.anchor,
-            result_anchor(assessment.anchor, number),
-            audit.mark,
-            audit.place,
-            audit.result.ticks > 0,
-            _count(audit.result),
-        )
-        for number, audit in enumerate(assessment.reviewed_audits, 1)
-        for run in [details.runs[run_key(audit.result)]]
-        if of is None or run.anchor in of
-    ]
+    rows = result_rows(assessment, details.runs)
+    return [row for row in rows if of is None or row.run in of]
 
 
 def _count(result: ResultSummary) -> tuple[int, int, int]:
@@ -212,35 +196,17 @@ def _count(result: ResultSummary) -> tuple[int, int, int]:
 
 def _numbers(
     assessment: Assessment, details: Details, thresholds: Thresholds, most: int
-) -> tuple[list[RunNumbers], float | None, int, int]:
+) -> tuple[list[RunThresholds], float | None, int, int]:
     """Arguments of `uses`: current runs, allowed time, number of rows, number of suspect runs."""
-    of = _results(assessment, details)
+    rows = result_rows(assessment, details.runs)
     current = [
-        _run_numbers(audit, each, tuple(thresholds[audit.place]))
-        for audit, each in zip(assessment.audits, of, strict=True)
+        (replace(row, mark=audit.mark), thresholds[audit.place])
+        for audit, row in zip(assessment.audits, rows, strict=True)
         if not audit.is_stale
     ]
-    allowed = (
-        seconds_allowed(assessment.requirement) if is_answered(assessment.requirement) else None
-    )
-    return current, allowed, most, len(of) - len(current)
-
-
-def _run_numbers(
-    audit: SingleAudit, each: RunStretches, thresholds: tuple[Threshold, ...]
-) -> RunNumbers:
-    result = audit.result
-    return RunNumbers(
-        each.label,
-        each.file,
-        each.section,
-        each.anchor,
-        audit.mark,
-        result.triggers,
-        result.violations,
-        result.latency_max_s,
-        thresholds,
-    )
+    is_timed = is_answered(assessment.requirement)
+    allowed = seconds_allowed(assessment.requirement) if is_timed else None
+    return current, allowed, most, len(rows) - len(current)
 
 
 def _known(details: Details, places: Collection[int]) -> Mapping[int, Known]:

@@ -13,9 +13,9 @@ from types import MappingProxyType
 
 from fretc.report.across.stretches import Stretches
 from fretc.report.model import phrases
-from fretc.report.model.across import LaneMark, Lanes, RunLane
 from fretc.report.model.marks import Mark
-from fretc.report.model.pictures import WordLane
+from fretc.report.model.pictures import LaneMark, Lanes, RunLane, WordLane
+from fretc.report.model.results import ResultRow
 
 NO_COURSES: Mapping[str, int] = MappingProxyType({})
 MOST_LANES = 40
@@ -30,28 +30,6 @@ _NAMED = 3
 
 Known = tuple[Stretches, tuple[WordLane, ...]]
 """The intervals of a result, and the signals of words of its run."""
-
-
-@dataclass(frozen=True, slots=True)
-class RunStretches:
-    """Summary of the result of one requirement in one run, for a lane."""
-
-    run: str
-    """The anchor of the run."""
-    label: str
-    file: str
-    requirement: str
-    section: str
-    """The anchor of the requirement."""
-    anchor: str
-    """The anchor of the result."""
-    mark: Mark
-    place: int
-    """Index of the result in the evidence."""
-    is_judged: bool
-    """Whether the result has ticks, which give the length of the run."""
-    count: tuple[int, int, int]
-    """Numbers of violations, unknown intervals and open obligations."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,15 +57,19 @@ def worst_runs(tallies: Mapping[str, Tally], most: int = MOST_LANES) -> Sequence
 class _Lane:
     """A lane without its marks."""
 
-    results: tuple[RunStretches, ...]
+    results: tuple[ResultRow, ...]
     course: int | None = None
     """Index of the result with the signals of words; None if these are not shown."""
     known: Mapping[int, Known] = field(default_factory=dict)
     """Index of a result → its data, for results that were read."""
 
     @property
-    def first(self) -> RunStretches:
+    def first(self) -> ResultRow:
         return self.results[0]
+
+    @property
+    def name(self) -> str:
+        return f"{self.first.run_label} ({self.first.run_file})"
 
     @property
     def mark(self) -> Mark:
@@ -101,7 +83,7 @@ class _Lane:
     @property
     def places(self) -> Iterator[int]:
         """Indices of the results to read: those with marks or words, and one with ticks."""
-        judged = [result for result in self.results if result.is_judged]
+        judged = [result for result in self.results if result.ticks]
         yield from (result.place for result in (*judged[:1], *with_marks(self.results)))
         if self.course is not None:
             yield self.course
@@ -158,7 +140,7 @@ class LanePlan:
 
 def plan(
     title: str,
-    results: Iterable[RunStretches],
+    results: Iterable[ResultRow],
     most: int = MOST_LANES,
     marks: int = _MOST_MARKS,
     note: str = "",
@@ -179,7 +161,7 @@ def plan(
         courses: run → index of the result with its signals of words.
         ranked: whether to sort by verdict even if all runs get a lane.
     """
-    grouped: dict[str, list[RunStretches]] = {}
+    grouped: dict[str, list[ResultRow]] = {}
     for result in results:
         grouped.setdefault(result.run, []).append(result)
     every = [_Lane(tuple(of), courses.get(run)) for run, of in grouped.items()]
@@ -188,7 +170,7 @@ def plan(
     return LanePlan(title, tuple(ordered[:most]), (*ordered[most:], *left), marks, note)
 
 
-def with_marks(results: Sequence[RunStretches]) -> list[RunStretches]:
+def with_marks(results: Sequence[ResultRow]) -> list[ResultRow]:
     """The results that have marks."""
     return [result for result in results if any(result.count)]
 
@@ -225,11 +207,17 @@ def _lane(lane: _Lane, nearest: float) -> RunLane:
     ]
     first = lane.first
     return RunLane(
-        first.run, first.label, first.file, lane.mark, lane.length, tuple(merged), lane.words
+        first.run,
+        first.run_label,
+        first.run_file,
+        lane.mark,
+        lane.length,
+        tuple(merged),
+        lane.words,
     )
 
 
-def _marks(each: RunStretches, stretches: Stretches) -> Iterable[LaneMark]:
+def _marks(each: ResultRow, stretches: Stretches) -> Iterable[LaneMark]:
     def mark(kind: str, start: float, end: float, number: int = 0) -> LaneMark:
         of = ((each.requirement,), each.anchor, each.section)
         return LaneMark(kind, start, end, 1, *of, number, "")
@@ -307,7 +295,7 @@ def _counted(lanes: Sequence[Tally | _Lane]) -> str:
 def _in_words(lanes: Sequence[_Lane]) -> str:
     """A sentence with the counts of the worst runs and the number of other runs."""
     bad = sorted((lane for lane in lanes if any(lane.count)), key=worst_first)
-    named = [f"{lane.first.label} ({lane.first.file}): {_counted([lane])}" for lane in bad[:_NAMED]]
+    named = [f"{lane.name}: {_counted([lane])}" for lane in bad[:_NAMED]]
     rest = _counted(bad[_NAMED:]) if len(bad) > _NAMED else ""
     more = f"{phrases.times(len(bad) - _NAMED, 'more run')}: {rest}" if rest else ""
     calm = len(lanes) - len(bad)

@@ -9,9 +9,9 @@ from math import dist
 
 from fretc.audit.evidence.run_plot_data import position_at
 from fretc.audit.evidence.schema import Result, Way
-from fretc.report.across.lanes import RunStretches
 from fretc.report.model import phrases
-from fretc.report.model.across import PlaceMark, RunMap
+from fretc.report.model.pictures import PlaceMark, RunMap
+from fretc.report.model.results import ResultRow
 
 MOST_MAPS = 12
 _NEAR = 0.02
@@ -23,7 +23,7 @@ _NAMED = 3
 class RunResult:
     """A result of a run with a path, and its names."""
 
-    of: RunStretches
+    of: ResultRow
     result: Result | None
     """None if the result was not read, because it has no violation."""
 
@@ -49,7 +49,7 @@ def run_map(way: Way, results: Sequence[RunResult]) -> RunMap | None:
     worst = min((result.of.mark for result in results), key=lambda mark: mark.severity)
     unplaced = total - len(placed)
     text = _text(lines, way, total, unplaced)
-    return RunMap(first.run, first.label, first.file, worst, lines, marks, unplaced, text)
+    return RunMap(first.run, first.run_label, first.run_file, worst, lines, marks, unplaced, text)
 
 
 def extent(points: Iterable[tuple[float, float]]) -> float:

@@ -16,8 +16,8 @@ from math import inf, isfinite
 from fretc.audit.evidence.samples import number
 from fretc.audit.evidence.schema import Threshold
 from fretc.report.model import phrases
-from fretc.report.model.across import Use, UseRow, Uses
-from fretc.report.model.marks import Mark
+from fretc.report.model.pictures import Use, UseRow, Uses
+from fretc.report.model.results import ResultRow
 from fretish.bindings.amounts import exact
 from monitors import kernel
 
@@ -26,37 +26,13 @@ _LETTERS = "abcdefgh"
 _ROUNDING = 1e-9
 
 
-@dataclass(frozen=True, slots=True)
-class RunNumbers:
-    """The numbers of one run for the bounds of a requirement."""
-
-    label: str
-    file: str
-    section: str
-    anchor: str
-    mark: Mark
-    triggers: int
-    violations: int
-    latency: float | None
-    """The longest latency in seconds; None if there is no answer."""
-    thresholds: tuple[Threshold, ...]
-
-    @property
-    def is_good(self) -> bool:
-        """Whether the run satisfies the requirement."""
-        return self.mark.word == kernel.SATISFIED
-
-    @property
-    def is_bad(self) -> bool:
-        """Whether the run violates the requirement."""
-        return self.mark.word == kernel.VIOLATED
-
-
+RunThresholds = tuple[ResultRow, Sequence[Threshold]]
+"""A result and its thresholds, in declared units."""
 _Key = tuple[str, str, str, float, str]
 
 
 def uses(
-    runs: Sequence[RunNumbers], allowed: float | None, most: int, suspect: int = 0
+    runs: Sequence[RunThresholds], allowed: float | None, most: int, suspect: int = 0
 ) -> Uses | None:
     """The ranking of runs; None if fewer than two runs have a share.
 
@@ -69,12 +45,13 @@ def uses(
     grouped = _grouped(runs)
     bounds = {key: bound for key, of in grouped.items() if (bound := _bound(of)) is not None}
     letters = _lettered(allowed, bounds)
-    rows = [_row(run, allowed, bounds, letters) for run in runs]
+    rows = [_row(*run, allowed, bounds, letters) for run in runs]
     places = sorted((n for n, row in enumerate(rows) if row.uses), key=lambda n: _rank(rows[n]))
     if len(places) < 2:
         return None
-    shown = [_row(runs[n], allowed, bounds, letters, worded=True) for n in places[:most]]
+    shown = [_row(*runs[n], allowed, bounds, letters, worded=True) for n in places[:most]]
     left = [rows[n] for n in places[most:]]
+    more = len(bounds) + bool(allowed) - len(letters)
     notes = tuple(
         filter(
             None,
@@ -82,7 +59,7 @@ def uses(
                 _left_out(left),
                 _unknown([row for row in rows if not row.uses]),
                 _not_bounds([key for key in grouped if key not in bounds]),
-                _more_bounds(len(bounds) + bool(allowed) - len(letters)),
+                f"{phrases.times(more, 'more bound')} not ranked." if more > 0 else "",
                 f"{phrases.times(suspect, 'suspect run')} left out." if suspect else "",
             ],
         )
@@ -97,11 +74,11 @@ def uses(
     )
 
 
-def _grouped(runs: Sequence[RunNumbers]) -> dict[_Key, list[tuple[RunNumbers, Threshold]]]:
+def _grouped(runs: Sequence[RunThresholds]) -> dict[_Key, list[tuple[ResultRow, Threshold]]]:
     """The thresholds of all runs, grouped by comparison."""
-    grouped: dict[_Key, list[tuple[RunNumbers, Threshold]]] = {}
-    for run in runs:
-        for threshold in run.thresholds:
+    grouped: dict[_Key, list[tuple[ResultRow, Threshold]]] = {}
+    for run, thresholds in runs:
+        for threshold in thresholds:
             grouped.setdefault(_key(threshold), []).append((run, threshold))
     return grouped
 
@@ -120,9 +97,10 @@ class _Bound:
     """The value by which distances are divided."""
 
 
-def _bound(of: Sequence[tuple[RunNumbers, Threshold]]) -> _Bound | None:
+def _bound(of: Sequence[tuple[ResultRow, Threshold]]) -> _Bound | None:
     """The bound; None if runs that satisfy the requirement are on both sides of the threshold."""
-    kept = {each.comparison for run, each in of if run.is_good and each.comparison is not None}
+    good = [each.comparison for run, each in of if run.mark.word == kernel.SATISFIED]
+    kept = {comparison for comparison in good if comparison is not None}
     if "crossed" in kept or len(kept) > 1 or not any(each.comparison for _, each in of):
         return None
     scale = abs(of[0][1].bound) or max(_reach(each) for _, each in of)
@@ -143,7 +121,8 @@ def _named(key: _Key | None, allowed: float | None) -> str:
 
 
 def _row(
-    run: RunNumbers,
+    run: ResultRow,
+    thresholds: Sequence[Threshold],
     allowed: float | None,
     bounds: Mapping[_Key, _Bound],
     letters: Mapping[_Key | None, str],
@@ -152,12 +131,12 @@ def _row(
 ) -> UseRow:
     """The row of a run; texts only if `worded`, because most rows are not shown."""
     found = list(_of_latency(run, allowed, letters))
-    for threshold in run.thresholds:
+    for threshold in thresholds:
         key = _key(threshold)
         if key in bounds and key in letters and threshold.comparison is not None:
             found.append(_of_threshold(threshold, bounds[key], letters[key], worded=worded))
     found.sort(key=_most_used)
-    return UseRow(run.label, run.file, run.mark, run.anchor, run.section, tuple(found))
+    return UseRow(run.run_label, run.run_file, run.mark, run.anchor, run.section, tuple(found))
 
 
 def _most_used(use: Use) -> tuple[bool, float, str]:
@@ -177,19 +156,19 @@ def _rank(row: UseRow) -> tuple[bool, bool, float]:
 
 
 def _of_latency(
-    run: RunNumbers, allowed: float | None, letters: Mapping[_Key | None, str]
+    run: ResultRow, allowed: float | None, letters: Mapping[_Key | None, str]
 ) -> Iterator[Use]:
     if not allowed or None not in letters:
         return
-    limit = phrases.seconds(allowed)
-    if run.latency is not None and run.latency > allowed + _ROUNDING:
-        text = f"answered after {phrases.seconds(run.latency)}, {limit} are allowed"
-        yield Use(letters[None], run.latency / allowed, True, text)
-    elif run.violations and run.triggers:
+    limit, latency = phrases.seconds(allowed), run.latency_max_s
+    if latency is not None and latency > allowed + _ROUNDING:
+        text = f"answered after {phrases.seconds(latency)}, {limit} are allowed"
+        yield Use(letters[None], latency / allowed, True, text)
+    elif run.violations_total and run.triggers:
         yield Use(letters[None], None, True, f"no answer within {limit}")
-    elif run.latency is not None:
-        text = f"answered after {phrases.seconds(run.latency)} of {limit}"
-        yield Use(letters[None], max(0.0, run.latency / allowed), False, text)
+    elif latency is not None:
+        text = f"answered after {phrases.seconds(latency)} of {limit}"
+        yield Use(letters[None], max(0.0, latency / allowed), False, text)
 
 
 # Thresholds ------------------------------------------------------------------------------------
@@ -279,10 +258,6 @@ def _not_bounds(keys: Sequence[_Key]) -> str:
         "Not ranked, because runs that satisfy the requirement are on both sides of the "
         f"bound, or no value is known: {phrases.some(list(dict.fromkeys(named)))}."
     )
-
-
-def _more_bounds(count: int) -> str:
-    return f"{phrases.times(count, 'more bound')} not ranked." if count > 0 else ""
 
 
 def _in_words(

@@ -14,7 +14,9 @@ import re
 from collections.abc import Iterator
 
 from fretc.audit.evidence.verdicts import CURRENT, SUSPECT
-from fretc.report.model.views import Mark, Report, RequirementView, ResultRow
+from fretc.report.model.marks import Mark
+from fretc.report.model.results import ResultRow
+from fretc.report.model.views import Report, RequirementView
 
 HEAD = (
     "hazards", "requirement", "title", "status", "coverage", "verdict", "currency",

@@ -96,11 +96,6 @@ def _reqif(subject: Subject) -> str:
     return reqif(subject.report)
 
 
-def _missing_reqif() -> Diagnostic | None:
-    """F908 if the library for `--reqif` is not installed."""
-    return unless_installed("a report as ReqIF needs", ["reqif"], "reqif")
-
-
 def _gsn(subject: Subject) -> str:
     from fretc.report.forms.gsn import gsn
 
@@ -120,7 +115,7 @@ FORMS: Mapping[str, Form] = {
             "reqif",
             "Requirements and verdicts, for requirements management tools.",
             _reqif,
-            missing=_missing_reqif,
+            missing=lambda: unless_installed("a report as ReqIF needs", ["reqif"], "reqif"),
         ),
         Form("gsn", "Assurance argument, as YAML for gsn2x.", _gsn),
     )

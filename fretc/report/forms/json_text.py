@@ -32,7 +32,7 @@ def _requirements(views: Sequence[RequirementView], details: Details) -> Iterato
     for group in _groups(views):
         results: dict[str, list[str]] = {view.anchor: [] for view in group}
         for row, result in details.results(row for view in group for row in view.results):
-            results[row.requirement].append(to_json(asdict(result), "        "))
+            results[row.section].append(to_json(asdict(result), "        "))
         histograms = dict(details.histograms(view.anchor for view in group))
         for view in group:
             whole = replace(view, histograms=histograms[view.anchor])

@@ -16,15 +16,10 @@ from typing import TypeVar
 
 from fretc.audit.evidence.verdicts import BROKEN, RETIRED, SUSPECT
 from fretc.report.model import phrases
-from fretc.report.model.changes import Change, follows
-from fretc.report.model.views import (
-    Mark,
-    Report,
-    RequirementView,
-    ResultRow,
-    ResultView,
-    worst_first,
-)
+from fretc.report.model.changes import follows
+from fretc.report.model.marks import Mark
+from fretc.report.model.results import ResultRow, ResultView
+from fretc.report.model.views import Report, RequirementView, worst_first
 from fretc.report.sections.details import Details
 from fretc.report.sections.proofs import is_refuted, refutations
 from fretc.report.sections.signatures import BROKEN as DOES_NOT_VERIFY
@@ -141,7 +136,7 @@ def _changes(report: Report) -> list[str]:
     names = {view.id: view.name for view in report.requirements}
     followed = sorted(
         ((change, follows(change)) for change in report.changes if follows(change)),
-        key=lambda pair: not _is_red_now(pair[0]),
+        key=lambda pair: not any(now.startswith(BROKEN) for _, _, now in pair[0].verdicts),
     )
     consequences = [
         _change(names.get(one.requirement, one.requirement), texts) for one, texts in followed
@@ -151,10 +146,6 @@ def _changes(report: Report) -> list[str]:
         for group in report.change_groups
     ]
     return [*consequences, *changes]
-
-
-def _is_red_now(change: Change) -> bool:
-    return any(now.startswith(BROKEN) for _, _, now in change.verdicts)
 
 
 def _change(name: str, texts: Sequence[str]) -> str:

@@ -134,7 +134,7 @@ class _Exchange:
             SpecAttributeDefinition(
                 attribute_type=_KINDS[kind],
                 identifier=_attribute(id, attribute),
-                datatype_definition=_data_type(kind, attribute),
+                datatype_definition=attribute.lower() if kind is Kind.WORD else kind.value,
                 last_change=self._changed,
                 long_name=attribute,
                 multi_valued=False if kind is Kind.WORD else None,
@@ -252,11 +252,6 @@ def _xhtml(text: str) -> str:
     """The text as XHTML, with a `<br/>` and a line end after each line."""
     lines = re.split(r"\r\n|[\r\n]", escape(valid(text.strip())))
     return "<xhtml:div>" + "<xhtml:br/>\n".join(lines) + "</xhtml:div>"
-
-
-def _data_type(kind: Kind, name: str) -> str:
-    """The data type of an attribute; each enumeration has its own."""
-    return name.lower() if kind is Kind.WORD else kind.value
 
 
 def _attribute(kind_of: str, name: str) -> str:

@@ -8,7 +8,8 @@ from enum import StrEnum
 
 from fretc.audit.evidence.verdicts import CURRENT, SUSPECT, VERDICTS
 from fretc.report.model import phrases
-from fretc.report.model.views import HazardView, RequirementView, ResultRow
+from fretc.report.model.results import ResultRow
+from fretc.report.model.views import HazardView, RequirementView
 from fretish.documents import STATUSES
 
 _LISTED = 50

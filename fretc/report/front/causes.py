@@ -13,7 +13,8 @@ from fretc.audit.evidence.verdicts import (
 )
 from fretc.report.model import phrases
 from fretc.report.model.front import FigureLine, Link
-from fretc.report.model.views import Mark, RequirementView, RunSummary
+from fretc.report.model.marks import Mark
+from fretc.report.model.views import RequirementView, RunSummary
 from monitors import kernel
 
 _NAMED = 8

@@ -85,13 +85,11 @@ def _facts(
     yield phrases.times(len(active), "requirement")
     yield _runs(runs) if runs else "no run"
     reviews = [assessment.standing.review for assessment in assessed]
-    dates = sorted(on for review in reviews if review and (on := _date(review.date)))
+    dates = sorted(
+        date.fromisoformat(review.date) for review in reviews if review and is_date(review.date)
+    )
     yield f"reviewed on {days(dates[0], dates[-1])}" if dates else "not reviewed"
     yield f"fretc {__version__}"
-
-
-def _date(text: str) -> date | None:
-    return date.fromisoformat(text) if is_date(text) else None
 
 
 def _runs(runs: Sequence[Run]) -> str:
@@ -191,7 +189,11 @@ def _trust(runs: Sequence[RunSummary], names: Mapping[str, str]) -> Iterator[str
         return
     total = phrases.times(len(runs), "log")
     damaged = [names[run.anchor] for run in runs if not run.intact]
-    wrong = [_wrong(run, names) for run in runs if run.intact and _errors(run)]
+    wrong = [
+        f"{names[run.anchor]} ({', '.join(errors)})"
+        for run in runs
+        if run.intact and (errors := _errors(run))
+    ]
     parts = [
         f"{len(damaged)} of {total} damaged or not readable: {phrases.some(damaged)}"
         if damaged
@@ -208,10 +210,6 @@ def _trust(runs: Sequence[RunSummary], names: Mapping[str, str]) -> Iterator[str
     ]
     more = f"other findings in {phrases.some(found, 4)}" if found else "no other findings"
     yield f"{hashes}; {more}."
-
-
-def _wrong(run: RunSummary, names: Mapping[str, str]) -> str:
-    return f"{names[run.anchor]} ({', '.join(_errors(run))})"
 
 
 def _errors(run: RunSummary) -> list[str]:

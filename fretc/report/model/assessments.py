@@ -12,8 +12,10 @@ from compiler.logic.claims import Proof
 from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.analysis.evidence import AnalyzedSet
+from fretc.attestation.signatures import SignatureBook
 from fretc.audit.bases import bases
-from fretc.audit.evidence.result_summaries import ResultSummaries
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummaries, ResultSummary
 from fretc.audit.evidence.verdicts import (
     BROKEN,
     NOT_EXERCISED,
@@ -25,16 +27,17 @@ from fretc.audit.evidence.verdicts import (
     severity,
 )
 from fretc.audit.measurements.trials import NO_TRIALS
-from fretc.report.model.audits import ProbabilityAudit, SingleAudit
+from fretc.report.model.marks import Mark, verdict_mark
 from fretc.report.model.suspicions import AboutResults, about_estimation, since_review
-from fretc.report.model.views import Mark, verdict_mark
 from fretc.traceability.artefacts import Product, monitors, products
 from fretc.traceability.chain import chains
 from fretc.traceability.lock import Lock, ReviewedRequirement, standings
 from fretc.traceability.waivers import Waiver
+from fretc.verification.reader import Proofs
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.documents import RequirementEntry
+from monitors import kernel
 
 UNBOUND, NOT_GENERATED = "unbound", "not generated"
 EXERCISED_PASS, EXERCISED_FAIL = "exercised, pass", "exercised, fail"
@@ -44,6 +47,77 @@ COVERAGE = (
     EXERCISED_FAIL, SUSPECT, WAIVED, RETIRED,
 )  # fmt: skip
 """The steps from sentence to passing run; see `Assessment.coverage`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inputs:
+    """What a report is made from: a project, and the files about it."""
+
+    project: Project
+    """With or without errors; the report lists unformalized requirements."""
+    path: str
+    """The path of the evidence, which need not exist."""
+    evidence: EvidenceSource | None
+    """None if no run was audited."""
+    lock: Lock | None
+    """None if no requirement is reviewed."""
+    waivers: Mapping[str, Waiver]
+    """Requirement → waiver, for waivers that are valid today."""
+    verification: Proofs | None
+    """The file of `fretc verify`; None if nothing was verified."""
+    proofs: Sequence[Proof]
+    """The proofs of that file, and the results of AJPF."""
+    book: SignatureBook
+    """The checked signatures."""
+    together: AnalyzedSet | None
+    """The file of `fretc analyze`; None if there is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class SingleAudit:
+    """The result of one run, and the reasons why it is suspect."""
+
+    result: ResultSummary
+    suspicions: tuple[str, ...]
+    place: int = 0
+    """Index of the result in the evidence."""
+
+    @property
+    def verdict(self) -> str:
+        """The verdict of the result; `violated` if the result lists a violation."""
+        violations = self.result.violations and self.result.trials is None
+        return kernel.VIOLATED if violations else self.result.verdict
+
+    @property
+    def is_stale(self) -> bool:
+        """Whether the result is about another version."""
+        return bool(self.suspicions)
+
+    @property
+    def mark(self) -> Mark:
+        """Verdict and currency."""
+        return verdict_mark(self.verdict, suspect=self.is_stale)
+
+    def since(self, review: tuple[str, ...]) -> SingleAudit:
+        """The audit, with the reasons why it is suspect since a review.
+
+        Args:
+            review: what has changed since the review; "" if nothing has.
+        """
+        return SingleAudit(self.result, review, self.place) if review and self.mark.shows else self
+
+
+@dataclass(frozen=True, slots=True)
+class ProbabilityAudit:
+    """The answer of all runs about a probability, and the reasons why it is suspect."""
+
+    estimation: Estimated
+    suspicions: tuple[str, ...]
+
+    @property
+    def mark(self) -> Mark:
+        """Answer and currency."""
+        return verdict_mark(self.estimation.answer, suspect=bool(self.suspicions))
 
 
 @dataclass(frozen=True)
@@ -183,8 +257,8 @@ def assessments(
         proofs: the results of verification.
         analyzed: the file of `fretc analyze`; None if there is none.
     """
-    requirements = {id(requirement.entry): requirement for requirement in project.formalized}
-    diagnostics = {id(failed.requirement): failed.diagnostic for failed in project.failed}
+    requirements = {requirement.entry: requirement for requirement in project.formalized}
+    diagnostics = {failed.requirement: failed.diagnostic for failed in project.failed}
     results = briefs.by_requirement if briefs else {}
     products_of = {id: products(requirement) for id, requirement in requirements.items()}
     basis_of = bases(project, monitors=monitors(products_of))
@@ -195,8 +269,8 @@ def assessments(
     assessed: list[Assessment] = []
     for entry, standing in zip(project.requirements, standing_of_each, strict=True):
         anchors.append(_anchor(entry.id, anchors))
-        requirement = requirements.get(id(entry))
-        basis = basis_of[id(entry)]
+        requirement = requirements.get(entry)
+        basis = basis_of[entry]
         suspicions = AboutResults(basis, audited_by, formalized=requirement is not None)
         audits = tuple(
             SingleAudit(result, suspicions.of(result), place)
@@ -207,9 +281,9 @@ def assessments(
                 entry,
                 anchors[-1],
                 requirement,
-                diagnostics.get(id(entry)),
+                diagnostics.get(entry),
                 audits,
-                products_of.get(id(entry), ()),
+                products_of.get(entry, ()),
                 standing,
                 waivers.get(entry.id),
                 requirement is not None and _is_bound(requirement, project.declarations),

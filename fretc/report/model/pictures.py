@@ -1,11 +1,14 @@
-"""The content of the report's pictures; `fretc.report.pictures.plots` has the layout.
+"""The content of the report's pictures, of one run and of all runs together.
 
-Times are seconds from the first tick of a run.
+`fretc.report.pictures.plots` and `fretc.report.across.layout` have the layout. Times are seconds
+from the first tick of a run. Texts describe the pictures.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+from fretc.report.model.marks import Mark
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,3 +119,137 @@ class Histogram:
     """Triggers without a value, because their time or scope ended without an answer."""
     open: int = 0
     """Triggers without a value, because they still waited when the log ended."""
+
+
+# All runs together -----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class LaneMark:
+    """Adjacent intervals of one kind; `anchor` is the anchor of the first result."""
+
+    kind: str
+    """`violated`, `unknown` or `open`."""
+    start: float
+    end: float
+    count: int
+    """Number of intervals, or of open obligations at the end."""
+    requirements: tuple[str, ...]
+    """Ids of the requirements of the intervals, in order of appearance."""
+    anchor: str
+    section: str
+    """The anchor of the first requirement."""
+    number: int
+    """Number of the first violation in its result, from 1; 0 if the mark is not a violation."""
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class RunLane:
+    """One run: its verdict, and when something was violated, unknown or open."""
+
+    anchor: str
+    label: str
+    file: str
+    mark: Mark
+    length: float
+    marks: tuple[LaneMark, ...]
+    words: tuple[WordLane, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Lanes:
+    """One lane per run; `left_out` counts the runs without a lane, none of which is worse."""
+
+    title: str
+    end: float
+    lanes: tuple[RunLane, ...]
+    left_out: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """The share of a bound that a run used; `measure` is the letter of the bound."""
+
+    measure: str
+    share: float | None
+    """1 is the whole bound; None if the bound was crossed by an unknown amount."""
+    is_crossed: bool
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class UseRow:
+    """The used shares of one run, the largest first."""
+
+    label: str
+    file: str
+    mark: Mark
+    anchor: str
+    section: str
+    uses: tuple[Use, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Uses:
+    """The runs of a requirement, ranked by the used share of its bounds."""
+
+    title: str
+    measures: tuple[tuple[str, str], ...]
+    """(letter, name) of each bound."""
+    rows: tuple[UseRow, ...]
+    notes: tuple[str, ...]
+    """Sentences about runs and bounds without a row."""
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class RequirementAcross:
+    """The pictures of all runs of one requirement."""
+
+    requirement: str
+    anchor: str
+    lanes: Lanes | None
+    uses: Uses | None
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceMark:
+    """Position where nearby violations began; fields as in `LaneMark`."""
+
+    x: float
+    y: float
+    count: int
+    requirements: tuple[str, ...]
+    anchor: str
+    section: str
+    number: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class RunMap:
+    """The path of the robot in one run, in metres, with the start of each violation."""
+
+    anchor: str
+    label: str
+    file: str
+    mark: Mark
+    lines: tuple[tuple[tuple[float, float], ...], ...]
+    marks: tuple[PlaceMark, ...]
+    unplaced: int
+    """Number of violations that began at an unknown position."""
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Across:
+    """The pictures over all runs, for all requirements together and for each."""
+
+    lanes: Lanes | None
+    requirements: tuple[RequirementAcross, ...]
+    maps: tuple[RunMap, ...]
+    """Maps of runs with a path, worst first."""
+    maps_left_out: str
+    """A sentence about runs without a map, or ""."""

@@ -9,13 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from fretc.report.model.across import Across
 from fretc.report.model.changes import Change, ChangeGroup
 from fretc.report.model.front import Front
-from fretc.report.model.marks import Mark as Mark
-from fretc.report.model.marks import sign_mark as sign_mark
-from fretc.report.model.marks import verdict_mark as verdict_mark
-from fretc.report.model.pictures import Histogram, Timeline
+from fretc.report.model.marks import Mark
+from fretc.report.model.pictures import Across, Histogram
+from fretc.report.model.results import ProbabilityView, ResultRow
+from fretc.report.model.sets import SetAnalysis
 from fretc.traceability.artefacts import Product
 from fretish.documents import named
 
@@ -311,139 +310,6 @@ class Parent:
 
 
 @dataclass(frozen=True, slots=True)
-class Latency:
-    """The latency of the response; `waits` are the longest waits, one for each answer."""
-
-    answered: int
-    at_once: int
-    answers: str
-    median: str
-    longest: str
-    longest_s: float
-    is_bounded: bool
-    bound: str
-    waits: tuple[str, ...]
-    median_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class ViolationView:
-    """An interval of violating ticks; `values` are `(signal, value)`."""
-
-    start: str
-    end: str
-    ticks: str
-    trigger: str
-    deadline: str
-    missing: str
-    values: tuple[tuple[str, str], ...]
-    causes: tuple[str, ...]
-    """Why the response was wrong; empty if the evidence leaves that open."""
-
-
-@dataclass(frozen=True, slots=True)
-class ThresholdView:
-    """A comparison with a constant, and the margin of the signal."""
-
-    proposition: str
-    comparison: str
-    values: str
-    margin: str
-    nearest: str
-
-
-@dataclass(frozen=True, slots=True)
-class Listing:
-    """The first of many lines, and their total number."""
-
-    lines: tuple[str, ...]
-    total: int
-
-
-@dataclass(frozen=True, slots=True)
-class ResultRow:
-    """The result of one run in numbers; `fretc.report.sections.details` reads its events."""
-
-    place: int
-    """Index of the result in the evidence, from 0."""
-    number: int
-    """Number of the result among the results of its requirement, from 1."""
-    requirement: str
-    """The anchor of the requirement."""
-    run: str
-    run_label: str
-    run_file: str
-    mark: Mark
-    suspicions: tuple[str, ...]
-    reason: str
-    triggers: int
-    answers: int
-    at_once: int
-    """Number of answers at the tick of their trigger."""
-    open: int
-    violations_total: int
-    latency_median_s: float | None
-    latency_max_s: float | None
-
-    @property
-    def anchor(self) -> str:
-        """The anchor of the result."""
-        return result_anchor(self.requirement, self.number)
-
-
-def result_anchor(requirement: str, number: int) -> str:
-    """The anchor of a result, from the anchor of its requirement and its number from 1."""
-    return f"{requirement.replace('req-', 'result-', 1)}.{number}"
-
-
-@dataclass(frozen=True, slots=True)
-class ResultView:
-    """The result of one run; it is suspect if `suspicions` is not empty."""
-
-    anchor: str
-    run: str
-    run_label: str
-    run_file: str
-    mark: Mark
-    suspicions: tuple[str, ...]
-    reason: str
-    triggers: int
-    exercised: str
-    latency: Latency | None
-    thresholds: tuple[ThresholdView, ...]
-    violations: tuple[ViolationView, ...]
-    violations_total: int
-    open: Listing
-    unknown: Listing
-    timelines: tuple[Timeline, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class BoundsView:
-    """An interval of a probability; `name` is its method."""
-
-    name: str
-    low: float
-    high: float
-
-
-@dataclass(frozen=True, slots=True)
-class ProbabilityView:
-    """The estimate of a probability over all runs; `text` describes its picture."""
-
-    mark: Mark
-    suspicions: tuple[str, ...]
-    """The reasons why the estimate is suspect."""
-    stated: str
-    bound: float
-    reason: str
-    lines: tuple[str, ...]
-    estimate: float | None
-    bars: tuple[BoundsView, ...]
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
 class RequirementView:
     """The section of one requirement."""
 
@@ -520,100 +386,6 @@ class Hash:
     kind: str
     name: str
     sha256: str
-
-
-REALIZABLE, UNREALIZABLE = "can be satisfied together", "cannot be satisfied together"
-
-
-# All requirements together ------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class PlayLane:
-    """A variable in a run; `role` is "" if the lane is not a single variable."""
-
-    name: str
-    role: str
-    values: tuple[str, ...]
-    """The value in each column; `0` and `1` are truth values."""
-
-
-@dataclass(frozen=True, slots=True)
-class Play:
-    """A run, tick by tick; equal ticks in a row share a column: `3..7`."""
-
-    ticks: tuple[str, ...]
-    lanes: tuple[PlayLane, ...]
-    loop: int | None
-    """The column to which the last one loops back; None if the run ends in a violation."""
-
-
-@dataclass(frozen=True, slots=True)
-class SetMember:
-    """An analyzed requirement; `anchor` is "" if it no longer exists."""
-
-    requirement: str
-    anchor: str
-    sentence: str
-
-
-@dataclass(frozen=True, slots=True)
-class SetComponent:
-    """Requirements that share outputs, and whether they are realizable."""
-
-    mark: Mark
-    members: tuple[SetMember, ...]
-    outputs: tuple[str, ...]
-    why: str
-
-
-@dataclass(frozen=True, slots=True)
-class SetConflict:
-    """Requirements that are unrealizable together, from the start or after the given run."""
-
-    members: tuple[SetMember, ...]
-    because: str
-    play: Play
-
-
-@dataclass(frozen=True, slots=True)
-class SetAnalysis:
-    """The result of `fretc analyze` for all requirements together."""
-
-    file: str
-    fretc: str
-    """The version of fretc that made the analysis."""
-    mark: Mark
-    headline: str
-    suspicions: tuple[str, ...]
-    """The reasons why the analysis is suspect."""
-    left_out: tuple[str, ...]
-    """Requirements in force that were not analyzed, because they have no formula."""
-    components: tuple[SetComponent, ...]
-    conflicts: tuple[SetConflict, ...]
-    complete: bool
-    """Whether all minimal conflicts are listed."""
-    clashes: tuple[SetConflict, ...]
-    """Real-time inconsistencies."""
-    remarks: tuple[str, ...]
-    """Remarks on requirements that are redundant, never triggered, always or never satisfied."""
-    assumptions: tuple[str, ...]
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-    terms: tuple[str, ...]
-    """The conditions of all results."""
-    open: tuple[str, ...]
-    """Questions without an answer, with the reason."""
-
-    @property
-    def is_good(self) -> bool:
-        """Whether all present requirements in force are realizable together."""
-        return self.mark.word == REALIZABLE and not self.mark.suspect and not self.left_out
-
-    @property
-    def is_broken(self) -> bool:
-        """Whether the requirements are unrealizable together."""
-        return self.mark.word == UNREALIZABLE
 
 
 @dataclass(frozen=True, slots=True)

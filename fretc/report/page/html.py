@@ -5,25 +5,25 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 from compiler.explanation.diagram import diagram
+from compiler.explanation.drawing import Drawing
 from compiler.explanation.drawing import drawing as diagram_drawing
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.report.across.layout import drawn_lanes, drawn_map, drawn_uses
 from fretc.report.model.changes import Change, follows, new_violations
 from fretc.report.model.phrases import joined, visible
-from fretc.report.model.views import Report, SetConflict
+from fretc.report.model.sets import SetConflict
+from fretc.report.model.views import Report
 from fretc.report.page.matrix import Picture, picture
 from fretc.report.page.selection import Selection, selection, slimmed
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
-from fretc.report.pictures.plots import drawing, histogram
-from fretc.report.pictures.scales import scale
+from fretc.report.pictures.plots import drawing, histogram, probability
 from fretc.report.sections.argument import argument
 from fretc.report.sections.details import Details
-from fretc.report.set_analysis.drawing import DrawnPlay
 from fretc.report.set_analysis.drawing import drawing as play_drawing
 
 _MOST_CHANGES, _MOST_RUNS = 100, 20
@@ -63,22 +63,20 @@ def html(
     script, style = render(_SCRIPT), render(_STYLE)
     return render(
         "report/report.html.j2",
-        report=visible_texts(asdict(page)),
-        selection=visible_texts(asdict(replace(choice, anchors=frozenset()))),
+        report=visible_texts(page),
+        selection=visible_texts(choice),
         anchors=choice.anchors,
         pictures=visible_texts(_pictures(choice)),
         histograms=visible_texts(_histograms(choice, details)),
         scales=visible_texts(_scales(page)),
         diagrams=_diagrams(page, requirements),
-        matrix=visible_texts(asdict(matrix)),
+        matrix=visible_texts(matrix),
         rows=_rows(matrix),
         argument=visible_texts(_argument(report)),
         plays=visible_texts(_plays(report)),
         across=visible_texts(_across(report, choice, _links(choice))),
-        changes=visible_texts(
-            {change.anchor: asdict(change) for change in page.changes if change.anchor}
-        ),
-        consequences=visible_texts(_consequences(page.changes)),
+        changes=visible_texts({change.anchor: change for change in page.changes if change.anchor}),
+        consequences=_consequences(page.changes),
         most=_MOST_CHANGES,
         most_runs=_MOST_RUNS,
         inset=inset,
@@ -90,7 +88,11 @@ def html(
 def _consequences(changes: Sequence[Change]) -> list[dict[str, Any]]:
     """The changes with consequences, those with the most new violations first."""
     found = [
-        {**asdict(change), "new_violations": new_violations(change), "follows": follows(change)}
+        {
+            **visible_texts(change),
+            "new_violations": new_violations(change),
+            "follows": visible_texts(follows(change)),
+        }
         for change in changes
         if follows(change)
     ]
@@ -109,7 +111,7 @@ def _pictures(choice: Selection) -> dict[str, list[dict[str, Any]]]:
     """Anchor of a result with details → its timelines."""
     return {
         result.anchor: [
-            asdict(drawing(timeline, f"picture-{result.anchor}.{number}"))
+            drawing(timeline, f"picture-{result.anchor}.{number}")
             for number, timeline in enumerate(result.timelines, 1)
         ]
         for section in choice.by_anchor.values()
@@ -124,15 +126,14 @@ def _plays(report: Report) -> dict[str, list[dict[str, Any] | None]]:
     parts = {"conflict": report.analysis.conflicts, "clash": report.analysis.clashes}
     return {
         kind: [
-            asdict(drawn) if drawn else None
+            _play(each, f"{kind}-{number}", breaks=kind == "conflict")
             for number, each in enumerate(several, 1)
-            for drawn in [_play(each, f"{kind}-{number}", breaks=kind == "conflict")]
         ]
         for kind, several in parts.items()
     }
 
 
-def _play(conflict: SetConflict, id: str, *, breaks: bool) -> DrawnPlay | None:
+def _play(conflict: SetConflict, id: str, *, breaks: bool) -> dict[str, Any] | None:
     names = joined([member.requirement for member in conflict.members])
     return play_drawing(conflict.play, id, f"A run with {names}", breaks=breaks)
 
@@ -151,18 +152,15 @@ def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[st
     """The pictures over all runs, for all requirements and for the worst ones by their anchors."""
     everything = report.across.lanes
     return {
-        "lanes": everything and asdict(drawn_lanes(everything, "across-lanes", links)),
-        "maps": [
-            asdict(drawn_map(run_map, f"map-{run_map.anchor}", links))
-            for run_map in report.across.maps
-        ],
+        "lanes": everything and drawn_lanes(everything, "across-lanes", links),
+        "maps": [drawn_map(each, f"map-{each.anchor}", links) for each in report.across.maps],
         "maps_left_out": report.across.maps_left_out,
         "requirements": {
             requirement.anchor: {
                 "lanes": requirement.lanes
-                and asdict(drawn_lanes(requirement.lanes, f"lanes-{requirement.anchor}", links)),
+                and drawn_lanes(requirement.lanes, f"lanes-{requirement.anchor}", links),
                 "uses": requirement.uses
-                and asdict(drawn_uses(requirement.uses, f"uses-{requirement.anchor}", links)),
+                and drawn_uses(requirement.uses, f"uses-{requirement.anchor}", links),
             }
             for requirement in report.across.requirements
             if not choice.by_anchor[requirement.anchor].is_short
@@ -175,8 +173,7 @@ def _histograms(choice: Selection, details: Details) -> dict[str, list[dict[str,
     drawn: dict[str, list[dict[str, Any]]] = {anchor: [] for anchor in choice.by_anchor}
     for anchor, some in details.histograms(whole):
         drawn[anchor] = [
-            asdict(histogram(each, f"histogram-{anchor}.{number}"))
-            for number, each in enumerate(some, 1)
+            histogram(each, f"histogram-{anchor}.{number}") for number, each in enumerate(some, 1)
         ]
     return drawn
 
@@ -187,9 +184,7 @@ def _rows(matrix: Picture) -> dict[str, str]:
     return {line.row.anchor: line.id for line in lines}
 
 
-def _diagrams(
-    page: Report, requirements: Sequence[FormalizedRequirement]
-) -> Mapping[str, dict[str, Any]]:
+def _diagrams(page: Report, requirements: Sequence[FormalizedRequirement]) -> Mapping[str, Drawing]:
     """Anchor of a requirement → diagram of its meaning, with escaped texts."""
     rules_by_key = {
         (requirement.id, requirement.fingerprint): requirement for requirement in requirements
@@ -198,9 +193,7 @@ def _diagrams(
     for view in page.requirements:
         requirement = rules_by_key.get((view.id, view.fingerprint))
         if view.diagram and requirement is not None:
-            diagrams[view.anchor] = asdict(
-                diagram_drawing(diagram(requirement), f"means-{view.anchor}")
-            )
+            diagrams[view.anchor] = diagram_drawing(diagram(requirement), f"means-{view.anchor}")
     return diagrams
 
 
@@ -213,7 +206,7 @@ def _argument(report: Report) -> dict[str, Any]:
         "total": len(whole),
         "most": MOST,
         "is_short": len(short) < len(groups),
-        "pieces": [asdict(piece) for piece in pieces(short)],
+        "pieces": pieces(short),
         "items": _nested(placements(short)),
     }
 
@@ -240,14 +233,16 @@ def _nested(flat: Sequence[Placement]) -> list[dict[str, Any]]:
 def _scales(page: Report) -> dict[str, dict[str, Any]]:
     """Anchor of a requirement → scale of its probability."""
     return {
-        view.anchor: asdict(scale(view.probability, f"picture-{view.anchor}"))
+        view.anchor: probability(
+            view.probability, f"Probability of {view.id}", f"picture-{view.anchor}"
+        )
         for view in page.requirements
         if view.probability is not None
     }
 
 
 def visible_texts(value: Any) -> Any:
-    """The value with escapes for characters that hide or reverse text."""
+    """The value for a template: without dataclasses, and with escapes for hidden characters."""
     match value:
         case str():
             return visible(value)
@@ -255,5 +250,7 @@ def visible_texts(value: Any) -> Any:
             return {visible(key): visible_texts(item) for key, item in value.items()}
         case list() | tuple():
             return [visible_texts(item) for item in value]
+        case _ if is_dataclass(value):
+            return {each.name: visible_texts(getattr(value, each.name)) for each in fields(value)}
         case _:
             return value

@@ -14,7 +14,8 @@ from itertools import groupby
 from fretc.audit.evidence.verdicts import BROKEN
 from fretc.report.model import phrases
 from fretc.report.model.front import ColumnRun, RunGroup
-from fretc.report.model.views import Mark, Report, RequirementView, Row
+from fretc.report.model.marks import Mark
+from fretc.report.model.views import Report, RequirementView, Row
 from fretc.report.sections.matrix import FACTS
 
 MOST = 10_000

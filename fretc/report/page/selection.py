@@ -11,15 +11,8 @@ from itertools import islice, zip_longest
 
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
-from fretc.report.model.views import (
-    Mark,
-    Report,
-    RequirementView,
-    ResultRow,
-    ResultView,
-    RunSummary,
-    RunView,
-)
+from fretc.report.model.results import ResultRow, ResultView
+from fretc.report.model.views import Report, RequirementView, RunSummary, RunView
 from fretc.report.sections.details import Details
 
 COMPACT = 1_000
@@ -44,20 +37,14 @@ _REASONS = 3
 
 @dataclass(frozen=True, slots=True)
 class RunRow:
-    """A row of the table of runs of a requirement."""
+    """A row of the table of runs of a requirement, with texts for the reader."""
 
-    anchor: str
-    """The anchor of the details, or of the row if there are none."""
-    run: str
-    label: str
-    file: str
-    mark: Mark
-    triggers: int
-    violations: int
+    result: ResultRow
     longest: str
-    longest_s: float
+    """The longest latency."""
     reason: str
     has_details: bool
+    """Whether the page has the details of the result; its anchor is theirs, or that of the row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +104,7 @@ def selection(report: Report, details: Details) -> Selection:
     run_rows = tuple(own.get(run.anchor, run) for run in rows)
     left = len(report.runs) - len(run_rows) if many else 0
     anchors = {
-        *(row.anchor for section in by_anchor.values() for row in section.rows),
+        *(row.result.anchor for section in by_anchor.values() for row in section.rows),
         *(
             view.anchor
             for section in by_anchor.values()
@@ -239,19 +226,8 @@ def _section_runs(
 def _row(result: ResultRow, has_details: bool) -> RunRow:
     longest = result.latency_max_s
     why = f"; {SUSPECT}, because {'; '.join(result.suspicions)}" if result.suspicions else ""
-    return RunRow(
-        anchor=result.anchor,
-        run=result.run,
-        label=result.run_label,
-        file=result.run_file,
-        mark=result.mark,
-        triggers=result.triggers,
-        violations=result.violations_total,
-        longest="\N{EN DASH}" if longest is None else phrases.duration(longest),
-        longest_s=-1.0 if longest is None else longest,
-        reason=f"{result.reason}{why}",
-        has_details=has_details,
-    )
+    longest_text = "\N{EN DASH}" if longest is None else phrases.duration(longest)
+    return RunRow(result, longest_text, f"{result.reason}{why}", has_details)
 
 
 def _left_out(

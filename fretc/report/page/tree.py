@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Any
 
 from fretc.report.sections.argument import Element, Kind
 
@@ -63,37 +64,6 @@ class Placement:
         if self.element.defeated:
             return "defeated"
         return "challenged" if self.is_challenged else "in doubt" if self.is_doubtful else ""
-
-
-@dataclass(frozen=True, slots=True)
-class Shape:
-    """An element laid out; `path` is its outline, `link` leads from the element above."""
-
-    kind: str
-    name: str
-    lines: tuple[tuple[float, float, str], ...]
-    path: str
-    link: str
-    arrow: str
-    relation: str
-    is_reference: bool
-    letter: tuple[float, float, str] | None
-    diamond: str
-    cross: str
-    state: tuple[float, float, str] | None
-    """(x, y, text) of the state."""
-
-
-@dataclass(frozen=True, slots=True)
-class Piece:
-    """A part of the tree that fits on a page."""
-
-    id: str
-    title: str
-    text: str
-    width: int
-    height: float
-    shapes: tuple[Shape, ...]
 
 
 def placements(elements: Sequence[Element]) -> tuple[Placement, ...]:
@@ -193,8 +163,8 @@ def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
 # Layout ----------------------------------------------------------------------------------------
 
 
-def pieces(elements: Sequence[Element]) -> tuple[Piece, ...]:
-    """The drawing in pieces, one for each page."""
+def pieces(elements: Sequence[Element]) -> list[dict[str, Any]]:
+    """The drawing in pieces, one for each page, as values for the template."""
     groups: list[list[Placement]] = [[]]
     height = 0.0
     for cluster in _clusters(placements(elements)):
@@ -204,7 +174,7 @@ def pieces(elements: Sequence[Element]) -> tuple[Piece, ...]:
             height = 0.0
         groups[-1] += cluster
         height += tall
-    return tuple(_piece(group, i, len(groups)) for i, group in enumerate(groups, 1) if group)
+    return [_piece(group, i, len(groups)) for i, group in enumerate(groups, 1) if group]
 
 
 def _clusters(flat: Sequence[Placement]) -> Iterator[list[Placement]]:
@@ -226,8 +196,8 @@ def _begins(each: Placement, height: float) -> bool:
     return each.depth <= 2 and each.relation is Relation.SUPPORT and height > 0.75 * _TALL
 
 
-def _piece(group: Sequence[Placement], number: int, count: int) -> Piece:
-    shapes: list[Shape] = []
+def _piece(group: Sequence[Placement], number: int, count: int) -> dict[str, Any]:
+    shapes: list[dict[str, Any]] = []
     above: dict[int, tuple[float, float]] = {}
     y = 6.0
     for placement in group:
@@ -235,10 +205,12 @@ def _piece(group: Sequence[Placement], number: int, count: int) -> Piece:
         y += _height(placement)
     part = f", part {number} of {count}" if count > 1 else ""
     text = f"{len(group)} elements, from “{group[0].text}”; the list below has them all."
-    return Piece(f"argument-{number}", f"Assurance argument{part}", text, _WIDTH, y, tuple(shapes))
+    texts = {"id": f"argument-{number}", "title": f"Assurance argument{part}", "text": text}
+    return {**texts, "width": _WIDTH, "height": y, "shapes": shapes}
 
 
-def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> Shape:
+def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> dict[str, Any]:
+    """An element laid out; `path` is its outline, `link` leads from the element above."""
     element, depth = each.element, each.depth
     x = _MARGIN + _INDENT * depth + 10
     width = _WIDTH - x - _MARGIN - (0 if each.relation is Relation.CONTEXT else 160)
@@ -254,20 +226,20 @@ def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> 
         link, arrow = _link(each.relation, from_x, from_y, x, middle)
     above[depth] = (x + 6, y + height)
     cross = f"M{x:g} {y:g}L{right:g} {y + height:g}M{right:g} {y:g}L{x:g} {y + height:g}"
-    return Shape(
-        kind=element.kind.name.lower(),
-        name=NAMES[element.kind],
-        lines=tuple((inset, y + _PAD + 11 + _LINE * i, line) for i, line in enumerate(lines)),
-        path=_outline(element.kind, x, y, width, height),
-        link=link,
-        arrow=arrow,
-        relation=each.relation,
-        is_reference=each.is_reference,
-        letter=_letter(element.kind, right, y + height),
-        diamond="" if whole else f"M{x + width / 2:g} {y + height:g}l7 5l-7 5l-7 -5z",
-        cross=cross if element.defeated else "",
-        state=(right + 10, middle + 4, each.state) if each.state else None,
-    )
+    return {
+        "kind": element.kind.name.lower(),
+        "name": NAMES[element.kind],
+        "lines": [(inset, y + _PAD + 11 + _LINE * i, line) for i, line in enumerate(lines)],
+        "path": _outline(element.kind, x, y, width, height),
+        "link": link,
+        "arrow": arrow,
+        "relation": each.relation,
+        "is_reference": each.is_reference,
+        "letter": _letter(element.kind, right, y + height),
+        "diamond": "" if whole else f"M{x + width / 2:g} {y + height:g}l7 5l-7 5l-7 -5z",
+        "cross": cross if element.defeated else "",
+        "state": (right + 10, middle + 4, each.state) if each.state else None,
+    }
 
 
 def _link(relation: Relation, x: float, y: float, to_x: float, to_y: float) -> tuple[str, str]:

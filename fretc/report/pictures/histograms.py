@@ -14,6 +14,7 @@ from fretc.audit.evidence.schema import Threshold
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.pictures import Bin, Histogram
+from fretc.report.pictures.scales import step
 from fretish import syntax
 
 _BINS = 20
@@ -22,16 +23,6 @@ _MARGINS = 3
 """Maximum number of thresholds of a requirement with a histogram."""
 _NAMED = 3
 """Maximum number of bars that the text names."""
-
-
-def step(least: float) -> float:
-    """1, 2 or 5 times a power of ten, not below `least` nor below a thousand-millionth."""
-    if least <= 0:
-        return 1.0
-    power = 10.0 ** len(str(int(least))) if least >= 1 else 1.0
-    while power / 10 >= least and power > 1.5e-8:
-        power /= 10
-    return next((power / 10 * n for n in (1, 2, 5) if power / 10 * n >= least), power)
 
 
 def exercise(assessment: Assessment) -> str:

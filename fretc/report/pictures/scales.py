@@ -1,86 +1,111 @@
-"""The layout of a probability: its intervals on a scale, and the bound of the sentence."""
+"""The scale of a picture: numbers as coordinates, bars and labelled ticks."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
-from fretc.report.model.views import ProbabilityView
+from fretc.report.model.phrases import decimal
+from fretc.report.model.pictures import WordLane
 
-_WIDTH, _LEFT, _RIGHT = 720, 112, 40
-_ROW, _BAR, _TOP, _AXIS = 24, 12, 22, 24
-_THINNEST = 2.0
-_MARGIN = 0.15
-"""The margin on either side, as a share of the scale."""
-_NARROWEST = 0.004
-"""Minimum length of the scale."""
+WIDTH, RIGHT = 720, 30
+"""The width of a picture, and the margin to the right of its axis."""
+_TICKS = 8
+"""Approximate number of labels on an axis."""
 
 
 @dataclass(frozen=True, slots=True)
-class ScaleBar:
-    """An interval, in units of the drawing."""
+class Bar:
+    """An interval on an axis, as coordinates."""
 
-    name: str
     x: float
     width: float
-    y: int
 
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """The drawing; `ticks` are coordinates with their labels."""
+    """Converts the numbers from `first` to `last` into the coordinates from `start` to `end`.
 
-    id: str
-    text: str
-    width: int
-    height: int
-    left: int
-    right: int
-    top: int
-    axis: int
-    bar: int
-    bars: tuple[ScaleBar, ...]
-    bound: float
-    bound_label: str
-    estimate: float | None
-    ticks: tuple[tuple[float, str], ...]
+    Numbers beyond an end have the coordinate of that end.
+    """
 
+    first: float
+    last: float
+    start: float
+    end: float
+    thinnest: float = 1.5
+    """Minimum width of a bar, so that every event is visible."""
+    digits: int = 1
 
-def scale(view: ProbabilityView, id: str) -> Scale:
-    """The intervals, the estimate and the bound, on the part of 0 to 1 that holds them."""
-    values = [view.bound, *(end for bar in view.bars for end in (bar.low, bar.high))]
-    spread = max(max(values) - min(values), _NARROWEST) * _MARGIN
-    first, last = max(0.0, min(values) - spread), min(1.0, max(values) + spread)
+    def __call__(self, number: float) -> float:
+        """The coordinate of a number."""
+        inside = min(max(number, self.first), self.last)
+        share = (inside - self.first) / (self.last - self.first)
+        return round(self.start + share * (self.end - self.start), self.digits)
 
-    def x(share: float) -> float:
-        part = (share - first) / (last - first)
-        return round(_LEFT + part * (_WIDTH - _LEFT - _RIGHT), 2)
+    def bar(self, first: float, last: float) -> Bar:
+        """The bar from one number to another."""
+        x = self(first)
+        return Bar(x, round(max(self.thinnest, self(last) - x), self.digits))
 
-    axis = _TOP + _ROW * len(view.bars)
-    return Scale(
-        id=id,
-        text=view.text,
-        width=_WIDTH,
-        height=axis + _AXIS,
-        left=_LEFT,
-        right=_WIDTH - _RIGHT,
-        top=_TOP,
-        axis=axis,
-        bar=_BAR,
-        bars=tuple(
-            ScaleBar(
-                bar.name,
-                min(x(bar.low), _WIDTH - _RIGHT - _THINNEST),
-                round(max(_THINNEST, x(bar.high) - x(bar.low)), 2),
-                _TOP + _ROW * row,
-            )
-            for row, bar in enumerate(view.bars)
-        ),
-        bound=x(view.bound),
-        bound_label=f"{view.stated.removeprefix('with probability ')}",
-        estimate=None if view.estimate is None else x(view.estimate),
-        ticks=tuple((x(place), f"{place:.4f}") for place in _places(first, last)),
-    )
+    def bar_inside(self, first: float, last: float) -> Bar:
+        """The bar; one that begins at the end of the scale stands before it."""
+        x = min(self(first), self.end - self.thinnest)
+        return Bar(x, round(max(self.thinnest, self(last) - x), self.digits))
+
+    def ticks(self, most: int = _TICKS) -> list[tuple[float, str]]:
+        """Coordinate and label of about `most` round numbers."""
+        return [(self(place), decimal(place)) for place in places(self.first, self.last, most)]
 
 
-def _places(first: float, last: float) -> list[float]:
-    return [first + (last - first) * i / 4 for i in range(5)]
+def places(start: float, end: float, most: int) -> list[float]:
+    """About `most` round numbers from `start` to `end`."""
+    width = step((end - start) / most)
+    first = int(-(-start // width))
+    numbers = [(first + i) * width for i in range(2 * most)]
+    return [place for place in numbers if place <= end + width * 1e-6]
+
+
+def step(least: float) -> float:
+    """1, 2 or 5 times a power of ten, not below `least` nor below a thousand-millionth."""
+    if least <= 0:
+        return 1.0
+    power = 10.0 ** len(str(int(least))) if least >= 1 else 1.0
+    while power / 10 >= least and power > 1.5e-8:
+        power /= 10
+    return next((power / 10 * n for n in (1, 2, 5) if power / 10 * n >= least), power)
+
+
+def frame(id: str, title: str, text: str, x: Scale, height: int, **rest: Any) -> dict[str, Any]:
+    """The values of a picture for its template: its texts, its frame, and the ticks of its axis.
+
+    Args:
+        id: the id of the picture.
+        title: the title of the picture.
+        text: a description of the picture.
+        x: the horizontal axis.
+        height: the height of the picture.
+        rest: the further values of this kind of picture; `ticks` replace those of the axis.
+    """
+    texts = {"id": id, "title": title, "text": text}
+    sizes = {"width": WIDTH, "height": height, "left": x.start, "right": x.end}
+    return {**texts, **sizes, "ticks": x.ticks(), **rest}
+
+
+def words(lane: WordLane, y: int, x: Scale, margin: int, letter: float) -> dict[str, Any]:
+    """A lane of words: bar, word ("" if unknown), and label, which is shortened to fit."""
+    bars = [(x.bar(start, end), word) for start, end, word in lane.words]
+    labelled = [(b, w or "", fitting(w or "unknown", b.width - margin, letter)) for b, w in bars]
+    return {"name": lane.signal, "y": y, "bars": labelled}
+
+
+def fitting(word: str, width: float, letter: float) -> str:
+    """The word, shortened to fit; "" if too little of it would remain.
+
+    Args:
+        word: the word.
+        width: the room for the word.
+        letter: the approximate width of a character.
+    """
+    most = int(width / letter)
+    return word if len(word) <= most else f"{word[: most - 1]}…" if most > 3 else ""

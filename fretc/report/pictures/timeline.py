@@ -77,12 +77,13 @@ def _explained(
     lanes = word_lanes(violation, ages, plain.start, plain.end)
     broken = _violated(violation, tick)
     why = cause(violation, result, ages, requirement)
+    hidden = left_out(violation, drawings, lanes)
     sentences = [
         why,
         plain.text,
         *(_panel_in_words(panel) for panel in drawings),
         *(_signal_in_words(lane) for lane in lanes),
-        _not_drawn(left_out(violation, drawings, lanes)),
+        f"Not drawn: {joined(hidden)}." if hidden else "",
     ]
     return replace(
         plain,
@@ -170,10 +171,6 @@ def _total(stretches: Sequence[tuple[float, float]]) -> str:
     return duration(sum(end - start for start, end in stretches))
 
 
-def _not_drawn(names: Sequence[str]) -> str:
-    return f"Not drawn: {joined(names)}." if names else ""
-
-
 def _around(violation: Violation, tick: float) -> Stretch:
     first = violation.trigger or violation.first
     start, end = min(first.seconds, violation.first.seconds), violation.last.seconds + tick
@@ -192,7 +189,11 @@ class _Events:
 
     def __init__(self, result: Result, tick: float) -> None:
         self.lanes: list[tuple[str, str, list[Stretch]]] = [
-            ("triggered", "trigger", _ticks(result.triggers, tick)),
+            (
+                "triggered",
+                "trigger",
+                [Stretch(m.seconds, m.seconds + tick) for m in result.triggers],
+            ),
             ("waiting", "waiting", _waiting(result)),
             ("violated", "violated", [_violated(v, tick) for v in result.violations]),
             (
@@ -207,10 +208,6 @@ class _Events:
         lanes = [_lane(name, kind, events, window) for name, kind, events in self.lanes]
         visible = tuple(lane for lane in lanes if lane.marks or lane.kind == "trigger")
         return Timeline(title, window.start, window.end, visible, _in_words(visible, window))
-
-
-def _ticks(moments: Iterable[Moment], tick: float) -> list[Stretch]:
-    return [Stretch(moment.seconds, moment.seconds + tick) for moment in moments]
 
 
 def _waiting(result: Result) -> list[Stretch]:

@@ -19,7 +19,8 @@ from compiler.logic.claims import METHODS, Layer, Result
 from fretc.audit.evidence.verdicts import BROKEN
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.report.model import phrases
-from fretc.report.model.views import ProofView, Report, RequirementView, ResultRow
+from fretc.report.model.results import ResultRow
+from fretc.report.model.views import ProofView, Report, RequirementView
 from fretc.report.sections.proofs import SHARED, covering, is_proved
 
 
@@ -144,7 +145,10 @@ class _Argument:
         goal = _id("G", view.anchor)
         is_shown = view.mark.shows
         counters = tuple(_counter_evidence(view, goal.replace("G_", "CSn_", 1)))
-        layers = {proof.layer: _of_layer(view.proofs, proof.layer) for proof in view.proofs}
+        layers = {
+            layer: [proof for proof in view.proofs if proof.layer == layer]
+            for layer in dict.fromkeys(proof.layer for proof in view.proofs)
+        }
         subjects = [f"{goal}_{layer}" for layer in layers] + self._shared_goals(view)
         solution, runs = goal.replace("G_", "Sn_", 1), f"{goal}_runs"
         # A goal with proofs is developed; where no run shows it, a goal about runs below it is not.
@@ -238,10 +242,6 @@ def _violated(view: RequirementView, violating: Sequence[ResultRow], old: bool) 
 
 
 # Proofs ----------------------------------------------------------------------------------------
-
-
-def _of_layer(proofs: Sequence[ProofView], layer: str) -> list[ProofView]:
-    return [proof for proof in proofs if proof.layer == layer]
 
 
 def _subject(goal: str, text: str, proofs: Sequence[ProofView]) -> Iterator[Element]:

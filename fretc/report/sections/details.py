@@ -17,7 +17,8 @@ from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Result, Threshold
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.pictures import Histogram
-from fretc.report.model.views import ResultRow, ResultView, RunSummary, RunView
+from fretc.report.model.results import ResultRow, ResultView
+from fretc.report.model.views import RunSummary, RunView
 from fretc.report.pictures.histograms import histograms
 from fretc.report.sections.results import result_view
 from fretc.report.sections.runs import Run, RunKey, run_key, topic_views
@@ -58,7 +59,7 @@ class Details:
     def results(self, rows: Iterable[ResultRow]) -> Iterator[tuple[ResultRow, ResultView]]:
         """The view of each row, in the order of the evidence."""
         for row, result in self.audited(rows):
-            assessment = self.assessments[row.requirement]
+            assessment = self.assessments[row.section]
             yield row, result_view(result, row, assessment, self.project.declarations)
 
     def histograms(self, anchors: Iterable[str]) -> Iterator[tuple[str, tuple[Histogram, ...]]]:

@@ -11,14 +11,8 @@ from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
-from fretc.report.model.views import (
-    HazardView,
-    Mark,
-    Orphans,
-    RequirementView,
-    Row,
-    sign_mark,
-)
+from fretc.report.model.marks import Mark, sign_mark
+from fretc.report.model.views import HazardView, Orphans, RequirementView, Row
 from fretc.report.sections.proofs import is_proved_layer, is_refuted
 from fretish.diagnostics import status_symbols as signs
 from fretish.reading.natural_order import natural
@@ -152,7 +146,7 @@ def _rootless(project: Project) -> Iterable[str]:
     """Requirements in force whose declared parents lead to no hazard, or form a cycle."""
     declared = {*project.hazards, *project.parents}
     known = declared | {requirement.id for requirement in project.requirements}
-    active = [r for r in project.requirements if r.status != RETIRED]
+    active = [r for r in project.requirements if r.is_in_force]
     for requirement in without_hazard(active, declared) if declared else ():
         if known.issuperset(requirement.parents):
             yield f"the parents of {requirement.id} lead to no hazard"

@@ -10,7 +10,8 @@ from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.headlines import outdated, violated
-from fretc.report.model.views import Overall, Planned, RequirementView, Signatures, sign_mark
+from fretc.report.model.marks import sign_mark
+from fretc.report.model.views import Overall, Planned, RequirementView, Signatures
 from fretc.report.sections.matrix import orphans
 from fretc.report.sections.proofs import is_refuted
 from fretc.report.sections.runs import Run, trust

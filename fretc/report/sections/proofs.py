@@ -9,7 +9,8 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import ALL, PROVERS, Proof, Result
 from compiler.targets.interceptor_options import ASSUMED
 from fretc.report.model import phrases
-from fretc.report.model.views import Mark, ProofView, RequirementView, sign_mark
+from fretc.report.model.marks import Mark, sign_mark
+from fretc.report.model.views import ProofView, RequirementView
 from fretc.traceability.artefacts import Product, compiled_monitor
 from fretc.verification.layers.table import OF_MONITOR
 from fretc.verification.text_output import SIGNS

@@ -17,34 +17,29 @@ from compiler.files.shell_quoting import (
     words,
 )
 from compiler.project.project import Project
-from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.evidence.basis import of_all, of_bindings
-from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE
 from fretc.logs.storage.log_names import STDIN, name_of, path_of, shell_word
 from fretc.report.model import phrases
+from fretc.report.model.assessments import Inputs
 from fretc.report.model.views import Command, Hash, RequirementView
 from fretc.report.sections.runs import Run
-from fretc.verification.reader import Proofs
-from fretish.diagnostics.source import Source
 
 if TYPE_CHECKING:
-    from fretc.attestation.signers import Signers
+    pass
 
 
 def commands(
-    project: Project,
-    sections: Sequence[RequirementView],
-    runs: Sequence[Run],
-    evidence: str,
-    proofs: Proofs | None,
-    confidence: float = CONFIDENCE,
+    inputs: Inputs, sections: Sequence[RequirementView], runs: Sequence[Run]
 ) -> tuple[Command, ...]:
     """The commands, in the order in which a reader runs them.
 
     Names come from evidence, which is untrusted. Each name is quoted; a command with a
     name that cannot be quoted is replaced by a comment.
     """
+    project, evidence, proofs = inputs.project, inputs.path, inputs.verification
+    estimations = inputs.evidence.probabilities if inputs.evidence else ()
+    confidence = next((estimation.confidence for estimation in estimations), CONFIDENCE)
 
     def audit() -> str:
         logs = " ".join(_log(run.facts.run) for run in runs) or "LOG..."
@@ -94,19 +89,14 @@ def _options(project: Project) -> str:
 
 def folder_of(project: Project) -> str:
     """The folder of the requirements, by its first file."""
-    files = _files(project)
-    return _folder(files[0].name) if files else "requirements"
+    first = next((r.wording.source.name for r in project.requirements), None)
+    return "requirements" if first is None else _folder(first)
 
 
 def _folder(path: str) -> str:
     """The folder of a file; only the name of the folder if the path is absolute."""
     folder = PurePath(path).parent
     return str(folder) if phrases.place(path) == path else folder.name or str(folder)
-
-
-def _files(project: Project) -> list[Source]:
-    """The files of the requirements, without duplicates."""
-    return list({r.wording.source.name: r.wording.source for r in project.requirements}.values())
 
 
 def _check(runs: Sequence[Run]) -> str:
@@ -142,28 +132,21 @@ def _emission(files: Sequence[str], emits: str) -> str:
 
 def _of_bindings(project: Project) -> str:
     """SHA-256 of the bindings that requirements in force read, as in the evidence."""
-    requirements = {id(requirement.entry): requirement for requirement in project.formalized}
-    inforce = [
-        requirement for requirement in project.requirements if requirement.status != "retired"
-    ]
+    requirements = {requirement.entry: requirement for requirement in project.formalized}
     return of_all(
         {
-            requirement.id: of_bindings(requirements.get(id(requirement)), project.declarations)
-            for requirement in inforce
+            requirement.id: of_bindings(requirements.get(requirement), project.declarations)
+            for requirement in project.requirements
+            if requirement.is_in_force
         }
     )
 
 
 def manifest(
-    project: Project,
-    sections: Sequence[RequirementView],
-    runs: Sequence[Run],
-    evidence: EvidenceSource | None,
-    proofs: Proofs | None,
-    signers: Signers | None = None,
-    together: AnalyzedSet | None = None,
+    inputs: Inputs, sections: Sequence[RequirementView], runs: Sequence[Run]
 ) -> tuple[Hash, ...]:
     """The hashes of all inputs of the report."""
+    project = inputs.project
     bindings = project.declarations
     lines = [Hash("sentence", section.id, section.fingerprint) for section in sections]
     if bindings is not None:
@@ -173,13 +156,15 @@ def manifest(
         for section in sections
         for artefact in section.artefacts
     )
-    if evidence is not None:
-        lines.append(Hash("evidence", phrases.place(evidence.file), evidence.sha256))
-    if proofs is not None:
-        lines.append(Hash("verification", phrases.place(proofs.file), proofs.sha256))
-    if together is not None:
-        lines.append(Hash("analysis", phrases.place(together.file), together.sha256))
-    if signers is not None:
-        lines.append(Hash("signers", phrases.place(signers.file), signers.sha256))
+    lines.extend(
+        Hash(kind, phrases.place(file.file), file.sha256)
+        for kind, file in (
+            ("evidence", inputs.evidence),
+            ("verification", inputs.verification),
+            ("analysis", inputs.together),
+            ("signers", inputs.book.signers),
+        )
+        if file is not None
+    )
     lines.extend(Hash("run", phrases.place(run.facts.run), run.facts.log) for run in runs)
     return tuple(line for line in lines if is_sha256(line.sha256))

@@ -12,23 +12,23 @@ from compiler.explanation.violability import limit
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
 from compiler.logic import printing
-from compiler.logic.claims import Proof
 from compiler.project.project import Project
-from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
 from fretc.audit.evidence.probabilities import shown
+from fretc.audit.evidence.result_summaries import EvidenceSource
+from fretc.audit.evidence.verdicts import RETIRED
+from fretc.coverage.coverage import CoverageStatus, RequirementCoverage, of_requirements
 from fretc.report.model import phrases
-from fretc.report.model.assessments import Assessment
+from fretc.report.model.assessments import Assessment, Inputs
+from fretc.report.model.marks import verdict_mark
+from fretc.report.model.results import BoundsView, ProbabilityView
 from fretc.report.model.views import (
-    BoundsView,
     Formula,
     Parent,
-    ProbabilityView,
     PropositionView,
     Remark,
     RequirementView,
     SignalView,
     SituationsView,
-    verdict_mark,
 )
 from fretc.report.pictures.histograms import exercise
 from fretc.report.sections.plans import planned
@@ -47,31 +47,26 @@ from fretish.printer import sentence
 
 def section(
     assessment: Assessment,
-    project: Project,
+    inputs: Inputs,
     runs: Mapping[RunKey, Run],
     anchors: Mapping[str, str],
-    audited: bool,
-    proofs: Sequence[Proof] = (),
-    shared_products: Sequence[Product] = (),
-    joint: Collection[str] = (),
-    book: SignatureBook = NO_SIGNATURES,
-    situations: SituationsView | None = None,
+    shared_products: Sequence[Product],
+    joint: Collection[str],
+    situations: SituationsView | None,
 ) -> RequirementView:
     """The view of one requirement.
 
     Args:
         assessment: of the requirement.
-        project: with or without errors.
+        inputs: of the report.
         runs: all runs.
         anchors: id → anchor of the section of a requirement.
-        audited: whether there is any evidence.
-        proofs: proofs about all requirements and about shared parts.
         shared_products: files that targets generate from the bindings.
         joint: SHA-256 of the joint monitors.
-        book: the checked signatures.
         situations: situations that runs have shown; None if no run was audited.
     """
     entry, requirement = assessment.entry, assessment.requirement
+    project, proofs = inputs.project, inputs.proofs
     products = (*assessment.products, *shared_products)
     own = (proof for proof in proofs if proof.requirement == assessment.id)
     own_proofs = proof_views(own, products, requirement, joint)
@@ -95,7 +90,10 @@ def section(
         error=remark(assessment.diagnostic) if assessment.diagnostic else None,
         diagram=words(diagram(requirement)) if requirement else "",
         formulas=_formulas(requirement) if requirement else (),
-        propositions=_propositions(requirement, project.declarations) if requirement else (),
+        propositions=tuple(
+            _proposition(name, project.declarations)
+            for name in (requirement.propositions if requirement else ())
+        ),
         clock=_clock(clock),
         parents=tuple(_parent(parent, project, anchors) for parent in entry.parents),
         rationale=entry.rationale,
@@ -107,12 +105,12 @@ def section(
         exercise=exercise(assessment),
         histograms=(),
         results=result_rows(assessment, runs),
-        reasons=reasons(assessment, runs, audited=audited),
+        reasons=reasons(assessment, runs, audited=inputs.evidence is not None),
         limit=_limit(requirement),
         coverage=assessment.coverage,
         situations=situations,
-        review=review(assessment, book),
-        waiver=waiver(assessment, book),
+        review=review(assessment, inputs.book),
+        waiver=waiver(assessment, inputs.book),
     )
 
 
@@ -197,13 +195,50 @@ def _parent(id: str, project: Project, anchors: Mapping[str, str]) -> Parent:
     return Parent(id, above.title if above else "not declared", anchors.get(id, ""))
 
 
+# Situations ------------------------------------------------------------------------------------
+
+
+def situation_views(
+    assessed: Sequence[Assessment], evidence: EvidenceSource | None
+) -> Mapping[str, SituationsView]:
+    """Requirement id → view of its situations, for requirements in force with results.
+
+    Suspect results are not counted.
+
+    Args:
+        assessed: all requirements.
+        evidence: the evidence; None if there is none.
+    """
+    if evidence is None:
+        return {}
+    places = {
+        assessment.id: {
+            audit.place: run for run, audit in enumerate(assessment.audits) if not audit.is_stale
+        }
+        for assessment in assessed
+        if assessment.audits and assessment.verdict != RETIRED
+    }
+    found = (
+        of_requirement
+        for of_requirement in of_requirements(evidence, places)
+        if of_requirement.id in places
+    )
+    return {coverage_of_one.id: _situations(coverage_of_one) for coverage_of_one in found}
+
+
+def _situations(one: RequirementCoverage) -> SituationsView:
+    if not one.measured or not one.situations:
+        return SituationsView("", "situations not measured", (), ())
+    seen, every = len(one.of(CoverageStatus.SEEN)), len(one.situations)
+    return SituationsView(
+        f"{seen}/{every}",
+        f"{seen} of {every} situations seen",
+        tuple(situation.words for situation in one.of(CoverageStatus.PERHAPS)),
+        tuple(situation.words for situation in one.of(CoverageStatus.NEVER)),
+    )
+
+
 # Propositions ----------------------------------------------------------------------------------
-
-
-def _propositions(
-    requirement: FormalizedRequirement, declared: Declarations | None
-) -> tuple[PropositionView, ...]:
-    return tuple(_proposition(name, declared) for name in requirement.propositions)
 
 
 def _proposition(name: str, declared: Declarations | None) -> PropositionView:

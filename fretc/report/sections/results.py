@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import fields
 from itertools import groupby
 from statistics import median
 
@@ -16,18 +17,18 @@ from fretc.audit.evidence.verdicts import (
     severity,
 )
 from fretc.report.model import phrases
-from fretc.report.model.assessments import Assessment
-from fretc.report.model.audits import ProbabilityAudit, SingleAudit
+from fretc.report.model.assessments import Assessment, ProbabilityAudit, SingleAudit
 from fretc.report.model.causes import causes
-from fretc.report.model.suspicions import since_review
-from fretc.report.model.views import (
+from fretc.report.model.results import (
     Latency,
     Listing,
+    ResultHead,
     ResultRow,
     ResultView,
     ThresholdView,
     ViolationView,
 )
+from fretc.report.model.suspicions import since_review
 from fretc.report.pictures.first_tick import reading
 from fretc.report.pictures.histograms import seconds_allowed
 from fretc.report.pictures.timeline import answered, timelines
@@ -58,9 +59,7 @@ def result_rows(assessment: Assessment, runs: Mapping[RunKey, Run]) -> tuple[Res
 def _row(audit: SingleAudit, assessment: Assessment, number: int, run: Run) -> ResultRow:
     result = audit.result
     return ResultRow(
-        place=audit.place,
-        number=number,
-        requirement=assessment.anchor,
+        anchor=f"{assessment.anchor.replace('req-', 'result-', 1)}.{number}",
         run=run.anchor,
         run_label=run.name,
         run_file=phrases.place(result.run),
@@ -68,9 +67,15 @@ def _row(audit: SingleAudit, assessment: Assessment, number: int, run: Run) -> R
         suspicions=audit.suspicions,
         reason=result.reason,
         triggers=result.triggers,
+        place=audit.place,
+        number=number,
+        requirement=assessment.id,
+        section=assessment.anchor,
+        ticks=result.ticks,
         answers=result.answers,
         at_once=result.at_once,
         open=result.open,
+        unknown=result.unknown,
         violations_total=result.violations,
         latency_median_s=result.latency_median_s,
         latency_max_s=result.latency_max_s,
@@ -93,14 +98,7 @@ def result_view(
     bindings, requirement = (None, None) if is_stale else (declared, assessment.requirement)
     tick, ages = _tick(result, bindings.clock if bindings else None), _ages(bindings)
     return ResultView(
-        anchor=row.anchor,
-        run=row.run,
-        run_label=row.run_label,
-        run_file=row.run_file,
-        mark=row.mark,
-        suspicions=row.suspicions,
-        reason=row.reason,
-        triggers=row.triggers,
+        **{each.name: getattr(row, each.name) for each in fields(ResultHead)},
         exercised=_exercised(result),
         latency=_latency(result, assessment.requirement),
         thresholds=tuple(map(_threshold, result.thresholds)),

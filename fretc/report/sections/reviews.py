@@ -19,7 +19,8 @@ from fretc.report.model.changes import (
     new_violations,
     only_change,
 )
-from fretc.report.model.views import ReviewView, WaiverView, sign_mark
+from fretc.report.model.marks import sign_mark
+from fretc.report.model.views import ReviewView, WaiverView
 from fretc.report.sections.signatures import of_review, of_waiver
 from fretc.traceability.changes import Change as TextChange
 from fretc.traceability.comparison import OTHER_TEXTS, Difference, difference

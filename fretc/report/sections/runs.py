@@ -20,7 +20,8 @@ from fretc.audit.evidence.result_summaries import (
 )
 from fretc.audit.evidence.schema import Checked, Finding, Topic
 from fretc.report.model import phrases
-from fretc.report.model.views import Remark, RunSummary, TopicView, sign_mark
+from fretc.report.model.marks import sign_mark
+from fretc.report.model.views import Remark, RunSummary, TopicView
 from fretc.traceability.acceptances import as_diagnostic
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Severity
@@ -258,16 +259,15 @@ def _named(run: Run) -> str:
     return f"{run.name} ({codes})" if codes else run.name
 
 
-def _is_open(run: Run, project: Project) -> bool:
-    """Whether the run has a finding that the project does not accept."""
-    return not all(_accepted(finding, project) for finding in run.facts.health.findings)
-
-
 def trust(runs: Sequence[Run], project: Project) -> str:
     """The condition of the runs in one sentence; "" if there is no run."""
     damaged = [_named(run) for run in runs if not run.facts.health.intact]
     wrong = [_named(run) for run in runs if run.facts.health.intact and _errors(run)]
-    with_findings = [run.name for run in runs if _is_open(run, project)]
+    with_findings = [
+        run.name
+        for run in runs
+        if not all(_accepted(finding, project) for finding in run.facts.health.findings)
+    ]
     if not runs:
         return ""
     if damaged or wrong:

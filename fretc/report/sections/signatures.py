@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from fretc.analysis.evidence import AnalyzedSet
 from fretc.attestation import statement as attestation
 from fretc.attestation.signatures import SignatureBook, Signing, State
-from fretc.attestation.statement import Subject
-from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.report.model import phrases
-from fretc.report.model.assessments import Assessment
-from fretc.report.model.views import Signatures, SignatureView, Signed, sign_mark
+from fretc.report.model.assessments import Assessment, Inputs
+from fretc.report.model.marks import sign_mark
+from fretc.report.model.views import Signatures, SignatureView, Signed
 from fretc.traceability.lock import Review
 from fretc.traceability.waivers import Waiver
-from fretc.verification.reader import Proofs
 from fretish.diagnostics import status_symbols as signs
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 _SIGNED = sign_mark("signed", signs.GOOD)
 _UNSIGNED = sign_mark("unauthenticated", signs.OPEN)
@@ -45,21 +43,16 @@ def _view(signing: Signing) -> SignatureView:
     return SignatureView(_SIGNED if signing.is_good else _UNSIGNED, signing.text, signing.is_good)
 
 
-def signatures(
-    book: SignatureBook,
-    assessments: Sequence[Assessment],
-    evidence: EvidenceSource | None,
-    proofs: Proofs | None,
-    together: AnalyzedSet | None,
-) -> Signatures:
+def signatures(inputs: Inputs, assessments: Sequence[Assessment]) -> Signatures:
     """The table of signatures; those that do not verify come first."""
+    book = inputs.book
     signers = book.signers.signers if book.signers else ()
     return Signatures(
         file=phrases.place(book.signers.file) if book.signers else "",
         signers=tuple(f"{', '.join(signer.principals)}: {signer.key.text}" for signer in signers),
         signed=(
             *_broken(book),
-            *_files(book, evidence, proofs, together),
+            *_files(inputs),
             *_people(book, assessments),
         ),
     )
@@ -74,25 +67,16 @@ def _broken(book: SignatureBook) -> Iterator[Signed]:
             yield Signed("signature", where, "", SignatureView(BROKEN, text, False))
 
 
-def _files(
-    book: SignatureBook,
-    evidence: EvidenceSource | None,
-    proofs: Proofs | None,
-    together: AnalyzedSet | None,
-) -> Iterator[Signed]:
-    if evidence is not None:
-        subject = Subject(attestation.EVIDENCE, phrases.place(evidence.file), evidence.sha256)
-        yield _file(book, subject)
-    if proofs is not None:
-        yield _file(book, Subject(attestation.PROOFS, phrases.place(proofs.file), proofs.sha256))
-    if together is not None:
-        subject = Subject(attestation.ANALYSIS, phrases.place(together.file), together.sha256)
-        yield _file(book, subject)
-
-
-def _file(book: SignatureBook, subject: Subject) -> Signed:
-    """The signature of a file, which is signed under its base name."""
-    return Signed(subject.kind, subject.name, "", _view(book.of_file(subject.kind, subject.sha256)))
+def _files(inputs: Inputs) -> Iterator[Signed]:
+    """The signatures of files, which are signed under their base names."""
+    for kind, file in (
+        (attestation.EVIDENCE, inputs.evidence),
+        (attestation.PROOFS, inputs.verification),
+        (attestation.ANALYSIS, inputs.together),
+    ):
+        if file is not None:
+            signing = inputs.book.of_file(kind, file.sha256)
+            yield Signed(kind, phrases.place(file.file), "", _view(signing))
 
 
 def _people(book: SignatureBook, assessments: Sequence[Assessment]) -> Iterator[Signed]:
@@ -118,10 +102,4 @@ def idle_signatures(book: SignatureBook, assessments: Sequence[Assessment]) -> I
 
 def _idle(what: str, signing: Signing) -> Iterator[Diagnostic]:
     if signing.state in (State.ANOTHER, State.UNKNOWN, State.CHANGED):
-        yield Diagnostic(
-            Code.IDLE_SIGNATURE,
-            f"{what} is unauthenticated: {signing.text}",
-            help="ask the reviewer to sign: `fretc sign FILE --key KEY`; `allowed_signers` "
-            "lists the valid keys",
-            severity=Severity.WARNING,
-        )
+        yield diagnostic("unauthenticated", what=what, signing=signing.text)

@@ -10,22 +10,20 @@ from fretc.analysis.assumptions import assumptions
 from fretc.analysis.evidence import AnalyzedSet, Document, suspicions
 from fretc.analysis.findings import Analysis, Verdict
 from fretc.analysis.text_output import SIGNS, columns, lanes, remarks
-from fretc.audit.evidence.verdicts import RETIRED
 from fretc.report.model import phrases
 from fretc.report.model.front import Front
-from fretc.report.model.views import (
+from fretc.report.model.marks import Mark, sign_mark
+from fretc.report.model.sets import (
     REALIZABLE,
     UNREALIZABLE,
-    Mark,
-    Overall,
     Play,
     PlayLane,
     SetAnalysis,
     SetComponent,
     SetConflict,
     SetMember,
-    sign_mark,
 )
+from fretc.report.model.views import Overall
 from fretish.bindings.declarations import Role
 from fretish.diagnostics import status_symbols as signs
 
@@ -44,9 +42,7 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
         project: the present project.
         anchors: id → anchor of the requirement.
     """
-    requirements = [
-        requirement for requirement in project.formalized if requirement.entry.status != RETIRED
-    ]
+    requirements = project.in_force
     assumed, mistakes = assumptions(requirements, project.declarations)
     old = [
         *suspicions(known.document, requirements, assumed),
@@ -64,7 +60,7 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
         mark=replace(_mark(analysis.verdict), suspect=bool(old)),
         headline=_headline(analysis),
         suspicions=tuple(old),
-        left_out=tuple(entry.id for entry in project.without_rule if entry.status != RETIRED),
+        left_out=tuple(entry.id for entry in project.without_rule if entry.is_in_force),
         components=tuple(
             SetComponent(
                 _mark(component.verdict),

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from typing import Any
 
-from fretc.report.model.views import Play, PlayLane
+from fretc.report.model.sets import Play, PlayLane
+from fretc.report.pictures.scales import Scale
 
 _RIGHT, _TOP, _LANE, _HIGH, _FOOT = 10, 20, 26, 16, 8
 _LETTER = 7
@@ -18,40 +19,8 @@ _LONGEST = 34
 """Maximum number of characters of a name."""
 
 
-@dataclass(frozen=True, slots=True)
-class DrawnLane:
-    """A lane: truth values as a line, other values as texts."""
-
-    name: str
-    title: str
-    y: int
-    base: str
-    """A thin line at the level of `0`."""
-    path: str
-    texts: tuple[tuple[float, str], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class DrawnPlay:
-    """The layout; `last` are the columns of the violation, or of the loop."""
-
-    id: str
-    title: str
-    text: str
-    width: int
-    height: int
-    lanes: tuple[DrawnLane, ...]
-    heads: tuple[tuple[float, str], ...]
-    last: tuple[float, float] | None
-    """Left edge and width of these columns; None if the run violates nothing."""
-    top: int
-    bottom: int
-    gap: float | None
-    """The x coordinate of the gap, or None."""
-
-
-def drawing(play: Play, id: str, title: str, *, breaks: bool) -> DrawnPlay | None:
-    """The layout of a run; None if it has no tick or no variable.
+def drawing(play: Play, id: str, title: str, *, breaks: bool) -> dict[str, Any] | None:
+    """The layout of a run, as values for its template; None if it has no tick or no variable.
 
     Args:
         play: the run.
@@ -69,29 +38,27 @@ def drawing(play: Play, id: str, title: str, *, breaks: bool) -> DrawnPlay | Non
         else [*range(_MOST // 2), *range(count - _MOST // 2, count)]
     )
     column = min(_COLUMN, max(_NARROWEST, (_WIDTH - left - _RIGHT) / len(shown)))
+    x = Scale(0, len(shown), left, left + column * len(shown))
     bottom = _TOP + _LANE * len(play.lanes)
     begin = count - 1 if play.loop is None else max(play.loop, shown[0])
     first = next((place for place, each in enumerate(shown) if each >= begin), len(shown) - 1)
-    return DrawnPlay(
-        id=id,
-        title=title,
-        text=_in_words(play, breaks=breaks),
-        width=max(_WIDTH, round(left + column * len(shown) + _RIGHT)),
-        height=bottom + _FOOT,
-        lanes=tuple(
-            _lane(lane, [lane.values[i] for i in shown], left, column, _TOP + _LANE * place)
+    return {
+        "id": id,
+        "title": title,
+        "text": _in_words(play, breaks=breaks),
+        "width": max(_WIDTH, round(x.end + _RIGHT)),
+        "height": bottom + _FOOT,
+        "lanes": [
+            _lane(lane, [lane.values[i] for i in shown], x, _TOP + _LANE * place)
             for place, lane in enumerate(play.lanes)
-        ),
-        heads=tuple((_middle(place, left, column), play.ticks[i]) for place, i in enumerate(shown)),
-        last=(
-            (round(left + column * first, 1), round(column * (len(shown) - first), 1))
-            if breaks
-            else None
-        ),
-        top=_TOP,
-        bottom=bottom,
-        gap=None if count <= _MOST else round(left + column * (_MOST // 2), 1),
-    )
+        ],
+        "heads": [(x(place + 0.5), play.ticks[i]) for place, i in enumerate(shown)],
+        # The columns of the violation, or of the loop.
+        "last": (x(first), round(column * (len(shown) - first), 1)) if breaks else None,
+        "top": _TOP,
+        "bottom": bottom,
+        "gap": None if count <= _MOST else x(_MOST // 2),
+    }
 
 
 def _label(lane: PlayLane) -> str:
@@ -100,27 +67,21 @@ def _label(lane: PlayLane) -> str:
     return f"{name}{role}"
 
 
-def _lane(lane: PlayLane, values: Sequence[str], left: float, column: float, y: int) -> DrawnLane:
-    texts: tuple[tuple[float, str], ...] = ()
-    path = base = ""
+def _lane(lane: PlayLane, values: Sequence[str], x: Scale, y: int) -> dict[str, Any]:
+    """A lane: truth values as a line above a thin one at the level of `0`, others as texts."""
+    drawn = {"name": _label(lane), "title": lane.name, "y": y + _HIGH, "path": "", "texts": []}
     if all(value in ("0", "1") for value in lane.values):
-        path = " ".join(_steps(values, left, column, y))
-        base = f"M{left} {y + _HIGH + 4}h{column * len(values):.1f}"
-    else:
-        texts = tuple((_middle(place, left, column), value) for place, value in enumerate(values))
-    return DrawnLane(_label(lane), lane.name, y + _HIGH, base, path, texts)
+        base = f"M{x.start} {y + _HIGH + 4}h{x.end - x.start:.1f}"
+        return {**drawn, "path": " ".join(_steps(values, x, y)), "base": base}
+    return {**drawn, "texts": [(x(place + 0.5), value) for place, value in enumerate(values)]}
 
 
-def _steps(values: Sequence[str], left: float, column: float, y: int) -> Iterator[str]:
+def _steps(values: Sequence[str], x: Scale, y: int) -> Iterator[str]:
     """The path of a step line of 0 and 1."""
     for place, value in enumerate(values):
         level = y + 4 if value == "1" else y + _HIGH + 4
-        yield f"{'L' if place else 'M'}{left + column * place:.1f} {level}"
-        yield f"L{left + column * (place + 1):.1f} {level}"
-
-
-def _middle(place: int, left: float, column: float) -> float:
-    return round(left + column * (place + 0.5), 1)
+        yield f"{'L' if place else 'M'}{x(place)} {level}"
+        yield f"L{x(place + 1)} {level}"
 
 
 def _in_words(play: Play, *, breaks: bool) -> str:

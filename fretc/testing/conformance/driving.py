@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from random import Random
 
-from compiler.logic import decision_diagrams as bdd
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.transition import State
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.testing.conformance.oracle import Oracle, Run, Tick, Truths

@@ -18,7 +18,8 @@ from types import TracebackType
 from typing import IO, Self
 
 from fretc.testing.exports.tables import Cell, cell_text, csv_text
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic, DiagnosticError
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 from monitors.kernel.tables import InputError
 from monitors.kernel.variable_tables import read_variables
@@ -32,12 +33,8 @@ _FAREWELL = 1.0
 """Seconds in which it must end after its input has ended."""
 
 
-class ProgramError(Exception):
+class ProgramError(DiagnosticError):
     """The program violates the protocol."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 class Program:
@@ -171,21 +168,11 @@ class Program:
 
     def _wrong(self, why: str) -> Diagnostic:
         """F941."""
-        return Diagnostic(
-            Code.PROGRAM_LINE,
-            visible(f"at tick {self._tick} the program under test printed a wrong line: {why}"),
-            help="it must print one line with the names of its outputs, and then one line of "
-            "outputs for each line of inputs; `docs/test.md` has an example",
-        )
+        return diagnostic("program_line", tick=self._tick, why=visible(why))
 
     def _late(self) -> Diagnostic:
         """F942."""
-        return Diagnostic(
-            Code.PROGRAM_SILENT,
-            f"at tick {max(self._tick, 0)} the program under test printed no line within "
-            f"{self._seconds:g} s",
-            help="it must flush each line; `--line-time` gives it more time",
-        )
+        return diagnostic("program_silent", tick=max(self._tick, 0), seconds=f"{self._seconds:g}")
 
     def _ended(self) -> Diagnostic:
         """F943."""
@@ -201,11 +188,7 @@ class Program:
         how = "closed its output" if status is None else _ending(status)
         said = self._errors.decode(errors="backslashreplace").strip().splitlines()
         last = f"; its last output: {said[-1]}" if said else ""
-        return Diagnostic(
-            Code.PROGRAM_ENDED,
-            visible(f"at tick {max(self._tick, 0)} the program under test {how}{last}"),
-            help="it must run until its standard input ends",
-        )
+        return diagnostic("program_ended", tick=max(self._tick, 0), how=visible(f"{how}{last}"))
 
 
 def _stream(pipe: IO[bytes] | None) -> IO[bytes]:
@@ -221,8 +204,4 @@ def _ending(status: int) -> str:
 
 def _not_started(command: Sequence[str], why: str) -> Diagnostic:
     """F940."""
-    return Diagnostic(
-        Code.PROGRAM_NOT_STARTED,
-        visible(f"`{join(command)}` cannot be started: {why}"),
-        help="`--against` takes a program and its arguments; no shell reads them",
-    )
+    return diagnostic("program_not_started", command=visible(join(command)), why=visible(why))

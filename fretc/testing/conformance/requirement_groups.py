@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from functools import partial
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams import decision_diagrams as bdd
+from compiler.logic.diagrams.decision_diagrams import Function
 from compiler.situations.situations import Situation, situations
 from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget

@@ -15,7 +15,8 @@ from typing import Any
 from compiler.files.records import replace
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import monitor as emitted
-from compiler.targets.python.comparisons import NUMBER, TRUTH, Input, input_adapter
+from compiler.targets.python.comparisons import NUMBER, TRUTH, Input
+from compiler.targets.python.input_adapter import input_adapter
 from fretc.testing.exports.tables import Table, table, truths
 from fretc.testing.suite import LONGEST_NAME, Suite, Test
 from fretc.testing.words import outcome

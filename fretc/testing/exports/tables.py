@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.targets.python.comparisons import input_adapter
+from compiler.targets.python.input_adapter import input_adapter
 from fretc.analysis.arena.alphabet import Value
 from fretc.testing.suite import Test
 

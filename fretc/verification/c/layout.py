@@ -9,18 +9,17 @@ address, so they access only the memory of the rail, and a step depends on nothi
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from itertools import pairwise, zip_longest
+from collections.abc import Iterator, Sequence
+from itertools import zip_longest
 
-from fretc.verification.compiled.flow import CheckedLayout, Flow, Grammar
+from fretc.verification.compiled.flow import BlockFlow, CheckedLayout
 from fretc.verification.compiled.text import (
     NAME,
     Lexis,
     Tokens,
     UnexpectedLayoutError,
+    bodies,
     is_constant,
-    same,
-    split,
     strange,
 )
 
@@ -70,11 +69,9 @@ def check_layout(
     """
     given, own = LEXIS.tokens(text), LEXIS.tokens(written)
     free = ((f"{base}_clear",), (f"{base}_advance",))
-    outside, (cleared, stepped) = split(given, free)
-    own_outside, own_bodies = split(own, free)
-    same(outside, own_outside)
-    known = frozenset(each for body in own_bodies for each in _statements(body))
-    _same_cells(cleared, own_bodies[0])
+    (cleared, own_cleared), (stepped, own_stepped) = bodies(given, own, free)
+    known = frozenset([*_statements(own_cleared), *_statements(own_stepped)])
+    _same_cells(cleared, own_cleared)
     read = re.findall(r"now \. (\w+) = inputs -> (\w+) ==", " ".join(own))
     literals = {literal: inputs.index(name) for literal, name in read}
     step = _Step(known, cells, literals)
@@ -124,25 +121,13 @@ def _is_first_value(statement: Tokens) -> bool:
             return False
 
 
-class _Step(Flow):
+class _Step(BlockFlow):
     """The body of a step, read statement by statement."""
 
-    def __init__(
-        self, known: frozenset[Tokens], cells: Sequence[str], literals: Mapping[str, int]
-    ) -> None:
-        """A step without statements.
-
-        Args:
-            known: statements that fretc writes.
-            cells: all cells of a rail.
-            literals: all literals.
-        """
-        self._known = known
-        self._rings = {a for each in known for a, b in pairwise(each) if b == "["}
-        fixed = {*self._rings, *(f"{ring}_at" for ring in self._rings)}
-        members = {("rail", "->"): {*cells} - fixed, ("now", "->"): literals}
-        super().__init__(Grammar(members, _SIGNS, _KEPT))
-        self._outcome = ""
+    cell, literal = ("rail", "->"), ("now", "->")
+    brackets = ("(", ")")
+    signs, kept = _SIGNS, _KEPT
+    _outcome = ""
 
     def read(self, statement: Tokens) -> None:
         """Read one more statement.
@@ -150,7 +135,7 @@ class _Step(Flow):
         Raises:
             UnexpectedLayoutError: it has no known harmless form.
         """
-        if not (self._branch(statement) or self._assignment(statement) or self._fixed(statement)):
+        if not (self.branch(statement) or self._assignment(statement) or self._fixed(statement)):
             raise strange(statement)
 
     def names(self, value: Sequence[str], statement: Sequence[str]) -> frozenset[str]:
@@ -172,25 +157,13 @@ class _Step(Flow):
             raise strange(statement)
         return super().names(value, statement)
 
-    def _branch(self, statement: Tokens) -> bool:
-        match statement:
-            case ("if", "(", *test, ")", "{"):
-                self.conditions.append(self.names(test, statement))
-            case ("}", "else", "if", "(", *test, ")", "{") if self.conditions:
-                self.conditions[-1] |= self.names(test, statement)
-            case ("}", "else", "{") if self.conditions:
-                pass
-            case ("}",) if self.conditions:
-                self.conditions.pop()
-            case _:
-                return False
-        return True
-
     def _assignment(self, statement: Tokens) -> bool:
-        if statement in self._known and not _POINTED.isdisjoint(statement):
+        if statement in self.written and not _POINTED.isdisjoint(statement):
             return False
         match statement:
-            case ("reading", "->", name, "=", *value, ";") if self._outcome and _is_free(name):
+            case ("reading", "->", name, "=", *value, ";") if (
+                self._outcome and self.grammar.is_free(name)
+            ):
                 self.change([self._outcome], self.names(value, statement))
                 return True
             case ("rail", _, _, "=", *value, ";"):
@@ -202,7 +175,7 @@ class _Step(Flow):
 
     def _fixed(self, statement: Tokens) -> bool:
         """The fixed statements: the reported outcome, and rings."""
-        if statement not in self._known:
+        if statement not in self.written:
             return False
         match statement:
             case ("reading", "=", "possible", "?", "&", "outcomes", "->", member, *_):
@@ -211,13 +184,9 @@ class _Step(Flow):
             case ("(", "void", ")", _, ";"):
                 return True
             case _:
-                names = frozenset(filter(_is_free, statement))
+                names = self.grammar.free_names(statement)
                 left = statement[: statement.index("=")] if "=" in statement else ()
                 # A pointer to a ring counts as a change of the ring.
                 local = statement[2:3] if statement[:2] == ("const", "bool") else ()
-                self.known(names, names & {*left, *self._rings}, local)
+                self.known(names, names & {*left, *self.rings}, local)
                 return True
-
-
-def _is_free(name: str) -> bool:
-    return bool(NAME.fullmatch(name)) and name not in _KEPT

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import ClassVar
 
 from fretc.verification.compiled.text import NAME, NUMBER, Fields, Tokens, strange
 
@@ -61,6 +63,14 @@ class Grammar:
         """Whether the three tokens are a member."""
         return len(tokens) == 3 and tokens[2] in self.members.get((tokens[0], tokens[1]), ())
 
+    def is_free(self, name: str) -> bool:
+        """Whether the token is a name, and not a reserved word."""
+        return bool(NAME.fullmatch(name)) and name not in self.kept
+
+    def free_names(self, tokens: Iterable[str]) -> frozenset[str]:
+        """All tokens that are names, and not reserved words."""
+        return frozenset(filter(self.is_free, tokens))
+
 
 _CALLS = ("(", "!")
 """Tokens that make a name a call, or a macro of Rust."""
@@ -75,7 +85,7 @@ class Flow:
         """Each changed name with the names in its values and in the enclosing conditions."""
         self.conditions: list[frozenset[str]] = []
         """Names in each condition around the current statement."""
-        self._grammar = grammar
+        self.grammar = grammar
         self._local: set[str] = set()
 
     def names(self, value: Sequence[str], statement: Sequence[str]) -> frozenset[str]:
@@ -84,7 +94,7 @@ class Flow:
         Raises:
             UnexpectedLayoutError: the expression contains anything else.
         """
-        names, place, grammar = set[str](), 0, self._grammar
+        names, place, grammar = set[str](), 0, self.grammar
         while place < len(value):
             name, after = (*value[place : place + 2], "")[:2]
             if grammar.is_member(value[place : place + 3]):
@@ -109,7 +119,7 @@ class Flow:
 
     def give(self, member: Sequence[str], value: Sequence[str], statement: Sequence[str]) -> bool:
         """Record an assignment to a member; False: it is not an allowed member."""
-        if not self._grammar.is_member(member):
+        if not self.grammar.is_member(member):
             return False
         self.change(member[2:], self.names(value, statement))
         return True
@@ -119,7 +129,7 @@ class Flow:
 
         In C, a second declaration of the same name could read itself before it has a value.
         """
-        if not NAME.fullmatch(name) or name in self._grammar.kept or name in self._local:
+        if not self.grammar.is_free(name) or name in self._local:
             return False
         self.change([name], self.names(value, statement))
         self._local.add(name)
@@ -153,6 +163,58 @@ class Flow:
         for outcome, fields in zip(outcomes, given, strict=True):
             for name, value in fields:
                 self.change([f"&{outcome}"], self.names(expression(name, value), value))
+
+
+class BlockFlow(Flow):
+    """Data flow of a step in a language with blocks and rings, read statement by statement."""
+
+    cell: ClassVar[tuple[str, str]]
+    """Prefix of a cell."""
+    literal: ClassVar[tuple[str, str]]
+    """Prefix of a literal."""
+    brackets: ClassVar[tuple[str, ...]]
+    """Tokens around the condition of an `if`: two, or none."""
+    signs: ClassVar[Collection[str]]
+    kept: ClassVar[Collection[str]]
+    """Elements of an expression, as in `Grammar`."""
+
+    def __init__(
+        self, known: frozenset[Tokens], cells: Sequence[str], literals: Mapping[str, int]
+    ) -> None:
+        """A step without statements.
+
+        Args:
+            known: statements that fretc writes.
+            cells: all cells of a rail.
+            literals: all literals.
+        """
+        self.written = known
+        self.rings = {a for each in known for a, b in pairwise(each) if b == "["}
+        fixed = {*self.rings, *(f"{ring}_at" for ring in self.rings)}
+        members = {self.cell: {*cells} - fixed, self.literal: literals}
+        super().__init__(Grammar(members, self.signs, self.kept))
+
+    def branch(self, statement: Tokens) -> bool:
+        """Read the begin or the end of a block; False: it is another statement."""
+        match statement:
+            case ("if", *test, "{"):
+                self.conditions.append(self._test(test, statement))
+            case ("}", "else", "if", *test, "{") if self.conditions:
+                self.conditions[-1] |= self._test(test, statement)
+            case ("}", "else", "{") if self.conditions:
+                pass
+            case ("}",) if self.conditions:
+                self.conditions.pop()
+            case _:
+                return False
+        return True
+
+    def _test(self, test: Sequence[str], statement: Tokens) -> frozenset[str]:
+        if self.brackets:
+            if (*test[:1], *test[1:][-1:]) != self.brackets:
+                raise strange(statement)
+            test = test[1:-1]
+        return self.names(test, statement)
 
 
 def _is_value(before: Sequence[str]) -> bool:

@@ -111,6 +111,19 @@ def split(text: Tokens, functions: Sequence[Tokens]) -> tuple[Tokens, list[Token
     return (*outside, *text[place:]), bodies
 
 
+def bodies(
+    given: Tokens, own: Tokens, functions: Sequence[Tokens]
+) -> Iterator[tuple[Tokens, Tokens]]:
+    """The bodies of some functions in the text and in that of fretc, as `split` finds them.
+
+    Raises:
+        UnexpectedLayoutError: a function is missing, or the texts differ outside the bodies.
+    """
+    (outside, found), (own_outside, own_found) = split(given, functions), split(own, functions)
+    same(outside, own_outside)
+    return zip(found, own_found, strict=True)
+
+
 def _place(text: Tokens, head: Tokens, start: int) -> int:
     for place in range(start, len(text)):
         if text[place : place + len(head)] == head and "{" in text[place:]:
@@ -153,13 +166,16 @@ def is_constant(value: Sequence[str]) -> bool:
     return sign in ([], ["-"]) and bool(last in ("true", "false") or NUMBER.fullmatch(last))
 
 
-def same_but_constants(given: Sequence[Tokens], own: Sequence[Tokens]) -> None:
-    """Raise UnexpectedLayoutError if fields differ in more than their constants.
+def same_but_constants(first: Tokens, own_first: Tokens, end: int) -> None:
+    """Raise UnexpectedLayoutError if two records differ in more than their constants.
 
     Args:
-        given: fields with their values, `name : value`.
-        own: fields that fretc writes.
+        first: a record of fields with their values, `name : value`, after two other tokens.
+        own_first: the record that fretc writes.
+        end: index of the first token after the fields.
     """
+    same(first[:2] + first[end:], own_first[:2] + own_first[end:])
+    given, own = ([*parts(each[2:end], ",")] for each in (first, own_first))
     if len(given) != len(own):
         raise strange(given[-1] if given else ())
     for actual, expected in zip(given, own, strict=True):

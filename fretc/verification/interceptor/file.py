@@ -16,7 +16,8 @@ from typing import Any
 
 from compiler.targets.python import interceptor
 from compiler.targets.python.interceptor import MARKER
-from fretc.verification.interceptor.purity import UnexpectedCodeError, bound_names, is_guarded
+from fretc.verification.interceptor.purity import bound_names, is_guarded
+from fretc.verification.monitor.statements import UnexpectedCodeError
 from fretish.bindings.declarations import Interception, InterceptorForm
 from fretish.reading.text_encoding import is_utf8
 from monitors.loading import executed

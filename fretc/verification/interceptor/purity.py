@@ -16,6 +16,7 @@ from collections.abc import Collection
 from functools import cache
 from math import isfinite
 
+from fretc.verification.monitor.statements import UnexpectedCodeError
 from monitors.source_text import ALONE
 from monitors.source_text import interceptor as original
 
@@ -32,10 +33,6 @@ _NOT_FIELDS = frozenset(name for kind in (bool, int, float, tuple, str) for name
 """Attributes of numbers and tuples. Methods distinguish equal numbers: `x.real is y.real`."""
 _UNARY = (ast.Not, ast.USub)
 _COMPARED = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq)
-
-
-class UnexpectedCodeError(Exception):
-    """The code contains syntax that is not allowed."""
 
 
 def bound_names(tree: ast.Module, taken: Collection[str]) -> frozenset[str]:

@@ -13,15 +13,14 @@ from collections.abc import Collection, Sequence
 
 from fretc.verification.compiled.flow import CheckedLayout, Flow, Grammar
 from fretc.verification.compiled.text import (
-    NAME,
     Lexis,
     Tokens,
+    bodies,
     end_of,
     parts,
     records,
     same,
     same_but_constants,
-    split,
     strange,
 )
 
@@ -63,11 +62,8 @@ def check_layout(
         UnexpectedLayoutError: the layout differs.
     """
     given, own = LEXIS.tokens(text), LEXIS.tokens(written)
-    outside, (first, stepped) = split(given, _FREE)
-    own_outside, (own_first, own_stepped) = split(own, _FREE)
-    same(outside, own_outside)
-    same(first[:2] + first[-2:], own_first[:2] + own_first[-2:])
-    same_but_constants(*([*parts(each[2:-2], ",")] for each in (first, own_first)))
+    (first, own_first), (stepped, own_stepped) = bodies(given, own, _FREE)
+    same_but_constants(first, own_first, -2)
     literals = {name: int(place) for name, place in _READ.findall(" ".join(own_stepped))}
     step = _Step(frozenset(parts(own_stepped, ";")), {*cells} - {*windows})
     statements, own_statements = [*parts(stepped, ";")], [*parts(own_stepped, ";")]
@@ -150,7 +146,7 @@ class _Step(Flow):
             return True
         if "slide" not in statement:
             return False
-        names = frozenset(each for each in statement if NAME.fullmatch(each)) - _KEPT
+        names = self.grammar.free_names(statement)
         window = statement[statement.index("slide") + 4]
         self.known(names, [window, statement[1] if local else statement[2]], local)
         return True

@@ -13,7 +13,8 @@ from fretc.verification.c.analysis import analysed
 from fretc.verification.compiled.plan import SourceText
 from fretc.verification.engines import frama_c
 from fretc.verification.layers.request import Request
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 CLAIM = "the C code has no undefined behaviour, and each counter stays in its range"
 
@@ -21,17 +22,9 @@ CLAIM = "the C code has no undefined behaviour, and each counter stays in its ra
 def refusal(request: Request) -> Diagnostic | None:
     """F908 if Frama-C is not installed, F907 for a monitor that is not in C."""
     if frama_c.program() is None:
-        return Diagnostic(
-            Code.MISSING_EXTRA,
-            "`--with frama-c` needs Frama-C, but there is no `frama-c` on the PATH",
-            help="Debian and Ubuntu: `apt install frama-c-base`; elsewhere: frama-c.com",
-        )
+        return diagnostic("no_frama_c")
     if request.monitor is not None and request.header is None:
-        return Diagnostic(
-            Code.BAD_USAGE,
-            f"`--with frama-c` needs a monitor in C, and `{request.monitor.name}` is not in C",
-            help="name a file that `--emit c` wrote",
-        )
+        return diagnostic("frama_c_needs_c", monitor=request.monitor.name)
     return None
 
 

@@ -13,7 +13,8 @@ from fretc.verification.engines.sandbox import NoResult, Session
 from fretc.verification.layers.languages import Row, language_of
 from fretc.verification.layers.request import Request, named_text, setup_of
 from fretc.verification.monitor.verifying import verified_beside, written
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 CLAIM = "the monitor means what the sentence says"
 ENGINE = "fretc, lock step with the counter automaton of the sentence"
@@ -34,9 +35,10 @@ def prove(
         return _of_python(requirements, project, request)
     program = language.module.tool()
     if program is None:
-        return Diagnostic(
-            Code.MISSING_EXTRA,
-            f"a monitor in {language.name} is {language.missing}",
+        return diagnostic(
+            "language_missing",
+            language=language.name,
+            missing=language.missing,
             help=language.install,
         )
     texts = (named_text(each) for each in (request.monitor, request.header))

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any, NamedTuple, Protocol
 
-from compiler.logic.kripke import TooManyStatesError
+from compiler.logic.kripke import ModelTooLargeError
 from fretc.verification.loop.actuation_model import Channel, Queue
 from fretc.verification.loop.model import Loop, Node, Tick
 
@@ -200,7 +200,7 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
         longest: ticks; the search stops if an obligation is open for longer.
 
     Raises:
-        TooManyStatesError: there are more states than the limit.
+        ModelTooLargeError: there are more states than the limit.
     """
     channel = loop.channel
     assert channel.heartbeat or not channel.edge
@@ -235,7 +235,7 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
                 key = (after, then.open, then.age)
                 if key not in visited and then.open <= longest:
                     if len(visited) >= limit:
-                        raise TooManyStatesError(limit)
+                        raise ModelTooLargeError(limit)
                     visited.add(key)
                     waiting.append(key)
             ended[case] = steps - before

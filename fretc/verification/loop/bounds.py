@@ -22,31 +22,30 @@ from compiler.logic.claims import (
     Layer,
     Outcome,
     Proof,
-    not_applicable,
     not_checked,
     proof,
     proved,
     refuted,
 )
-from compiler.logic.kripke import TooManyStatesError
+from compiler.logic.kripke import ModelTooLargeError
 from compiler.targets.python import monitor as target
-from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, NoResult
+from fretc.verification.engines.sandbox import Limits
 from fretc.verification.interceptor.file import is_original
 from fretc.verification.interceptor.machine import NotAnInterceptorError
 from fretc.verification.loop.abstraction import (
-    ARRIVED,
-    NONE,
-    StepChoice,
-    Times,
-    TwinState,
-    begins,
     covered,
-    relation,
     times_of,
 )
 from fretc.verification.loop.actuation_model import ActuationModel, Channel
-from fretc.verification.loop.closed_loop import Setup, artefacts, assumptions, case, inapplicable
+from fretc.verification.loop.closed_loop import (
+    Setup,
+    answered,
+    artefacts,
+    assumptions,
+    case,
+    inapplicable,
+)
+from fretc.verification.loop.invariant import unproved
 from fretc.verification.loop.search import Case, NotALoopError, Parts, as_table, reach
 from fretc.verification.monitor.statements import is_same
 from fretish import syntax as s
@@ -61,8 +60,6 @@ ANSWERED = f"every demand is answered within `lost` ticks and {_MORE}"
 _SMALL = ((1, 0, 0, 0), (1, 1, 1, 1), (2, 1, 1, 2), (1, 2, 2, 0), (3, 4, 1, 2))
 """Cells in a tick, latency, losses in a row, and braking, for comparing the abstraction with the
 code."""
-_QUERY = 20_000
-"""Milliseconds for each query of z3."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,15 +99,8 @@ def bounds_proofs(
     """Proofs of both claims: a response comes in time for all times; and the bound is enough."""
     reason = _inapplicable(requirement, setup)
     query = reason or question(requirement, setup)
-    answer: Answer | NoResult
-    if reason is not None:
-        answer = Answer(not_applicable(reason), not_applicable(reason))
-    elif isinstance(query, str):
-        answer = NoResult(query)
-    else:
-        answer = processes.confined(limits, search, query)
-    if isinstance(answer, NoResult):
-        answer = Answer(not_checked(answer.reason), not_checked(answer.reason))
+    found = answered(reason, query, search, limits)
+    answer = Answer(found, found) if isinstance(found, Outcome) else found
     at_declared, at_any = (
         ()
         if isinstance(query, str)
@@ -203,19 +193,19 @@ def _answers(sentence: s.Sentence, stands: str) -> bool:
 def search(query: Question) -> Answer:
     """Prove the invariant, compare abstraction and code, and search for the least bound."""
     try:
-        endless = _endless(query)
+        endless = _with(query, s.Eventually())  # so that no run ends at a deadline
         parts = Parts.of(endless)
         longest, steps, loops = _covered(query, endless, parts)
-        obstacle, version = _proved(times_of(query.case.channel))
+        obstacle, version = unproved(times_of(query.case.channel))
         if obstacle is not None:
             return Answer(not_checked(obstacle), not_checked(obstacle), version)
-        answered: Outcome = proved(
+        in_time: Outcome = proved(
             f"by an inductive invariant; {steps:,} steps of {loops} loops are steps of its model"
         )
         if query.unknown is not None:
-            answered = not_checked(query.unknown)
-        return Answer(answered, _least(query, longest + 1, parts.loop.drive), version)
-    except (NotALoopError, NotAnInterceptorError, TooManyStatesError) as error:
+            in_time = not_checked(query.unknown)
+        return Answer(in_time, _least(query, longest + 1, parts.loop.drive), version)
+    except (NotALoopError, NotAnInterceptorError, ModelTooLargeError) as error:
         return Answer(not_checked(str(error)), not_checked(str(error)))
 
 
@@ -283,11 +273,6 @@ def _formula(channel: Channel) -> int:
     return channel.lost * times_of(channel).heartbeat + max(1, filled)
 
 
-def _endless(query: Question) -> Case:
-    """The case with `eventually` in place of the bound, so that no run ends at a deadline."""
-    return _with(query, s.Eventually())
-
-
 def _with(query: Question, timing: s.Timing) -> Case:
     text = canonical(replace(query.sentence, timing=timing))
     entry = RequirementEntry(query.case.requirement, Source("sentence", text).span())
@@ -332,80 +317,3 @@ def _violating(query: Question, drive: ActuationModel) -> Any:
     trace, violated = as_table(parts, violation)
     assert violated
     return trace
-
-
-# z3 -------------------------------------------------------------------------------------------
-
-
-def _proved(declared: Times) -> tuple[str | None, str]:
-    """Why the invariant is not proved, None if it is; and z3's version.
-
-    Args:
-        declared: only `cells` and `heartbeat` count; the others are unknowns for z3.
-    """
-    import z3
-
-    class Terms:
-        """Terms of z3."""
-
-        def both(self, *parts: Any) -> Any:
-            return z3.And(*parts)
-
-        def either(self, *parts: Any) -> Any:
-            return z3.Or(*parts)
-
-        def no(self, part: Any) -> Any:
-            return z3.Not(part)
-
-    logic = Terms()
-    cells, beat = declared.cells, declared.heartbeat
-    times = Times(cells, beat, *z3.Ints("latency lost braking"))
-    bound, some = z3.Ints("D n")
-    now, then = (TwinState(*z3.Ints(f"e{i} a{i} w{i} z{i} r{i} s{i}")) for i in (0, 1))
-    stands, sent, lost = z3.Bools("stands is_sent is_lost")
-    choice = StepChoice(stands, sent, lost, z3.Int("cell"))
-    enough = cells * bound >= cells * beat * times.lost + times.latency + times.braking
-    premises = z3.And(
-        times.latency >= 0, times.lost >= 0, times.braking >= 0, bound > beat * times.lost, enough
-    )
-    here, there = (_invariant(numbers, times, bound, logic) for numbers in (now, then))
-    queries = {
-        "it does not hold initially": z3.And(begins(now, times, logic), z3.Not(here)),
-        "a step does not preserve it": z3.And(
-            here, relation(now, then, choice, times, logic), z3.Not(there)
-        ),
-        "it does not imply the bound": z3.And(here, some >= bound, now.open >= some),
-    }
-    for failure, query in queries.items():
-        solver = z3.Solver()
-        solver.set("timeout", _QUERY)
-        solver.add(premises, query)
-        verdict = solver.check()
-        if verdict != z3.unsat:
-            reason = "z3 gives no answer in time" if verdict == z3.unknown else failure
-            return f"of the invariant: {reason}", z3.get_version_string()
-    return None, z3.get_version_string()
-
-
-def _invariant(at: TwinState, times: Times, bound: Any, logic: Any) -> Any:
-    """The invariant at the end of each tick: why a response comes in time.
-
-    At most `lost` requests of a stop are lost in a row; the first other one is in flight for less
-    than the latency; from its arrival on, the wheels have zero. An open obligation is no older than
-    its request.
-    """
-    k, beat, both, either = times.cells, times.heartbeat, logic.both, logic.either
-    passed, tried = k * (at.open + 1), k * beat * times.lost
-    in_time = at.open + 1 <= (at.losses - 1) * beat + at.silent
-    lost = both(at.age == NONE, at.losses >= 1, at.silent >= 1, in_time)
-    flying = both(at.age >= k, at.age < times.latency, passed - at.age <= tried)
-    since = passed - tried - times.latency + 1
-    still = either(at.still >= times.braking + 1, at.still >= since)
-    arrival = both(at.age == ARRIVED, at.still >= 1, still)
-    released = both(at.requested == 0, at.open == -1, at.age == NONE)
-    request = both(at.requested == 1, at.open >= -1, at.open < bound, either(lost, flying, arrival))
-    ranges = both(
-        *(at.losses >= 0, at.losses <= times.lost, at.silent >= 0, at.silent <= beat),
-        *(at.still >= -1, at.still <= times.braking + 1),
-    )
-    return both(ranges, either(released, request))

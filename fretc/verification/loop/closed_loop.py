@@ -7,9 +7,10 @@ between them is `fretc.verification.loop.model`, and its durations are whole cel
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import gcd
+from typing import TypeVar
 
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
@@ -40,6 +41,10 @@ _FINEST = 20
 """Maximum number of cells in a tick if the interceptor has no timer to define a cell."""
 
 
+P = TypeVar("P")
+R = TypeVar("R")
+
+
 @dataclass(frozen=True, slots=True)
 class NamedText:
     """A text to verify, and its name in proofs."""
@@ -64,20 +69,32 @@ def loop_proofs(
     """Proofs of both claims: the requirement is satisfied, and the stop is released."""
     reason = inapplicable(requirement, setup)
     problem = reason or case(requirement, setup)
-    results: Results | NoResult
-    if reason is not None:
-        results = Results(not_applicable(reason), not_applicable(reason))
-    elif isinstance(problem, str):
-        results = NoResult(problem)
-    else:
-        results = processes.confined(limits, search, problem)
-    if isinstance(results, NoResult):
-        results = Results(not_checked(results.reason), not_checked(results.reason))
+    found = answered(reason, problem, search, limits)
+    results = Results(found, found) if isinstance(found, Outcome) else found
     premises = () if isinstance(problem, str) else tuple(assumptions(requirement, setup, problem))
     return (
         _evidence(requirement, setup, KEPT, results.kept, premises),
         _evidence(requirement, setup, RELEASED, results.released, premises),
     )
+
+
+def answered(
+    inapplicable: str | None, problem: P | str, search: Callable[[P], R], limits: Limits
+) -> R | Outcome:
+    """The result of a search, or one outcome for all of its claims.
+
+    Args:
+        inapplicable: why no search decides the requirement; None: one does.
+        problem: the problem to search; or why it cannot be searched.
+        search: a function for another process.
+        limits: the limits of the process.
+    """
+    if inapplicable is not None:
+        return not_applicable(inapplicable)
+    if isinstance(problem, str):
+        return not_checked(problem)
+    result = processes.confined(limits, search, problem)
+    return not_checked(result.reason) if isinstance(result, NoResult) else result
 
 
 def _evidence(

@@ -13,7 +13,7 @@ from typing import assert_never
 
 from compiler.logic import formula as f
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted, vacuous
-from compiler.logic.kripke import Explored, TooManyStatesError, check, explore
+from compiler.logic.kripke import Explored, ModelTooLargeError, check, explore
 from compiler.logic.orders import Exclusion
 from fretc.verification.interceptor.machine import InterceptorMachine, NotAnInterceptorError
 from fretc.verification.loop.actuation_model import ActuationModel, Channel
@@ -80,7 +80,7 @@ def search(case: Case) -> Results:
         )
     except (NotALoopError, NotAnInterceptorError) as error:
         return Results(not_checked(str(error)), not_checked(str(error)))
-    except TooManyStatesError as error:
+    except ModelTooLargeError as error:
         return Results(not_checked(str(error)), not_checked(str(error)))
 
 
@@ -171,7 +171,7 @@ def reach(loop: Loop, limit: int) -> Exploration:
     """All states, breadth first, up to the first violation.
 
     Raises:
-        TooManyStatesError: there are more states than the limit.
+        ModelTooLargeError: there are more states than the limit.
     """
     place = loop.environment.atoms.index(loop.environment.stands)
     came: dict[Node, tuple[Node, Tick] | None] = {loop.initial: None}
@@ -191,7 +191,7 @@ def reach(loop: Loop, limit: int) -> Exploration:
                 steps += 1
                 if after not in came:
                     if len(came) >= limit:
-                        raise TooManyStatesError(limit)
+                        raise ModelTooLargeError(limit)
                     came[after] = node, tick
                     waiting.append(after)
     return Exploration(len(came), steps, None, triggered, moved)
@@ -261,7 +261,7 @@ class Runs:
 
     @classmethod
     def of(cls, loop: Loop, visible: frozenset[str], limit: int) -> Runs:
-        """The runs; raises TooManyStatesError if there are more states than the limit."""
+        """The runs; raises ModelTooLargeError if there are more states than the limit."""
         ends: dict[tuple[frozenset[str], Node], tuple[Labelled, ...]] = {}
 
         def successors(state: Labelled) -> Iterator[Labelled]:

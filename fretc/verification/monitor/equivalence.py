@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from compiler.formalization.letters import (
     MOST_ATOMS,
@@ -29,6 +29,7 @@ from compiler.formalization.reference import (
 from compiler.logic.orders import Exclusion, only_possible
 from fretish import syntax as s
 
+V = TypeVar("V")
 Judgement = tuple[str, bool]
 """Verdict (`violated`, `satisfied` or `pending`, for infinite traces), and FRET's finite verdict if
 the trace ends here."""
@@ -229,7 +230,7 @@ def _in_lock_step(
             after = row[letter]
             expected = reference.judgements[after]
             if judgement != expected:
-                return Difference((*_word(origins, place), valuation), expected, judgement)
+                return Difference((*word(origins, place), valuation), expected, judgement)
             if expected[0] == "violated":
                 continue
             reached = machine.save()
@@ -241,12 +242,17 @@ def _in_lock_step(
     return Equivalence(len(pairs), steps)
 
 
-def _word(origins: Sequence[tuple[int, Valuation] | None], place: int) -> tuple[Valuation, ...]:
-    """The valuations that led to a pair, from the first tick on."""
-    word: list[Valuation] = []
+def word(origins: Sequence[tuple[int, V] | None], place: int) -> tuple[V, ...]:
+    """The valuations that led to a pair, from the first tick on.
+
+    Args:
+        origins: the place of the pair before each pair, and the valuation after it.
+        place: the place of a pair.
+    """
+    valuations: list[V] = []
     origin = origins[place]
     while origin is not None:
         place, valuation = origin
-        word.append(valuation)
+        valuations.append(valuation)
         origin = origins[place]
-    return tuple(reversed(word))
+    return tuple(reversed(valuations))

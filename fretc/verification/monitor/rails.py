@@ -8,14 +8,14 @@ and all marks are compared.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any, Protocol
 
 from compiler.logic.orders import Exclusion, only_possible
 from compiler.program.program import MARKS, SIGNALS
-from fretc.verification.monitor.equivalence import Classes, Pairs, Visited
+from fretc.verification.monitor.equivalence import Classes, Pairs, Visited, word
 from fretc.verification.monitor.machine import Cells
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth
@@ -177,7 +177,7 @@ def _from(
             actual, expected = left.step(first, letter), right.step(second, letter)
             if actual != expected:
                 signal = next(n for n, a, b in zip(names, actual, expected, strict=True) if a != b)
-                return Distinguished((*_word(origins, place), letter), signal)
+                return Distinguished((*word(origins, place), letter), signal)
             reached = left.save(), right.save()
             if visited.add(*reached):
                 pairs.append(reached)
@@ -185,14 +185,3 @@ def _from(
         if len(pairs) > limit:
             return None
     return Equivalent(len(pairs))
-
-
-def _word(origins: Sequence[tuple[int, Letter] | None], place: int) -> Iterator[Letter]:
-    """The valuations that led to a pair, from the first tick on."""
-    word: list[Letter] = []
-    origin = origins[place]
-    while origin is not None:
-        place, letter = origin
-        word.append(letter)
-        origin = origins[place]
-    yield from reversed(word)

@@ -8,7 +8,7 @@ from functools import cache
 
 
 class UnexpectedCodeError(Exception):
-    """The text does not have the layout that the generator writes."""
+    """The text contains code that the generator does not write, or that is not allowed."""
 
 
 def require(right: bool, node: ast.AST) -> None:

@@ -14,12 +14,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
 from compiler.program.program import MARKS, SIGNALS
-from compiler.targets.python.monitor import (
-    MOST_PARAMETERS,
-    is_inlined,
-    parameters_of,
-    prefixes_of,
-)
+from compiler.targets.python.monitor import is_inlined
+from compiler.targets.python.names import MOST_PARAMETERS, parameters_of, prefixes_of
 from compiler.targets.python.program import locals_of, negation
 from fretc.verification.monitor.column_layout import check_columns
 from fretc.verification.monitor.front_layout import check_front, declared_variables

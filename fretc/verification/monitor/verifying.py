@@ -24,7 +24,7 @@ from compiler.formalization.numbers.reals import MOST_SEARCHED, with_numeric_cou
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
 from compiler.logic.orders import Exclusion
 from compiler.targets.python import monitor as target
-from compiler.targets.python.monitor import prefixes_of
+from compiler.targets.python.names import prefixes_of
 from fretc.verification.monitor import front_terms, rails
 from fretc.verification.monitor.columns import Disagreement, Terms, Word, agreed
 from fretc.verification.monitor.equivalence import (
@@ -50,30 +50,10 @@ class NotAMonitorError(Exception):
     """The text cannot be executed as a generated monitor; the message gives the reason."""
 
 
-def verified(
-    requirement: FormalizedRequirement,
-    text: str,
-    limit: int = MOST_STATES,
-    others: Sequence[FormalizedRequirement] = (),
-) -> Outcome:
-    """Compare the text of a monitor with its requirement.
-
-    Args:
-        requirement: a requirement that the target accepts, on its own clock.
-        text: text of its monitor, perhaps with monitors of other requirements.
-        limit: maximum number of states of the exploration.
-        others: further requirements that the text may implement.
-
-    Raises:
-        NotAMonitorError: the text is not a generated monitor.
-    """
-    return verified_beside(requirement, text, written(text, (requirement, *others)), limit)
-
-
 def verified_beside(
     requirement: FormalizedRequirement, text: str, whole: str | None, limit: int = MOST_STATES
 ) -> Outcome:
-    """Same as `verified`, for several requirements of one text.
+    """Compare the text of a monitor with its requirement.
 
     Args:
         requirement: a requirement that the target accepts, on its own clock.

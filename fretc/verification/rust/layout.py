@@ -10,20 +10,16 @@ else.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from itertools import pairwise
+from collections.abc import Sequence
 
-from fretc.verification.compiled.flow import CheckedLayout, Flow, Grammar
+from fretc.verification.compiled.flow import BlockFlow, CheckedLayout
 from fretc.verification.compiled.text import (
-    NAME,
     Lexis,
     Tokens,
+    bodies,
     end_of,
-    parts,
     records,
-    same,
     same_but_constants,
-    split,
     strange,
 )
 
@@ -65,11 +61,8 @@ def check_layout(
         UnexpectedLayoutError: the layout differs.
     """
     given, own = LEXIS.tokens(text), LEXIS.tokens(written)
-    outside, (first, stepped) = split(given, _FREE)
-    own_outside, (own_first, own_stepped) = split(own, _FREE)
-    same(outside, own_outside)
-    same(first[:2] + first[-1:], own_first[:2] + own_first[-1:])
-    same_but_constants(*([*parts(each[2:-1], ",")] for each in (first, own_first)))
+    (first, own_first), (stepped, own_stepped) = bodies(given, own, _FREE)
+    same_but_constants(first, own_first, -1)
     literals = {name: inputs.index(field) for name, field in _READ.findall(" ".join(own))}
     *own_statements, readings = _statements(own_stepped)
     step = _Step(frozenset(own_statements), cells, literals)
@@ -100,24 +93,12 @@ def _end(body: Tokens, start: int) -> int:
     return next((i for i in range(start, len(body)) if body[i] == "{"), len(body))
 
 
-class _Step(Flow):
+class _Step(BlockFlow):
     """The body of `advance`, read statement by statement."""
 
-    def __init__(
-        self, known: frozenset[Tokens], cells: Sequence[str], literals: Mapping[str, int]
-    ) -> None:
-        """A step without statements.
-
-        Args:
-            known: statements that fretc writes.
-            cells: all cells of a rail.
-            literals: all literals.
-        """
-        self._known = known
-        self._rings = {a for each in known for a, b in pairwise(each) if b == "["}
-        fixed = {*self._rings, *(f"{ring}_at" for ring in self._rings)}
-        members = {("self", "."): {*cells} - fixed, ("now", "."): literals}
-        super().__init__(Grammar(members, _SIGNS, _KEPT))
+    cell, literal = ("self", "."), ("now", ".")
+    brackets = ()
+    signs, kept = _SIGNS, _KEPT
 
     def read(self, statement: Tokens) -> None:
         """Read one more statement.
@@ -125,22 +106,8 @@ class _Step(Flow):
         Raises:
             UnexpectedLayoutError: it has no known harmless form.
         """
-        if not (self._branch(statement) or self._fixed(statement) or self._assignment(statement)):
+        if not (self.branch(statement) or self._fixed(statement) or self._assignment(statement)):
             raise strange(statement)
-
-    def _branch(self, statement: Tokens) -> bool:
-        match statement:
-            case ("if", *test, "{"):
-                self.conditions.append(self.names(test, statement))
-            case ("}", "else", "if", *test, "{") if self.conditions:
-                self.conditions[-1] |= self.names(test, statement)
-            case ("}", "else", "{") if self.conditions:
-                pass
-            case ("}",) if self.conditions:
-                self.conditions.pop()
-            case _:
-                return False
-        return True
 
     def _assignment(self, statement: Tokens) -> bool:
         match statement:
@@ -153,17 +120,13 @@ class _Step(Flow):
 
     def _fixed(self, statement: Tokens) -> bool:
         """Fixed statements of a ring: its bits, and its index."""
-        names = frozenset(name for name in statement if _is_free(name))
-        rings = {name for name in names if name.removesuffix("_at") in self._rings}
-        if statement not in self._known or not rings:
+        names = self.grammar.free_names(statement)
+        rings = {name for name in names if name.removesuffix("_at") in self.rings}
+        if statement not in self.written or not rings:
             return False
         local = statement[1:2] if statement[0] == "let" else ()
         self.known(names, {*rings, *local}, local)
         return True
-
-
-def _is_free(name: str) -> bool:
-    return bool(NAME.fullmatch(name)) and name not in _KEPT
 
 
 def _of_deadline(name: str, value: Tokens) -> Tokens:

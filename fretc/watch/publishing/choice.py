@@ -9,7 +9,8 @@ from contextlib import ExitStack
 from fretc.watch.publishing.foxglove_server import HOST, PORT, FoxgloveServer, opened
 from fretc.watch.publishing.publishing import Diagnostics, Publisher
 from fretc.watch.sources.source import Diagnosing, Source
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 _SERVER = re.compile(r"foxglove(?::(?:(?P<host>[\w.-]+|\[[\da-fA-F:.]+\]):)?(?P<port>\d{1,5}))?")
 
@@ -32,19 +33,10 @@ def _publisher(word: str, source: Source) -> Publisher | Diagnostic:
     if word == "diagnostics":
         if isinstance(source, Diagnosing):
             return Diagnostics(source)
-        return Diagnostic(
-            Code.BAD_USAGE,
-            f"`--publish diagnostics` publishes on the watched middleware, and `{source.name}` "
-            "accepts none",
-            help="watch `dds` or `ros1`; or publish to Foxglove: `--publish foxglove`",
-        )
+        return diagnostic("publishing_not_accepted", source=source.name)
     server = _SERVER.fullmatch(word)
     if server is None or int(server["port"] or 0) > 65535:
-        return Diagnostic(
-            Code.BAD_USAGE,
-            f"nothing can be published to `{word}`",
-            help="write `diagnostics`, `foxglove`, `foxglove:PORT` or `foxglove:HOST:PORT`",
-        )
+        return diagnostic("unknown_publisher", word=word)
     port = PORT if server["port"] is None else int(server["port"])
     return opened((server["host"] or HOST).strip("[]"), port)
 

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 from fretc.audit.outputs.annotations import state_topic
 from fretc.watch.sources.source import Arrival, Channel
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import install_help
+from fretish.diagnostics.messages import diagnostic
 from monitors.guard import State, Status
 from monitors.kernel.verdicts import Truth
 
@@ -125,15 +126,7 @@ def opened(host: str, port: int) -> FoxgloveServer | Diagnostic:
     try:
         return FoxgloveServer(host, port)
     except ImportError as error:
-        return Diagnostic(
-            Code.MISSING_EXTRA,
-            f"a Foxglove server needs `foxglove-sdk`, which cannot be imported: {error}",
-            help=install_help("live"),
-        )
+        return diagnostic("no_foxglove_sdk", error=error, help=install_help("live"))
     except (RuntimeError, OverflowError) as error:
         why = str(error).rpartition(": ")[2]
-        return Diagnostic(
-            Code.NOT_PUBLISHED,
-            f"no Foxglove server can be started at {host}:{port}: {why}",
-            help="name another port: `--publish foxglove:8766`; 0 picks a free one",
-        )
+        return diagnostic("no_foxglove_server", host=host, port=port, why=why)

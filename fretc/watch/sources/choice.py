@@ -10,7 +10,8 @@ from fretc.watch.sources.foxglove_protocol import address
 from fretc.watch.sources.log import Log
 from fretc.watch.sources.ros1 import Ros1
 from fretc.watch.sources.source import Source
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 
 def chosen(words: Sequence[str], *, follow: bool) -> Source | Diagnostic:
@@ -23,42 +24,25 @@ def chosen(words: Sequence[str], *, follow: bool) -> Source | Diagnostic:
     name, *more = words
     middleware = _MIDDLEWARE.get(name)
     if middleware is not None and follow:
-        return Diagnostic(
-            Code.BAD_USAGE,
-            "`--follow` is for a log that is being recorded; a middleware is always followed",
-            help=f"leave it out, or name the log `./{name}`",
-        )
+        return diagnostic("follow_needs_log", name=name)
     if middleware is not None:
-        return middleware(more)
+        most, source_of = middleware
+        return source_of(*more) if len(more) <= most else _one_name_too_many(more[most])
     return _one_name_too_many(more[0]) if more else Log(name, follow=follow)
 
 
-def _ros1(more: Sequence[str]) -> Source | Diagnostic:
-    return _one_name_too_many(more[0]) if more else Ros1()
-
-
-def _dds(more: Sequence[str]) -> Source | Diagnostic:
-    return _one_name_too_many(more[0]) if more else Dds()
-
-
-def _foxglove(more: Sequence[str]) -> Source | Diagnostic:
-    if len(more) > 1:
-        return _one_name_too_many(more[1])
-    url = address("".join(more))
+def _foxglove(text: str = "") -> Source | Diagnostic:
+    url = address(text)
     return url if isinstance(url, Diagnostic) else Foxglove(url)
 
 
-_MIDDLEWARE: Mapping[str, Callable[[Sequence[str]], Source | Diagnostic]] = {
-    "ros1": _ros1,
-    "dds": _dds,
-    "foxglove": _foxglove,
+_MIDDLEWARE: Mapping[str, tuple[int, Callable[..., Source | Diagnostic]]] = {
+    "ros1": (0, Ros1),
+    "dds": (0, Dds),
+    "foxglove": (1, _foxglove),
 }
-"""For each name of a middleware, the parser of the words after it."""
+"""For each name of a middleware, the most words after it, and the source of these words."""
 
 
 def _one_name_too_many(name: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`{name}` is a second source: a watch has only one",
-        help="run one watch for each robot",
-    )
+    return diagnostic("second_source", name=name)

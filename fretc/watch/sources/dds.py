@@ -16,9 +16,10 @@ from fretc.logs.messages import ros2_types
 from fretc.watch.sources.dds_domain import Domain, Publisher, Reader, Writer, join
 from fretc.watch.sources.dds_types import Offer, UnreadableError
 from fretc.watch.sources.mailbox import WAIT, Mailbox
-from fretc.watch.sources.middleware import Middleware, several_publishers, simulated_time
+from fretc.watch.sources.middleware import Middleware, several_publishers
 from fretc.watch.sources.source import Channel, Problem, Reconnected
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from monitors.guard import Status
 
 MOST_KINDS = 20
@@ -67,7 +68,7 @@ class Dds(Middleware):
                 listening.look()
                 diagnosing.publish(self._statuses)
         except Exception as error:  # Cyclone DDS may raise any exception for data of others
-            self._lost(_broken(error))
+            self._lost(diagnostic("dds_fails", kind=type(error).__name__, error=error))
         finally:
             domain.close()
         return True
@@ -147,12 +148,12 @@ class _Listening:
             elif publisher.topic in self._topics:
                 self._greet(publisher, publisher.offer)
             elif publisher.topic == _CLOCK:
-                self._tell_once(_CLOCK, simulated_time())
+                self._tell_once(_CLOCK, diagnostic("simulated_time"))
 
     def _greet(self, publisher: Publisher, offer: Offer) -> None:
         now, topic = self._mailbox.now, publisher.topic
         if topic == _CLOCK:
-            self._tell_once(topic, simulated_time())
+            self._tell_once(topic, diagnostic("simulated_time"))
         while len(self._peers) >= _MOST_PUBLISHERS:
             del self._peers[next(iter(self._peers))]
         self._peers[publisher.handle] = _Peer(publisher.id, topic, offer, now)
@@ -177,7 +178,7 @@ class _Listening:
             del self._lost[next(iter(self._lost))]
         self._lost[peer.id] = peer.last
         if not any(each.there and each.topic == peer.topic for each in self._peers.values()):
-            self._mailbox.tell(Problem(_no_publisher(peer.topic)))
+            self._mailbox.tell(Problem(diagnostic("publisher_gone", topic=peer.topic)))
 
     def _open(self, topic: str, offer: Offer) -> None:
         """Open a reader for a new kind of publishers."""
@@ -283,33 +284,8 @@ def _no_definition(topic: str, offer: Offer) -> Diagnostic:
         why = "differs between releases of ROS 2, and its publisher sends no type hash"
     else:
         why = "is defined differently by its publisher: the type hash differs"
-    return Diagnostic(
-        Code.NO_DEFINITION,
-        f"messages of `{topic}` cannot be decoded: `{offer.type}` {why}",
-        help="watch through foxglove_bridge, which sends definitions, or follow a log of rosbag2",
-    )
+    return diagnostic("no_message_definition", topic=topic, type=offer.type, why=why)
 
 
 def _not_read(topic: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.PUBLISHER_NOT_READ,
-        f"a publisher of `{topic}` is not read: {why}",
-        help="its messages count as unknown; `fretc explain` lists what a publisher must offer",
-    )
-
-
-def _no_publisher(topic: str) -> Diagnostic:
-    return Diagnostic(
-        Code.PUBLISHER_GONE,
-        f"`{topic}` has no publisher any more",
-        help="`max_age` says for how long its last message counts",
-        severity=Severity.WARNING,
-    )
-
-
-def _broken(error: Exception) -> Diagnostic:
-    return Diagnostic(
-        Code.ROBOT_NOT_REACHED,
-        f"Cyclone DDS fails: {type(error).__name__}: {error}",
-        help="fretc joins the domain again",
-    )
+    return diagnostic("publisher_not_read", topic=topic, why=why)

@@ -21,8 +21,9 @@ from fretc.watch.sources.dds_types import (
     payloads_of,
     ros_topic,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import install_help
+from fretish.diagnostics.messages import diagnostic
 
 _HIGHEST = 232
 """The largest domain number that has ports."""
@@ -61,11 +62,7 @@ def domain_id() -> int | Diagnostic:
     text = os.environ.get("ROS_DOMAIN_ID", "").strip() or "0"
     if text.isascii() and text.isdigit() and len(text) < 9 and int(text) <= _HIGHEST:
         return int(text)
-    return Diagnostic(
-        Code.ROBOT_NOT_REACHED,
-        f"ROS_DOMAIN_ID is `{text[:40]}`, which is not a number from 0 to {_HIGHEST}",
-        help="set it to the domain of the robot, or unset it",
-    )
+    return diagnostic("bad_domain_id", text=text[:40], highest=_HIGHEST)
 
 
 def join() -> Domain | Diagnostic:
@@ -75,11 +72,7 @@ def join() -> Domain | Diagnostic:
 
         definitions("std_msgs/msg/Header")
     except Exception as error:  # the package or its C library is missing
-        return Diagnostic(
-            Code.MISSING_EXTRA,
-            f"watching DDS needs Cyclone DDS, which is not installed: {error}",
-            help=install_help("live"),
-        )
+        return diagnostic("no_cyclone_dds", error=error, help=install_help("live"))
     number = domain_id()
     return number if isinstance(number, Diagnostic) else _joined(number)
 
@@ -93,11 +86,7 @@ def _joined(number: int) -> Domain | Diagnostic:
     try:
         domain = Domain(number)
     except DDSException:
-        return Diagnostic(
-            Code.ROBOT_NOT_REACHED,
-            f"DDS domain {number} cannot be joined",
-            help="Cyclone DDS has printed why: no network, or a mistake in CYCLONEDDS_URI",
-        )
+        return diagnostic("domain_not_joined", number=number)
     library.dds_set_log_mask(0)  # later messages would be about packets of others
     return domain
 

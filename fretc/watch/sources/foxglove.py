@@ -32,10 +32,11 @@ from fretc.watch.sources.foxglove_protocol import (
     subscribe,
     unsubscribe,
 )
-from fretc.watch.sources.middleware import Middleware, simulated_time
+from fretc.watch.sources.middleware import Middleware
 from fretc.watch.sources.source import Channel
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import install_help
+from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
@@ -148,7 +149,7 @@ class Foxglove(Middleware):
             from websockets.sync.client import connect
             from websockets.typing import Subprotocol
         except ImportError as error:
-            self._lost(_no_websockets(str(error)))
+            self._lost(diagnostic("no_websockets", why=str(error), help=install_help("live")))
             return False
         logging.getLogger("websockets").addHandler(logging.NullHandler())
         connection = None
@@ -245,7 +246,7 @@ class Foxglove(Middleware):
                 if is_grave and not connection.is_unknown_yet(text[:_EXCERPT]):
                     self._repeat(text)
             case ServerTime():
-                self._warn_once(simulated_time())
+                self._warn_once(diagnostic("simulated_time"))
             case Greeting():
                 pass  # a new session advertises its channels again
             case _:
@@ -254,12 +255,12 @@ class Foxglove(Middleware):
     def _subscribe(self, connection: _Connection, advertised: Advertised) -> None:
         channel = advertised.channel
         if isinstance(channel, str):
-            self._warn_once(_unreadable_channel(advertised.topic, channel))
+            self._warn_once(diagnostic("unreadable_channel", topic=advertised.topic, why=channel))
             return
         is_new = channel not in self._channels
         most = max(len(self._channels) * is_new, len(connection.subscriptions))
         if most >= MOST_CHANNELS:
-            self._warn_once(_too_many_channels(MOST_CHANNELS))
+            self._warn_once(diagnostic("too_many_channels", most=MOST_CHANNELS))
             return
         channel = self._channels.setdefault(channel, channel)
         before = connection.of_channel.get(advertised.id)
@@ -269,7 +270,7 @@ class Foxglove(Middleware):
             del connection.subscriptions[before]
             connection.socket.send(unsubscribe(before))
         if channel.topic in connection.subscribed:
-            self._warn_once(_several_channels(channel.topic))
+            self._warn_once(diagnostic("several_channels", topic=channel.topic))
         connection.count += 1
         connection.of_channel[advertised.id] = connection.count
         connection.subscriptions[connection.count] = channel
@@ -283,15 +284,15 @@ class Foxglove(Middleware):
         topic = connection.subscriptions.pop(subscription).topic
         if topic not in connection.subscribed:
             self._topics.discard(topic)
-            self._warn_once(_withdrawn(topic))
+            self._warn_once(diagnostic("channel_withdrawn", topic=topic))
 
     def _repeat(self, text: str) -> None:
         """Report a status message of the server."""
-        problem = _status(text[:_EXCERPT])
+        problem = diagnostic("server_status", text=text[:_EXCERPT])
         if problem not in self._warnings:
             self._statuses += 1
             few = self._statuses <= MOST_STATUSES
-            self._warn_once(problem if few else _more_statuses(MOST_STATUSES))
+            self._warn_once(problem if few else diagnostic("more_statuses", most=MOST_STATUSES))
 
     def _warn_once(self, problem: Diagnostic) -> None:
         if problem not in self._warnings:
@@ -333,73 +334,10 @@ def _reason(error: Exception) -> tuple[str, str | None]:
             return str(error)[:_EXCERPT], None
 
 
-def _no_websockets(why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"watching a Foxglove server needs `websockets`, which cannot be imported: {why}",
-        help=install_help("live"),
-    )
-
-
 def _server_not_reached(name: str, why: str, fix: str | None) -> Diagnostic:
-    return Diagnostic(
-        Code.ROBOT_NOT_REACHED,
-        f"{name} cannot be watched: {why}",
+    return diagnostic(
+        "server_not_reached",
+        name=name,
+        why=why,
         help=fix or "start the server on the robot (`ros2 run foxglove_bridge foxglove_bridge`)",
-    )
-
-
-def _several_channels(topic: str) -> Diagnostic:
-    return Diagnostic(
-        Code.SEVERAL_PUBLISHERS,
-        f"the server has several channels of `{topic}`",
-        help="messages of all channels count; stop the nodes that should not publish",
-        severity=Severity.WARNING,
-    )
-
-
-def _too_many_channels(most: int) -> Diagnostic:
-    """The server keeps creating channels."""
-    return Diagnostic(
-        Code.CHANNEL_REFUSED,
-        f"the server has had {most} different channels of the bound topics: no further ones are "
-        "watched",
-        help="check whether the server keeps changing the types of its topics",
-    )
-
-
-def _unreadable_channel(topic: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.CHANNEL_REFUSED,
-        f"a channel of `{topic}` cannot be watched: {why}",
-        help="propositions that read the topic are unknown; check what the server advertises",
-    )
-
-
-def _withdrawn(topic: str) -> Diagnostic:
-    """A warning, because the topic has no messages any more."""
-    return Diagnostic(
-        Code.CHANNEL_REFUSED,
-        f"the server no longer offers `{topic}`",
-        help="it is watched again when the server offers it again; check that its node runs",
-        severity=Severity.WARNING,
-    )
-
-
-def _status(text: str) -> Diagnostic:
-    return Diagnostic(
-        Code.SERVER_STATUS,
-        f"the server reports: {text}",
-        help="see the log of the server",
-        severity=Severity.WARNING,
-    )
-
-
-def _more_statuses(most: int) -> Diagnostic:
-    """Further status messages are not shown."""
-    return Diagnostic(
-        Code.SERVER_STATUS,
-        f"the server has reported more than {most} different texts; further ones are not shown",
-        help="see the log of the server",
-        severity=Severity.WARNING,
     )

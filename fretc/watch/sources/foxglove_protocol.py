@@ -19,7 +19,8 @@ from urllib.parse import SplitResult, urlsplit
 from compiler.files.checked_json import JsonValue, SchemaError
 from compiler.files.checked_json import plain as json_value
 from fretc.watch.sources.source import Channel
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 """The names of the protocol: of the SDK, and of older servers."""
@@ -181,8 +182,6 @@ def address(url: str) -> SplitResult | Diagnostic:
 
 
 def _no_url(text: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`{text}` is not the URL of a Foxglove server" if text else "no Foxglove server is named",
-        help="write `ws://HOST:PORT`, or `wss://HOST:PORT`; foxglove_bridge uses port 8765",
-    )
+    if not text:
+        return diagnostic("no_foxglove_server_named")
+    return diagnostic("bad_foxglove_url", text=text)

@@ -22,7 +22,8 @@ from fretc.logs.mcap.container import HEAD, LARGEST, MAGIC, BrokenError, frames,
 from fretc.logs.storage import storage_diagnostics
 from fretc.logs.storage.log_names import name_of
 from fretc.watch.sources.source import Arrival, Channel, Event, Idle, Missed, Opened, Problem
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source as Text
 from fretish.diagnostics.source import Span
 
@@ -63,9 +64,9 @@ class Log:
                 yield Opened(self.name)
                 yield from self._read(stream, place)
         except FileNotFoundError:
-            yield Problem(storage_diagnostics.no_such_file(place))
+            yield Problem(diagnostic("no_such_log", place))
         except IsADirectoryError:
-            yield Problem(storage_diagnostics.is_a_directory(place))
+            yield Problem(diagnostic("log_is_directory", place))
         except OSError as error:
             yield Problem(storage_diagnostics.unreadable(error, place))
 
@@ -205,9 +206,4 @@ def _log_time(arrival: Arrival) -> int:
 
 
 def _broken(at: int, why: str, place: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.UNREADABLE_LOG,
-        f"the log cannot be read from byte {at} on: {why}",
-        place,
-        "audit the part before it with `fretc audit`",
-    )
+    return diagnostic("watched_log_breaks", place, at=at, why=why)

@@ -22,7 +22,8 @@ from fretc.watch.sources.source import (
     Problem,
     Reconnected,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 _FIRST_PAUSE, _LONGEST_PAUSE = 0.5, 8.0
 """Seconds before the next connection; each pause is twice the one before."""
@@ -111,19 +112,4 @@ class Middleware(ABC):
 def several_publishers(topic: str, count: int, names: Collection[str] = ()) -> Diagnostic:
     """F956, with the names of the nodes, if the middleware reports them."""
     who = f": {', '.join(names)}" if names else ""
-    return Diagnostic(
-        Code.SEVERAL_PUBLISHERS,
-        f"{count} nodes publish `{topic}`{who}",
-        help="messages of all publishers count; stop the nodes that should not publish",
-        severity=Severity.WARNING,
-    )
-
-
-def simulated_time() -> Diagnostic:
-    """F957: durations are wrong if the simulation does not run in real time."""
-    return Diagnostic(
-        Code.SIMULATED_TIME,
-        "the robot uses simulated time, but arrival times are measured by this machine",
-        help='set `time = "header.stamp"` under `[clock]`, unless the simulation runs in real time',
-        severity=Severity.WARNING,
-    )
+    return diagnostic("several_publishers", count=count, topic=topic, who=who)

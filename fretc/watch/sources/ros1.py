@@ -15,9 +15,10 @@ from threading import Lock
 from typing import IO, Any
 
 from fretc.watch.sources import ros1_bridge
-from fretc.watch.sources.middleware import Middleware, several_publishers, simulated_time
+from fretc.watch.sources.middleware import Middleware, several_publishers
 from fretc.watch.sources.source import Channel
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from monitors.guard import Status
 
 PYTHON = "/usr/bin/python3"
@@ -82,7 +83,7 @@ class Ros1(Middleware):
                     node.kill()
         except OSError:
             pass  # its pipe is broken: the node has ended
-        self._lost(_node_ended())
+        self._lost(diagnostic("node_ended"))
         return opened
 
     def _start(self) -> subprocess.Popen[bytes] | None:
@@ -116,10 +117,10 @@ class Ros1(Middleware):
             case "simulated time":
                 self._warn_of_simulated_time()
             case "no diagnostics":
-                self._warn(_no_diagnostics(self._python, head["why"]))
+                self._warn(diagnostic("no_diagnostics_type", python=self._python, why=head["why"]))
                 self._is_mute = True
             case "no master":
-                self._lost(_no_master(head["uri"]))
+                self._lost(diagnostic("no_master", uri=head["uri"]))
             case "no rospy":
                 self._lost(_no_rospy(self._python, head["why"]))
             case kind:
@@ -134,7 +135,7 @@ class Ros1(Middleware):
     def _warn_of_simulated_time(self) -> None:
         if not self._simulated:
             self._simulated = True
-            self._warn(simulated_time())
+            self._warn(diagnostic("simulated_time"))
 
 
 def _write(stream: IO[bytes], content: object) -> None:
@@ -155,32 +156,4 @@ def _frames(stream: IO[bytes]) -> Iterator[tuple[dict[str, Any], bytes]]:
 
 
 def _no_rospy(python: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"watching ROS 1 needs rospy, which `{python}` does not have: {why}",
-        help="apt install python3-rospy",
-    )
-
-
-def _no_diagnostics(python: str, why: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_PUBLISHED,
-        f"nothing is published on `/diagnostics`: `{python}` does not have its type: {why}",
-        help="apt install python3-diagnostic-msgs",
-    )
-
-
-def _no_master(uri: str) -> Diagnostic:
-    return Diagnostic(
-        Code.ROBOT_NOT_REACHED,
-        f"no ROS 1 master answers at {uri}",
-        help="start roscore, or set ROS_MASTER_URI to the robot's",
-    )
-
-
-def _node_ended() -> Diagnostic:
-    return Diagnostic(
-        Code.ROBOT_NOT_REACHED,
-        "the node that forwards messages has exited",
-        help="check that /etc/hosts has a name for this machine",
-    )
+    return diagnostic("no_rospy", python=python, why=why)

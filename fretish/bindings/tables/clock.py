@@ -10,7 +10,7 @@ from fretish import units
 from fretish.bindings.declarations import Default
 from fretish.bindings.tables.fields import Fields
 from fretish.clock import Clock, End, Rounding, TimeSource, in_words
-from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.messages import diagnostic
 
 _TOPIC = re.compile(r"[A-Za-z_~/]\S*")
 """A topic; a duration would begin with a digit."""
@@ -28,12 +28,7 @@ class ClockTable(Fields):
         if table is None and not self.tables.data.keys() & {"signal", "proposition"}:
             return Clock(None)
         if not isinstance(table, dict):
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "the bindings declare no clock",
-                self.tables.text.part(0, 0),
-                'add `[clock]` with `tick = "100 ms"`',
-            )
+            self._say(diagnostic("clock_missing", self.tables.text.part(0, 0)))
             return Clock(10**9)
         self._check_keys(table, _CLOCK, "[clock]", "clock")
         for name, default in (("time", TimeSource.LOG_TIME), ("end", End.INCONCLUSIVE)):
@@ -57,12 +52,7 @@ class ClockTable(Fields):
             return None, tick
         period = units.nanoseconds(tick) if isinstance(tick, str) else None
         if not period:
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "`tick` must be a duration above 0, or a topic",
-                self.tables.value("clock", "tick"),
-                'write `tick = "100 ms"`, or `tick = "/scan"` for one tick per message',
-            )
+            self._say(diagnostic("bad_tick", self.tables.value("clock", "tick")))
             return 10**9, None
         return period, None
 
@@ -70,13 +60,11 @@ class ClockTable(Fields):
         text = table.get("phase", "0 ns")
         phase = units.nanoseconds(text) if isinstance(text, str) else None
         if period is None and "phase" in table:
-            message, fix = "a clock that ticks by message has no `phase`", "remove it"
+            self._say(diagnostic("phase_without_period", self.tables.value("clock", "phase")))
         elif phase is None or (period is not None and not 0 <= phase < period):
-            message = "`phase` must be a duration of at least 0 and less than a tick"
-            fix = 'for half a tick of 100 ms, write `phase = "50 ms"`'
+            self._say(diagnostic("bad_phase", self.tables.value("clock", "phase")))
         else:
             return phase
-        self._say(Code.BAD_PHASE, message, self.tables.value("clock", "phase"), fix)
         return 0
 
     def _lateness(self, table: Mapping[str, Any]) -> int | None:
@@ -87,9 +75,10 @@ class ClockTable(Fields):
         if lateness is not None and 0 <= lateness <= _MOST_LATENESS:
             return lateness
         self._say(
-            Code.BAD_LATENESS,
-            f"`lateness` must be a duration from 0 to {in_words(_MOST_LATENESS)}",
-            self.tables.value("clock", "lateness"),
-            'if messages take less than 50 ms, write `lateness = "50 ms"`',
+            diagnostic(
+                "bad_lateness",
+                self.tables.value("clock", "lateness"),
+                most=in_words(_MOST_LATENESS),
+            )
         )
         return None

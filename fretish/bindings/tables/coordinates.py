@@ -9,7 +9,7 @@ from typing import Any
 from fretish import units
 from fretish.bindings.declarations import MapCoordinates, Signal, path
 from fretish.bindings.tables.fields import Fields, Notes
-from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.messages import diagnostic
 from fretish.reading.toml_text import Tables
 
 _MAP = ("x", "y")
@@ -29,12 +29,7 @@ class MapTable(Fields):
         if table is None:
             return None
         if not isinstance(table, dict):
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "`map` must be a table",
-                self.tables.place("map"),
-                'write `[map]`, and below it `x = "/odom.pose.pose.position.x"`',
-            )
+            self._say(diagnostic("map_not_table", self.tables.place("map")))
             return None
         self._check_keys(table, _MAP, "[map]", "map")
         x, y = self._coordinate(table, "x"), self._coordinate(table, "y")
@@ -46,21 +41,24 @@ class MapTable(Fields):
         where = path(text) if isinstance(text, str) else None
         if where is None or where.each:
             self._say(
-                Code.BAD_BINDING_FIELD,
-                f"`{key}` of the map must be a topic and one number of its messages",
-                self.tables.value("map", key) if key in table else self.tables.place("map"),
-                f'write `{key} = "/odom.pose.pose.position.{key}"`',
+                diagnostic(
+                    "bad_map_coordinate",
+                    self.tables.value("map", key) if key in table else self.tables.place("map"),
+                    key=key,
+                )
             )
             return None
         same = next((signal for signal in self._signals.values() if signal.path == where), None)
         own = same or Signal("", where, units.METRE, "m")
         if own.unit.dimension != units.METRE.dimension:
             self._say(
-                Code.BAD_BINDING_FIELD,
-                f"`{key}` of the map must be a length, and `{own.name}` is in "
-                f"{own.unit_name or 'plain numbers'}",
-                self.tables.value("map", key),
-                f'give `[signal.{own.name}]` a length for its unit: `unit = "m"`',
+                diagnostic(
+                    "map_coordinate_not_length",
+                    self.tables.value("map", key),
+                    key=key,
+                    signal=own.name,
+                    unit=own.unit_name or "plain numbers",
+                )
             )
             return None
         return replace(own, name=f"[map] {key}", span=self.tables.value("map", key))

@@ -12,6 +12,7 @@ from fretish import expressions as e
 from fretish.bindings import expressions as binding
 from fretish.bindings.declarations import Default, Modality, Part
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.toml_text import Tables, unknown_key
 
@@ -45,8 +46,8 @@ class Fields:
         self.tables = tables
         self.notes = notes
 
-    def _say(self, code: Code, message: str, span: Span, fix: str | None = None) -> None:
-        self.notes.diagnostics.append(Diagnostic(code, message, span, fix))
+    def _say(self, mistake: Diagnostic) -> None:
+        self.notes.diagnostics.append(mistake)
 
     def _check_keys(
         self, table: Mapping[str, Any], keys: tuple[str, ...], where: str, *at: str
@@ -68,7 +69,7 @@ class Fields:
         ):
             return value
         place = self.tables.value(*at)
-        self._say(Code.BAD_BINDING_FIELD, f"`{at[-1]}` must be {form}", place, f"write {form}")
+        self._say(diagnostic("field_of_wrong_kind", place, field=at[-1], form=form))
         return None
 
     def _choice(
@@ -81,10 +82,13 @@ class Fields:
         if value in values:
             return kind(value)
         self._say(
-            Code.BAD_BINDING_FIELD,
-            f"`{at[-1]}` cannot be `{value}`",
-            self.tables.value(*at),
-            f"write one of {', '.join(values)}",
+            diagnostic(
+                "choice_not_known",
+                self.tables.value(*at),
+                field=at[-1],
+                value=value,
+                values=", ".join(values),
+            )
         )
         return default
 
@@ -94,12 +98,7 @@ class Fields:
             if kind in self.notes.malformed:
                 return {}
             self.notes.malformed.add(kind)
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                f"`{kind}` must hold tables",
-                self.tables.place(kind),
-                f"write `[{kind}.NAME]`",
-            )
+            self._say(diagnostic("not_tables", self.tables.place(kind), kind=kind))
             return {}
         return tables
 
@@ -125,11 +124,7 @@ class Fields:
         if table.get("modality") != "P":
             return self._choice(table, (*at, "modality"), Modality, Modality.BELIEF)
         self._say(
-            Code.BAD_MODALITY,
-            f"`{at[1]}` cannot be a percept (`P`): AJPF treats a percept as absent once the agent "
-            "has read it",
-            self.tables.value(*at, "modality"),
-            'to state what the agent believes, write `modality = "B"`',
+            diagnostic("no_percept_in_bindings", self.tables.value(*at, "modality"), name=at[1])
         )
         return Modality.BELIEF
 
@@ -137,11 +132,5 @@ class Fields:
         action = table.get("action", "")
         if action == "" or (isinstance(action, str) and _ACTION.fullmatch(action)):
             return str(action)
-        self._say(
-            Code.BAD_BINDING_FIELD,
-            "`action` must be a name of Gwendolen: a lower-case letter, then letters, digits and "
-            "`_`",
-            self.tables.value(*at, "action"),
-            'write `action = "stop_moving"`',
-        )
+        self._say(diagnostic("bad_action", self.tables.value(*at, "action")))
         return ""

@@ -15,7 +15,7 @@ from fretish.bindings.declarations import (
     Requests,
 )
 from fretish.bindings.tables.fields import Fields
-from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.documents import IDENTIFIER, RequirementEntry
 from fretish.reading.toml_text import Tables, as_key
@@ -112,20 +112,18 @@ class InterceptorTables(Fields):
         table = self.tables.data.get(name)
         if table is None or isinstance(table, dict):
             return table
-        self._say(
-            Code.BAD_BINDING_FIELD,
-            f"`{name}` must be a table",
-            self.tables.place(name),
-            f"write `[{name}]`, and its fields below it",
-        )
+        self._say(diagnostic("interceptor_not_table", self.tables.place(name), name=name))
         return None
 
     def _absent(self, table: str, key: str, fix: str) -> None:
         self._say(
-            Code.BAD_BINDING_FIELD,
-            f"`[{table}]` has no `{key}`",
-            self.tables.place(table),
-            f"add `{key} = {fix}`",
+            diagnostic(
+                "interceptor_field_missing",
+                self.tables.place(table),
+                table=table,
+                key=key,
+                example=fix,
+            )
         )
 
     def _duration(
@@ -141,10 +139,14 @@ class InterceptorTables(Fields):
             return duration
         limit = " above 0" if least else ""
         self._say(
-            Code.BAD_BINDING_FIELD,
-            f"`{key}` must be a duration{limit}",
-            self.tables.value(*at),
-            f'write `{key} = "100 ms"`' + ("; remove it for none" if key in _OPTIONAL else ""),
+            diagnostic(
+                "interceptor_duration",
+                self.tables.value(*at),
+                key=key,
+                limit=limit,
+                help=f'write `{key} = "100 ms"`'
+                + ("; remove it for none" if key in _OPTIONAL else ""),
+            )
         )
         return None
 
@@ -158,12 +160,7 @@ class InterceptorTables(Fields):
             return None
         if isinstance(value, str) and _TOPIC.fullmatch(value):
             return value
-        self._say(
-            Code.BAD_BINDING_FIELD,
-            f"`{key}` must be a topic",
-            self.tables.value("interceptor", key),
-            f'write `{key} = "/name"`: letters, digits, `_` and `/`',
-        )
+        self._say(diagnostic("interceptor_topic", self.tables.value("interceptor", key), key=key))
         return None
 
     def _check_topics(self, topics: Mapping[str, str | None]) -> None:
@@ -175,11 +172,12 @@ class InterceptorTables(Fields):
             name = topic if topic.startswith(("/", "~")) else f"/{topic}"
             if name in key_of:
                 self._say(
-                    Code.SAME_TOPIC,
-                    f"`{key}` is the same topic as `{key_of[name]}`",
-                    self.tables.value("interceptor", key),
-                    "name another topic; what the planner says must reach the wheels only "
-                    "through the interceptor",
+                    diagnostic(
+                        "same_topic",
+                        self.tables.value("interceptor", key),
+                        key=key,
+                        other=key_of[name],
+                    )
                 )
             key_of.setdefault(name, key)
 
@@ -196,28 +194,20 @@ class InterceptorTables(Fields):
         for key in _TIMES:
             if 0 < times[key] < times["period"]:
                 self._say(
-                    Code.BELOW_PERIOD,
-                    f"`{key}` is shorter than `period`",
-                    self.tables.value("interceptor", key),
-                    "the timer cannot measure it: make `period` shorter, or this duration longer",
+                    diagnostic("below_period", self.tables.value("interceptor", key), key=key)
                 )
         if "scan_timeout" in table and "scan" not in table:
             self._absent("interceptor", "scan", '"/scan"')
 
     def _without_timer(self, key: str) -> None:
         """F322: a duration with `form = "event"`."""
-        self._say(
-            Code.NO_TIMER,
-            f'`{key}` needs a timer, and `form = "event"` has none',
-            self.tables.value("interceptor", key),
-            f'write `form = "timer"`, or remove `{key}`',
-        )
+        self._say(diagnostic("no_timer", self.tables.value("interceptor", key), key=key))
 
     def _ros(self, table: Mapping[str, Any]) -> int:
         value = self._field(table, ("interceptor", "ros"), int, "1 or 2")
         if value is not None and value not in (1, 2):
             place = self.tables.value("interceptor", "ros")
-            self._say(Code.BAD_BINDING_FIELD, f"`ros` cannot be {value}", place, "write 1 or 2")
+            self._say(diagnostic("bad_ros_version", place, value=value))
         return 2 if value is None else value
 
     # [assume]
@@ -234,10 +224,9 @@ class InterceptorTables(Fields):
         if name is None or name in propositions:
             return name or ""
         self._say(
-            Code.UNKNOWN_NAME,
-            f"`stands` names `{name}`, which is not a bound proposition",
-            self.tables.value("assume", "stands"),
-            f"declare `[proposition.{as_key(name)}]`",
+            diagnostic(
+                "unbound_stands", self.tables.value("assume", "stands"), name=name, key=as_key(name)
+            )
         )
         return name
 
@@ -246,11 +235,7 @@ class InterceptorTables(Fields):
         heartbeat = self._duration(table, ("assume", "heartbeat")) or 0
         if heartbeat and requests is Requests.LEVEL and table.get("requests", "level") == "level":
             self._say(
-                Code.BAD_BINDING_FIELD,
-                '`heartbeat` has no effect with `requests = "level"`, which repeats at every tick',
-                self.tables.value("assume", "heartbeat"),
-                'write `requests = "edge"` if the safety function speaks on change and after a '
-                "silence; else leave `heartbeat` out",
+                diagnostic("heartbeat_without_effect", self.tables.value("assume", "heartbeat"))
             )
         return heartbeat
 
@@ -258,7 +243,7 @@ class InterceptorTables(Fields):
         value = self._field(table, ("assume", "lost"), int, "a whole number of messages")
         if value is not None and value < 0:
             place = self.tables.value("assume", "lost")
-            self._say(Code.BAD_BINDING_FIELD, "`lost` cannot be below 0", place, "write `lost = 0`")
+            self._say(diagnostic("negative_lost", place))
         return value or 0
 
     # [[assume.requirement]]
@@ -269,17 +254,18 @@ class InterceptorTables(Fields):
         tables = table.get(_SENTENCES, []) if isinstance(table, dict) else []
         if not isinstance(tables, list) or not all(isinstance(entry, dict) for entry in tables):
             self._say(
-                Code.BAD_BINDING_FIELD,
-                f"`assume.{_SENTENCES}` must be tables",
-                self.tables.place("assume", _SENTENCES),
-                f"write `[[assume.{_SENTENCES}]]`, and `id` and `sentence` below it",
+                diagnostic(
+                    "assumptions_not_tables",
+                    self.tables.place("assume", _SENTENCES),
+                    sentences=_SENTENCES,
+                )
             )
             return ()
         requirements: dict[str, RequirementEntry] = {}
         for entry, block in zip(tables, self._blocks(len(tables)), strict=True):
             requirement = InterceptorTables(Tables(block, entry), self.notes)._sentence(entry)
             if requirement is not None and requirement.id in requirements:
-                self._say(Code.DUPLICATE_ID, f"the id `{requirement.id}` is already used", block)
+                self._say(diagnostic("assumption_id_taken", block, requirement=requirement.id))
             elif requirement is not None:
                 requirements[requirement.id] = requirement
         return tuple(requirements.values())
@@ -305,12 +291,7 @@ class InterceptorTables(Fields):
         }
         id, sentence = texts["id"], texts["sentence"]
         if not sentence or IDENTIFIER.fullmatch(id) is None:
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                f"`{where}` needs an `id` and a `sentence`",
-                self.tables.text.part(0, 0),
-                'write `id = "A1"` and `sentence = "the operator shall never satisfy a & b"`',
-            )
+            self._say(diagnostic("assumption_incomplete", self.tables.text.part(0, 0), where=where))
         if len(self.notes.diagnostics) > before:
             return None
         value = self.tables.value("sentence")

@@ -6,7 +6,7 @@ import re
 
 from fretish.bindings.declarations import LabelSource
 from fretish.bindings.tables.fields import Fields
-from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.messages import diagnostic
 from fretish.reading import name_patterns
 
 _RUN = ("label",)
@@ -24,8 +24,8 @@ class LabelTable(Fields):
         table = self.tables.data.get("run", {})
         labels = table.get("label", {}) if isinstance(table, dict) else None
         if not isinstance(labels, dict) or len(labels) > MOST_LABELS:
-            message = f"`run` must hold a table `label`, of up to {MOST_LABELS} labels"
-            self._bad_label(message, ("run",), f"write `[run.label]` and {_LABEL_FORM}")
+            place = self.tables.value("run")
+            self._say(diagnostic("bad_labels", place, most=MOST_LABELS, form=_LABEL_FORM))
             return {}
         self._check_keys(table, _RUN, "[run]", "run")
         return {name: self._label_sources(name, written) for name, written in labels.items()}
@@ -33,10 +33,7 @@ class LabelTable(Fields):
     def _label_sources(self, name: str, written: object) -> tuple[LabelSource, ...]:
         at = ("run", "label", name)
         if not is_label(name):
-            message = (
-                f"`{name}` cannot name a label: write a letter, then letters, digits, `_`, `-`"
-            )
-            self._bad_label(f"{message}, 50 at most", at)
+            self._say(diagnostic("bad_label_name", self.tables.value(*at), name=name))
             return ()
         texts = written if isinstance(written, list) else [written]
         sources = [_label_source(name, text) for text in texts]
@@ -44,12 +41,12 @@ class LabelTable(Fields):
         if wrong is None and not 0 < len(sources) <= _MOST_SOURCES:
             wrong = f"a label has 1 to {_MOST_SOURCES} sources"
         if wrong is not None:
-            self._bad_label(f"`{name}` has a wrong source: {wrong}", at, f"write {_LABEL_FORM}")
+            place = self.tables.value(*at)
+            self._say(
+                diagnostic("bad_label_source", place, name=name, wrong=wrong, form=_LABEL_FORM)
+            )
             return ()
         return tuple(source for source in sources if isinstance(source, LabelSource))
-
-    def _bad_label(self, message: str, at: tuple[str, ...], fix: str | None = None) -> None:
-        self._say(Code.BAD_LABEL, message, self.tables.value(*at), fix)
 
 
 def is_label(name: str) -> bool:

@@ -11,7 +11,8 @@ from fretish.bindings import expressions as binding
 from fretish.bindings.declarations import Aggregate, Default, Proposition, Role, Signal
 from fretish.bindings.tables.fields import Fields, Notes
 from fretish.bindings.words import resolve_words
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.reading.toml_text import Tables
 
 _PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
@@ -31,12 +32,7 @@ class PropositionTables(Fields):
         at = ("proposition", name)
         self._check_keys(table, _PROPOSITION, f"[proposition.{name}]", *at)
         if "expr" not in table:
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                f"the proposition `{name}` has no `expr`",
-                self.tables.place(*at),
-                'add `expr = "min_range < 5 cm"`',
-            )
+            self._say(diagnostic("expression_missing", self.tables.place(*at), name=name))
         written = self._expression(table, (*at, "expr"))
         if written is None:
             return None
@@ -82,12 +78,7 @@ class PropositionTables(Fields):
         if isinstance(kind, Diagnostic):
             self.notes.diagnostics.append(kind)
         elif kind is not None:
-            self._say(
-                Code.BAD_EXPRESSION,
-                "a proposition must be true or false, and this is a number",
-                place,
-                "compare it: `min_range < 5 cm`",
-            )
+            self._say(diagnostic("proposition_is_number", place))
         else:
             known = {name.id: self._signals.get(name.id) for name in e.names(expression)}
             percents = {n for n, each in known.items() if each and each.unit == units.PERCENT}
@@ -102,22 +93,12 @@ class PropositionTables(Fields):
             return True
         place = self.tables.value(*at, "expr")
         if table.get("agg", Aggregate.LAST) != Aggregate.LAST:
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "`pre` reads the value at each tick: `agg` can only be `last`",
-                self.tables.value(*at, "agg"),
-                "take it out",
-            )
+            self._say(diagnostic("pre_needs_last", self.tables.value(*at, "agg")))
         elif any(
             isinstance(part, e.Persistence) and binding.ticks_back(part)
             for part in e.parts(expression)
         ):
-            self._say(
-                Code.BAD_EXPRESSION,
-                "`for` measures time, and `pre` inside it counts ticks",
-                place,
-                "state the duration in the requirement: `for 2 ticks satisfy ...`",
-            )
+            self._say(diagnostic("pre_inside_for", place))
         else:
             return True
         return False
@@ -126,10 +107,12 @@ class PropositionTables(Fields):
         kind = table.get("kind", "")
         if kind not in (*_KINDS, ""):
             self._say(
-                Code.BAD_BINDING_FIELD,
-                f"`kind` cannot be `{kind}`",
-                self.tables.value(*at, "kind"),
-                f"write one of {', '.join(_KINDS)}",
+                diagnostic(
+                    "unknown_kind",
+                    self.tables.value(*at, "kind"),
+                    kind=kind,
+                    kinds=", ".join(_KINDS),
+                )
             )
         return str(kind)
 
@@ -144,9 +127,5 @@ class PropositionTables(Fields):
             )
             self.notes.defaults.append(Default((at[0], at[1]), text))
             return value
-        self._say(
-            Code.BAD_BINDING_FIELD,
-            "`on_unknown` must be true, false or `unknown`",
-            self.tables.value(*at, "on_unknown"),
-        )
+        self._say(diagnostic("bad_on_unknown", self.tables.value(*at, "on_unknown")))
         return None

@@ -23,7 +23,7 @@ from fretish.bindings.declarations import (
 )
 from fretish.bindings.tables.fields import Fields, Notes
 from fretish.bindings.tables.vocabulary import ValuesField
-from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.messages import diagnostic
 from fretish.reading.toml_text import Tables
 
 _SIGNAL = (
@@ -94,19 +94,9 @@ class SignalTables(Fields):
         at = ("signal", name)
         for key in _OF_NUMBERS:
             if key in table:
-                self._say(
-                    Code.BAD_BINDING_FIELD,
-                    f"a signal with `values` cannot have `{key}`: it is a word, not a number",
-                    self.tables.place(*at, key),
-                    "take it out",
-                )
+                self._say(diagnostic("word_signal_field", self.tables.place(*at, key), key=key))
         if where is not None and where.each:
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "a signal with `values` is one word, and `[:]` selects many",
-                self.tables.value(*at, "path"),
-                "name one element: `[0]`",
-            )
+            self._say(diagnostic("word_signal_of_many", self.tables.value(*at, "path")))
         values, numbers = ValuesField(self.tables, self.notes).words(
             table["values"], (*at, "values")
         )
@@ -138,41 +128,21 @@ class SignalTables(Fields):
         if valid is None:
             return None
         if binding.ticks_back(valid):
-            self._say(
-                Code.BAD_EXPRESSION,
-                "`pre` counts ticks, and `valid` is evaluated per message",
-                self.tables.value(*at),
-                "compare the reading with fields of its message",
-            )
+            self._say(diagnostic("pre_in_valid", self.tables.value(*at)))
             return None
         if any(isinstance(part, e.Word) for part in e.parts(valid)):
-            self._say(
-                Code.BAD_EXPRESSION,
-                "`valid` is about numbers, and this compares a word",
-                self.tables.value(*at),
-                "a signal of words has `values`, and no `valid`",
-            )
+            self._say(diagnostic("word_in_valid", self.tables.value(*at)))
             return None
         if binding.is_truth(valid):
             return valid
-        self._say(
-            Code.BAD_EXPRESSION,
-            "`valid` must be true or false, and this is a number",
-            self.tables.value(*at),
-            "compare the reading: `range_min <= x and x <= range_max`",
-        )
+        self._say(diagnostic("valid_is_number", self.tables.value(*at)))
         return None
 
     def _path(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Path | None:
         text = table.get("path")
         read = path(text) if isinstance(text, str) else None
         if read is None:
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "`path` must name a topic and a field" if text else "the signal has no `path`",
-                self.tables.value(*at),
-                'write `path = "/scan.ranges[:]"` or `path = "/odom.twist.twist.linear.x"`',
-            )
+            self._say(diagnostic("bad_path" if text else "path_missing", self.tables.value(*at)))
         return read
 
     def _reduce(
@@ -180,18 +150,9 @@ class SignalTables(Fields):
     ) -> Reduce | None:
         each = where is not None and where.each
         if "reduce" in table and not each and where is not None:
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "`reduce` needs a path that ends with `[:]`",
-                self.tables.value(*at, "reduce"),
-            )
+            self._say(diagnostic("reduce_without_many", self.tables.value(*at, "reduce")))
         if "reduce" not in table and each:
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "a path that ends with `[:]` needs `reduce`",
-                self.tables.value(*at, "path"),
-                'add `reduce = "min"`',
-            )
+            self._say(diagnostic("many_without_reduce", self.tables.value(*at, "path")))
         if "reduce" not in table:
             return None
         return self._choice(table, (*at, "reduce"), Reduce, Reduce.MIN)
@@ -210,11 +171,7 @@ class SignalTables(Fields):
         self._check_keys(fields, (*_INVALID, "empty"), "`invalid`", *at, "invalid")
         place = (*at, "invalid")
         if fields.get("empty", "unknown") != "unknown":
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "`empty` can only be `unknown`: no reading is no evidence",
-                self.tables.value(*place, "empty"),
-            )
+            self._say(diagnostic("bad_empty", self.tables.value(*place, "empty")))
         values = {
             attribute: self._choice(fields, (*place, key), Reading, getattr(default, attribute))
             for key, attribute in _INVALID.items()
@@ -231,12 +188,7 @@ class SignalTables(Fields):
             self.notes.defaults.append(Default((at[0], at[1]), old))
         age = units.nanoseconds(text) if text is not None else None
         if text is not None and not age:
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "`max_age` must be a duration above 0",
-                self.tables.value(*at, "max_age"),
-                'write `max_age = "300 ms"`',
-            )
+            self._say(diagnostic("bad_max_age", self.tables.value(*at, "max_age")))
         return age
 
     def _footprint(
@@ -245,24 +197,14 @@ class SignalTables(Fields):
         corners = table.get("footprint", [])
         good = isinstance(corners, list) and all(_is_numbers(c, 2) for c in corners)
         if reduce is Reduce.OUTLINE and (not good or len(corners) < 3):
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                '`reduce = "outline"` needs `footprint`: three corners or more, in metres',
-                self.tables.value(*at, "footprint"),
-                "write `footprint = [[0.3, 0.3], [-0.3, 0.3], [-0.3, -0.3], [0.3, -0.3]]`",
-            )
+            self._say(diagnostic("outline_without_footprint", self.tables.value(*at, "footprint")))
             return ()
         return tuple((float(x), float(y)) for x, y in corners) if good else ()
 
     def _sensor(self, table: Mapping[str, Any], at: tuple[str, ...]) -> tuple[float, float, float]:
         pose = table.get("sensor", [0.0, 0.0, 0.0])
         if not _is_numbers(pose, 3):
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "`sensor` must be the sensor's pose: x and y in metres, yaw in radians",
-                self.tables.value(*at, "sensor"),
-                "write `sensor = [0.0, 0.0, 0.0]`",
-            )
+            self._say(diagnostic("bad_sensor_pose", self.tables.value(*at, "sensor")))
             return 0.0, 0.0, 0.0
         return float(pose[0]), float(pose[1]), float(pose[2])
 

@@ -11,7 +11,8 @@ from fretish import expressions as e
 from fretish.bindings.declarations import Role, Variable
 from fretish.bindings.definitions import find_cycle
 from fretish.bindings.tables.fields import Fields
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.parser import parse_value
 from fretish.reading.toml_text import as_key
@@ -44,12 +45,7 @@ class VariableTables(Fields):
         self._check_keys(table, _FRET, "[fret]", "fret")
         records = self._field(table, ("fret", "variable"), list, "tables of FRET's fields") or []
         if not all(isinstance(record, dict) for record in records):
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "`variable` must hold tables",
-                self.tables.value("fret", "variable"),
-                "write `[[fret.variable]]`",
-            )
+            self._say(diagnostic("variables_not_tables", self.tables.value("fret", "variable")))
             return ()
         self._check_fret(records, ("fret", "variable"))
         return tuple(records)
@@ -64,12 +60,7 @@ class VariableTables(Fields):
             elif isinstance(part, list):
                 waiting.extend(part)
             elif not (isinstance(part, str | int) or (isinstance(part, float) and isfinite(part))):
-                self._say(
-                    Code.BAD_BINDING_FIELD,
-                    f"FRET cannot store `{part}`",
-                    self.tables.value(*at),
-                    "put it in quotes: FRET stores texts, numbers, truth values, lists and tables",
-                )
+                self._say(diagnostic("not_stored_by_fret", self.tables.value(*at), part=part))
                 return
 
     def _variable(self, name: str, table: Mapping[str, Any]) -> Variable:
@@ -78,10 +69,7 @@ class VariableTables(Fields):
         of = self._field(table, (*at, "of"), dict, "tables of components") or {}
         if not all(isinstance(own_table, dict) for own_table in of.values()):
             self._say(
-                Code.BAD_BINDING_FIELD,
-                "`of` must hold tables",
-                self.tables.value(*at, "of"),
-                f"write `[variable.{as_key(name)}.of.COMPONENT]`",
+                diagnostic("components_not_tables", self.tables.value(*at, "of"), key=as_key(name))
             )
             of = {}
         whole = self._fields_of_variable(name, table, at)
@@ -110,10 +98,12 @@ class VariableTables(Fields):
         value, place = self._value(table, (*at, "value"))
         if value is not None and texts["role"] not in ("", Role.INTERNAL, Role.MODE):
             self._say(
-                Code.BAD_BINDING_FIELD,
-                f"`{name}` has a `value`: its role cannot be `{texts['role']}`",
-                self.tables.value(*at, "role"),
-                "write `internal` or `mode`",
+                diagnostic(
+                    "role_of_definition",
+                    self.tables.value(*at, "role"),
+                    name=name,
+                    role=texts["role"],
+                )
             )
         return Variable(
             name,
@@ -155,19 +145,19 @@ class VariableTables(Fields):
             other = f"by `[{kinds[0]}.{name}]`" if kinds else "by FRETish, as the first tick"
             if kinds or name == "FTP":
                 self._say(
-                    Code.DOUBLE_DEFINITION,
-                    f"`{name}` is defined twice: by its `value`, and {other}",
-                    self._of_value(name, component),
-                    "remove one of them",
+                    diagnostic(
+                        "defined_twice", self._of_value(name, component), name=name, other=other
+                    )
                 )
         chain = find_cycle(values)
         if chain:
             self._say(
-                Code.DEFINITION_CIRCLE,
-                f"the values of variables form a cycle: {' -> '.join(chain[:_MOST_NAMES])}"
-                f"{' ...' if len(chain) > _MOST_NAMES else ''}",
-                self._of_value(chain[0], component),
-                "define one of them by numbers and signals only",
+                diagnostic(
+                    "circular_definitions",
+                    self._of_value(chain[0], component),
+                    names=" -> ".join(chain[:_MOST_NAMES]),
+                    more=" ..." if len(chain) > _MOST_NAMES else "",
+                )
             )
 
     def _of_value(self, name: str, component: str) -> Span:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from fretish.bindings.tables.fields import Fields
-from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.toml_text import as_key
 
@@ -29,17 +29,15 @@ class ValuesField(Fields):
         else:
             values, numbers = written if isinstance(written, list) else [], []
         if not values:
-            self._say(
-                Code.BAD_BINDING_FIELD,
-                "`values` must be a list of words, or a table of their numbers",
-                self.tables.value(*at),
-                'write `values = ["drive", "docking"]` or `values = { drive = 0, docking = 4 }`',
-            )
+            self._say(diagnostic("bad_values", self.tables.value(*at)))
         if len(values) > _MOST_WORDS:
             self._say(
-                Code.BAD_BINDING_FIELD,
-                f"`values` has {len(values)} words; {_MOST_WORDS} is the most",
-                self.tables.value(*at),
+                diagnostic(
+                    "too_many_values",
+                    self.tables.value(*at),
+                    count=len(values),
+                    most=_MOST_WORDS,
+                )
             )
         for place, word in enumerate(values[:_MOST_WORDS]):
             self._check_word(word, values[:place], at)
@@ -54,34 +52,22 @@ class ValuesField(Fields):
             or '"' in word
             or not 0 < len(word) <= _LONGEST_WORD
         ):
-            message, fix = (
-                f"a word must be a text of 1 to {_LONGEST_WORD} characters on one line, without "
-                "a double quote",
-                'write, for example, `values = ["drive", "docking"]`',
-            )
+            place = self._last_in(at, word)
+            self._say(diagnostic("bad_word", place, longest=_LONGEST_WORD))
         elif word in before:
-            message, fix = f"`{word}` is twice in `values`", "remove one"
-        else:
-            return
-        self._say(Code.BAD_BINDING_FIELD, message, self._last_in(at, word), fix)
+            self._say(diagnostic("word_twice", self._last_in(at, word), word=word))
 
     def _check_numbers(self, written: Mapping[str, Any], at: tuple[str, ...]) -> None:
         words: dict[int, str] = {}
         for word, number in written.items():
             place = self.tables.value(*at, word)
             if not isinstance(number, int) or isinstance(number, bool) or abs(number) >= _EXACT:
-                self._say(
-                    Code.BAD_BINDING_FIELD,
-                    f"the number of `{word}` must be a whole number below 2^53",
-                    place,
-                    f"write the number that the messages use for it: `{as_key(word)} = 4`",
-                )
+                self._say(diagnostic("bad_number_of_word", place, word=word, key=as_key(word)))
             elif number in words:
                 self._say(
-                    Code.BAD_BINDING_FIELD,
-                    f"`{words[number]}` and `{word}` are both {number}",
-                    place,
-                    "give each word a different number",
+                    diagnostic(
+                        "same_number_of_words", place, other=words[number], word=word, number=number
+                    )
                 )
             else:
                 words[number] = word

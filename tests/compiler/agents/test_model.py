@@ -8,7 +8,7 @@ import pytest
 from compiler.agents.gwendolen import Agent, BeliefChange, read
 from compiler.agents.model import Intention, Model, ReasoningStep, State, narration
 from compiler.logic import formula as f
-from compiler.logic.kripke import Explored, TooManyStatesError, check
+from compiler.logic.kripke import Explored, ModelTooLargeError, check
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from tests.lassos import keeps
@@ -267,5 +267,5 @@ def test_a_belief_of_two_sources_may_outlive_one_of_them_or_not() -> None:
 def test_an_agent_with_too_much_to_do_has_too_many_states() -> None:
     """At each of its two actions comes another event: they are never all handled."""
     plans = "+near : {True} <- one, two; -near : {True} <- one, two;"
-    with pytest.raises(TooManyStatesError):
+    with pytest.raises(ModelTooLargeError):
         explored(plans, "near")

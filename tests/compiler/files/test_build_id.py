@@ -39,7 +39,13 @@ def test_a_copy_is_the_same_edition(copy: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "name", ["fretish/grammar.lark", "monitors/kernel/columns.py", "fretc/audit/many_logs.py"]
+    "name",
+    [
+        "fretish/grammar.lark",
+        "fretish/diagnostics/codes/4_logs.toml",
+        "monitors/kernel/columns.py",
+        "fretc/audit/many_logs.py",
+    ],
 )
 def test_a_changed_text_is_another_edition(copy: Path, name: str) -> None:
     text = (copy / name).read_bytes()

@@ -7,11 +7,11 @@ import pytest
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Result
-from fretc.verification.monitor.verifying import verified
 from tests.each import each
 from tests.effort import FULL, pairwise, some
 from tests.meaning import SCOPES
 from tests.monitoring import emitted, monitor, requirement, steps
+from tests.proofs import verified
 from tests.spot_monitors import Ltl3
 from tests.strategies import Template, few_templates
 

@@ -22,7 +22,7 @@ from compiler.formalization.past import MonitorSpec
 from compiler.logic import formula as f
 from compiler.logic.claims import Result
 from compiler.targets.python import monitor as target
-from fretc.verification.monitor.verifying import NotAMonitorError, verified
+from fretc.verification.monitor.verifying import NotAMonitorError
 from fretish import syntax as s
 from monitors.kernel import Monitor
 from monitors.kernel.stepping import Standing
@@ -30,6 +30,7 @@ from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 from tests.effort import FULL
 from tests.monitoring import over, requirement, with_step
+from tests.proofs import verified
 
 SENTENCES = (
     "the sw shall immediately satisfy q",

@@ -26,9 +26,9 @@ from compiler.formalization.numbers.reals import (
 from compiler.logic.claims import Result
 from compiler.logic.orders import Exclusion
 from fretc.testing.generation import batch
-from fretc.verification.monitor.verifying import verified
 from fretish.bindings.declarations import Variable
 from tests.monitoring import emitted, requirement
+from tests.proofs import verified
 
 _COMPARE = {"<": lt, "<=": le, ">": gt, ">=": ge, "=": eq, "!=": ne}
 _DENIED = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "=": "!=", "!=": "="}

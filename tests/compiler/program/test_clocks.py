@@ -7,10 +7,10 @@ import pytest
 
 from compiler.program.clocks import clocks, lengthened
 from compiler.program.instructions import Advance, Choose, Count
-from compiler.program.interpreter import initial, step
 from compiler.program.lowering import program
 from compiler.program.values import Literal
 from tests.monitoring import requirement
+from tests.program_interpreter import initial, step
 from tests.strategies import templates
 
 WITHIN = "whenever p the sw shall within 3 ticks satisfy q"

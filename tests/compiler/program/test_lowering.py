@@ -10,12 +10,12 @@ from compiler.logic import formula as f
 from compiler.logic.definition import holds
 from compiler.logic.evaluation import evaluate_unknown
 from compiler.program.instructions import Advance, Choose, Count, Instruction, Shift, Slide
-from compiler.program.interpreter import State, initial, step
 from compiler.program.lowering import program
 from compiler.program.program import Counter, Program
 from compiler.program.values import Age, Variable, parts
 from monitors.kernel.verdicts import Signals, Truth
 from tests.monitoring import packed
+from tests.program_interpreter import State, initial, step
 from tests.strategies import FORMULA_ATOMS, leaves, past, three_valued, traces
 
 BOUNDS = st.one_of(

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 import pytest
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
+from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.evaluation import evaluate
 from compiler.situations.demands import of_demand
 from compiler.situations.situations import Situation, situations

@@ -26,10 +26,10 @@ def judged(
     """Each log and requirement that was judged, in a folder with three logs."""
     found: list[tuple[str, str]] = []
 
-    def audit(recording: Any, declarations: Any, requirements: Sequence[Any], engine: Any) -> Any:
+    def audit(recording: Any, declarations: Any, requirements: Sequence[Any]) -> Any:
         ids = [each.monitor.REQUIREMENTS[0].id for each in requirements]
         found.extend((recording.name, id) for id in ids)
-        return one_log.audit(recording, declarations, requirements, engine)
+        return one_log.audit(recording, declarations, requirements)
 
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
     monkeypatch.setattr(auditing, "audit", audit)

@@ -224,11 +224,6 @@ def test_an_engine_that_is_none_is_told(fretc: Fretc, name: str) -> None:
     )
 
 
-def test_the_former_meaning_of_engine_is_told_its_new_name(fretc: Fretc) -> None:
-    run = fretc("audit", *LOGS, "--engine", "online")
-    assert run.err == "F907 `online` is no engine\nhelp: write `--evaluation online`\n"
-
-
 @pytest.mark.slow
 def test_without_the_extra_the_line_that_installs_it_is_told(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch

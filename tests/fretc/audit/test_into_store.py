@@ -32,6 +32,7 @@ from fretc.audit.store import container
 from fretc.audit.store.container import Row
 from fretc.audit.store.reader import Store, evidence, opened
 from fretc.audit.store.writer import StoreFile
+from fretc.logs.signals.integrity import Integrity
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc, untimed
 from tests.effort import some
@@ -270,11 +271,11 @@ def test_another_requirement_or_binding_makes_all_of_it_new(
 
 
 @pytest.mark.slow
-def test_another_fretc_or_evaluation_makes_all_of_it_new(
+def test_another_fretc_or_integrity_makes_all_of_it_new(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stored()
-    with session(own=plan("online")) as one:
+    with session(own=plan(Integrity.FULL)) as one:
         assert (one.known, one.earlier.stale) == ({}, True)
     monkeypatch.setattr("fretc.audit.plan.build_id", lambda: "another")
     assert known() == {}

@@ -19,6 +19,7 @@ from fretc.audit.store.anywhere import read
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, Run, untimed
 from tests.effort import some
+from tests.fretc.audit.stepping import stepping
 from tests.json_schemas import validate
 from tests.traces import MISSION, part
 
@@ -235,7 +236,8 @@ def test_a_folder_of_logs_gives_the_same_with_any_number_of_processes(fretc: Fre
 def test_stepping_shows_the_same_as_columns(fretc: Fretc) -> None:
     fretc("audit", "run.mcap")
     before = Path("build/evidence.json").read_bytes()
-    fretc("audit", "run.mcap", "--evaluation", "online")
+    with stepping():
+        fretc("audit", "run.mcap")
     assert Path("build/evidence.json").read_bytes() == before
 
 

@@ -27,7 +27,6 @@ from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
-from monitors import kernel
 from monitors.kernel import Monitor
 from monitors.loading import load
 from tests.effort import FULL
@@ -40,6 +39,7 @@ from tests.fretc.audit.naive import (
     Signal,
     verdicts,
 )
+from tests.fretc.audit.stepping import stepping
 from tests.fretc.logs.logs import NONE, ZSTD, S, Sent, header, payload, store, write
 
 BOUND = """
@@ -525,9 +525,8 @@ def differences(one: Case, path: Path) -> list[str]:
     run, apart = one.run, []
     watching = watched(one)
     (evidence,) = audit(recording, declarations, [MonitoredRequirement(watching, {})])
-    (stepped,) = audit(
-        recording, declarations, [MonitoredRequirement(watching, {})], kernel.stepped
-    )
+    with stepping():
+        (stepped,) = audit(recording, declarations, [MonitoredRequirement(watching, {})])
     if (evidence.verdict, evidence.outcome) != (stepped.verdict, stepped.outcome):
         apart.append(f"engines: {evidence.verdict}, {stepped.verdict}")
     for name, tally in evidence.propositions.items():

@@ -331,7 +331,7 @@ def test_the_order_of_the_logs_changes_nothing(fretc: Fretc) -> None:
     first = estimate()
     for _ in range(3 if FULL else 1):
         chance.shuffle(paths)
-        fretc("audit", *paths, "--jobs", "2", "--evaluation", "online")
+        fretc("audit", *paths, "--jobs", "2")
         assert estimate() == first
 
 

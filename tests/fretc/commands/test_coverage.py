@@ -49,6 +49,14 @@ def situations(text: str) -> dict[str, str]:
     return {each["key"]: each["standing"] for each in one["situations"]}
 
 
+def test_evidence_is_sought_only_if_no_log_is_named(robot: Fretc) -> None:
+    write("build/evidence.json", "{}")
+    Path("build/evidence").mkdir()
+    assert robot("coverage", "idle.mcap").status == 3
+    run = robot("coverage")
+    assert (run.status, "evidence is in `build/evidence.json` and in" in run.err) == (2, True)
+
+
 @pytest.mark.slow
 def test_logs_and_their_evidence_show_the_same(robot: Fretc) -> None:
     run = robot("coverage", "idle.mcap", "late.mcap", "--format", "json")

@@ -186,6 +186,21 @@ def test_what_the_file_says_before_its_results_is_compared(
     assert told in run.out
 
 
+def test_findings_about_a_log_are_compared_over_all_its_requirements(audited: Fretc) -> None:
+    write("requirements/r2.fret", "whenever p the sw shall within 3 ticks satisfy q")
+    assert audited("audit", "logs", "-o", "build/evidence.json").status == 1
+    results = json.loads(Path("build/evidence.json").read_text())["results"]
+    last = [result for result in results if result["run"] == "logs/good.mcap"][-1]
+    place = {"file": "f", "line": 1, "column": 1}
+    finding = {"code": "F404", "severity": "warning", "message": "m", "help": "h", **place}
+    last["health"]["findings"] = [finding]
+    changed(results=results)
+    run = audited("verify-evidence")
+    assert run.status == 1
+    good = run.out.split("logs/good.mcap\n")[1]
+    assert "  ✘     differs: the findings about its log differ\n" in good
+
+
 def test_a_result_that_was_taken_out_is_found(audited: Fretc) -> None:
     write("requirements/r2.fret", "whenever p the sw shall within 3 ticks satisfy q")
     assert audited("audit", "logs", "-o", "build/evidence.json").status == 1

@@ -56,7 +56,8 @@ def by_itself(own: Monitor, trace: Trace, *, intact: bool) -> Judgement:
     cut = trace.cut and {name: trace.cut[name] for name in columns}
     ticks = len(trace.timeline.times)
     end = kernel.INCONCLUSIVE
-    return judge(own, columns, cut, ticks, intact=intact, end=end, engine=kernel.stepped)
+    (judgement,) = judge(own, columns, cut, ticks, intact=intact, end=end, engine=kernel.stepped)
+    return judgement
 
 
 def together(of: MutantBatch, trace: Trace, *, intact: bool = True) -> list[Judgement]:

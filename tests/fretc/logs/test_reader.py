@@ -75,6 +75,9 @@ def test_every_topic_of_the_log_has_its_health(tmp_path: Path) -> None:
         out_of_order=2,
         equal_stamps=1,
         median_period_ns=10 * MS,
+        unstamped=0,
+        zero_stamps=0,
+        clock_jumps=0,
     )
     assert recording.topics["/other"].count == 1
     assert recording.topics["/other"].longest_gap_ns is None  # it was not read

@@ -14,10 +14,13 @@ from fretc.audit.evidence.basis import BINDINGS as BINDINGS_PART
 from fretc.audit.evidence.basis import KINDS, of_all
 from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.report.make import ReportBuild, make
+from fretc.report.model.marks import verdict_mark
+from fretc.report.model.results import ResultRow
 from fretc.traceability.chain import chains
 from fretc.traceability.lock import Lock, accepted
 from fretc.traceability.lock import text as lock_text
 from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.documents import RequirementEntry
 from tests.command import write
 
 BINDINGS = """\
@@ -222,9 +225,9 @@ def basis(known: Project, name: str) -> Mapping[str, str]:
     """What an audit would record of a requirement now."""
     if not _latest or _latest[0] is not known:  # asked once as long as one project is in use
         _latest[:] = known, bases(known)
-    found: Mapping[int, Mapping[str, str]] = _latest[1]
+    found: Mapping[RequirementEntry, Mapping[str, str]] = _latest[1]
     requirement = next((each for each in known.requirements if each.id == name), None)
-    return found[id(requirement)] if requirement is not None else dict.fromkeys(KINDS, "0" * 64)
+    return found[requirement] if requirement is not None else dict.fromkeys(KINDS, "0" * 64)
 
 
 _latest: list[Any] = []
@@ -323,3 +326,30 @@ def words(marks: Sequence[Mapping[str, Any]]) -> list[str]:
 def word(mark: Mapping[str, Any]) -> str:
     """`violated`, or `violated, suspect`."""
     return f"{mark['word']}, suspect" if mark["suspect"] else str(mark["word"])
+
+
+def row(number: int, word: str = "satisfied", requirement: str = "R1", **changes: Any) -> ResultRow:
+    """The row of a result; its run and its place have the same number."""
+    values: dict[str, Any] = {
+        "anchor": f"{requirement}.{number}",
+        "run": f"run-{number}",
+        "run_label": f"Run {number}",
+        "run_file": f"{number}.mcap",
+        "mark": verdict_mark(word),
+        "suspicions": (),
+        "reason": "",
+        "triggers": 1,
+        "place": number,
+        "number": 1,
+        "requirement": requirement,
+        "section": f"req-{requirement}",
+        "ticks": 1,
+        "answers": 0,
+        "at_once": 0,
+        "open": 0,
+        "unknown": 0,
+        "violations_total": int(word == "violated"),
+        "latency_median_s": None,
+        "latency_max_s": None,
+    }
+    return ResultRow(**{**values, **changes})

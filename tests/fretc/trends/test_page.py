@@ -86,10 +86,10 @@ def test_a_strip_is_read_without_colours() -> None:
         RoundOutcome.OPEN,
     ]
     found = strip(round_outcomes)
-    assert found.text == "rounds 1 not judged, 2 to 3 shown, 4 violated, 5 open"
-    heights = {cell.kind: cell.height for cell in found.cells}
+    assert found["text"] == "rounds 1 not judged, 2 to 3 shown, 4 violated, 5 open"
+    heights = {cell["kind"]: cell["height"] for cell in found["cells"]}
     assert len({*heights.values()}) == len(heights) == 4
-    assert strip([RoundOutcome.SHOWN] * 100).text == "rounds 41 to 100 shown"
+    assert strip([RoundOutcome.SHOWN] * 100)["text"] == "rounds 41 to 100 shown"
 
 
 # In a browser -----------------------------------------------------------------------------------

@@ -5,12 +5,14 @@ import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from string import Formatter
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fretish.bindings.tables.interceptor import TABLE
+from fretish.diagnostics.messages import messages
 from fretish.reading.toml_text import as_key
 from tests.fixes import toml_in
 
@@ -38,12 +40,27 @@ def texts(module: Path) -> Iterator[str]:
             yield str(node.value)
 
 
-@pytest.mark.slow
-def test_toml_in_a_message_parses() -> None:
-    found = {found for module in MODULES for text in texts(module) for found in toml_in(text)}
+def templates() -> Iterator[str]:
+    """The text and help of every message; what is filled in is `X`."""
+    for message in messages().values():
+        for text in (message.message, message.help):
+            names = [name for _, name, _, _ in Formatter().parse(text) if name is not None]
+            yield text.format_map(dict.fromkeys(names, "X"))
+
+
+def test_toml_in_a_message_of_the_tables_parses() -> None:
+    found = {found for text in templates() for found in toml_in(text)}
     for fragment in sorted(found):
         assert tomllib.loads(fragment), fragment
     assert {'tick = "100 ms"', "[clock]", "[proposition.X]", "lost = 0"} <= found
+
+
+@pytest.mark.slow
+def test_toml_in_a_text_of_a_module_parses() -> None:
+    found = {found for module in MODULES for text in texts(module) for found in toml_in(text)}
+    for fragment in sorted(found):
+        assert tomllib.loads(fragment), fragment
+    assert {'tick = "100 ms"', "[clock]", "[X.X]"} <= found
 
 
 @given(st.text(st.characters(exclude_categories=["Cs"]), min_size=1))

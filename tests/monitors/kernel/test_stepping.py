@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from compiler.targets.python import monitor as target
+from compiler.targets.python.names import MOST_PARAMETERS
 from fretish.clock import Clock
 from monitors.kernel import Monitor, evaluate
 from monitors.kernel.outcomes import stepped as run_by_steps
@@ -130,7 +131,7 @@ def wide(count: int) -> str:
     )
 
 
-WIDE = (target.MOST_PARAMETERS, target.MOST_PARAMETERS + 1)
+WIDE = (MOST_PARAMETERS, MOST_PARAMETERS + 1)
 
 
 @pytest.mark.parametrize("count", WIDE)

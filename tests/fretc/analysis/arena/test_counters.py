@@ -6,7 +6,7 @@ import pytest
 
 from compiler.formalization.reference import accepting, accepts, initial, step, tick_role
 from compiler.formalization.reference import template as template_of
-from compiler.logic import decision_diagrams as bdd
+from compiler.logic.diagrams import decision_diagrams as bdd
 from fretc.analysis.arena.transition import Transition
 from fretish.bindings.declarations import Role
 from tests import meaning

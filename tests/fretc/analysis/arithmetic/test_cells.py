@@ -10,20 +10,21 @@ import pytest
 import spot
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic import decision_diagrams as bdd
 from compiler.logic import printing
+from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.targets.python import monitor as target
 from fretc.analysis.analysis import Options, analyze
 from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arithmetic import cells
 from fretc.analysis.findings import Verdict
-from fretc.analysis.games.game_traces import Counterstrategy, Strategy
+from fretc.analysis.games.game_traces import Counterstrategy
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretc.analysis.verdicts import verdict
 from fretish.bindings.declarations import Variable
 from monitors.loading import load
 from tests.effort import FULL, some
+from tests.fretc.analysis.games.strategies import Strategy
 from tests.requirement_sets import analyzed, requirement, requirements, roles, staged
 
 REALIZABLE, UNREALIZABLE = Verdict.REALIZABLE, Verdict.UNREALIZABLE

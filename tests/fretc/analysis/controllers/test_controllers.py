@@ -16,10 +16,10 @@ from fretc.analysis.controllers.circuit import circuit
 from fretc.analysis.controllers.files import ControllerFormat, automata, controller
 from fretc.analysis.controllers.machine import Machine, NoMachineError, machine
 from fretc.analysis.controllers.moves import mealy
-from fretc.analysis.games.replay import first_breaches
 from fretc.analysis.realizability_problem import RealizabilityProblem
 from monitors.kernel.verdicts import VIOLATED
 from tests.effort import FULL
+from tests.fretc.analysis.games.strategies import first_breaches
 from tests.monitoring import monitor
 from tests.requirement_sets import assumed, drawn, requirement, staged
 

@@ -5,16 +5,17 @@ from collections.abc import Sequence
 
 import pytest
 
-from compiler.logic.decision_diagrams import Function
+from compiler.logic.diagrams.decision_diagrams import Function
 from compiler.logic.formula import atoms
 from compiler.logic.spot import holds_on
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.games import game_traces, squaring
 from fretc.analysis.games.game import Game, Letter
-from fretc.analysis.games.game_traces import Counterstrategy, Place, Strategy
-from fretc.analysis.games.replay import broken, columns, first_breaches
+from fretc.analysis.games.game_traces import Counterstrategy
+from fretc.analysis.games.replay import broken, columns
 from fretc.analysis.realizability_problem import RealizabilityProblem
 from tests.effort import FULL
+from tests.fretc.analysis.games.strategies import Place, Strategy, first_breaches
 from tests.requirement_sets import (
     assumed,
     drawn,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import Verdict
-from fretc.analysis.games.lassos import Impossible, Lasso, lasso
+from fretc.analysis.games.lassos import Impossible, SatisfyingRun, lasso
 from fretish.bindings.declarations import Role
 from tests.effort import FULL, examples
 from tests.requirement_sets import ROLES, analyzed, drawn, requirements, roles, staged
@@ -25,11 +25,11 @@ COUNTED = (
 RATE = "the sw shall always satisfy absReal(v - preReal({}, v)) <= {}"
 
 
-def found(*sentences: str, as_fret: bool = False) -> Lasso | Impossible | None:
+def found(*sentences: str, as_fret: bool = False) -> SatisfyingRun | Impossible | None:
     return lasso(requirements(*sentences), NAMED, Budget(60), as_fret=as_fret)
 
 
-def values(run: Lasso) -> list[Fraction]:
+def values(run: SatisfyingRun) -> list[Fraction]:
     return [Fraction(str(each["v"].as_fraction())) for each in run.numbers]
 
 
@@ -48,7 +48,7 @@ def test_a_goal_is_reached_just_where_the_rate_lets_it(
     highest = first + rate * (bound + 1)
     run = found(*sentences)
     if highest > goal or (highest == goal and not strict):
-        assert isinstance(run, Lasso)
+        assert isinstance(run, SatisfyingRun)
         known = values(run)
         assert all(abs(b - a) <= rate for a, b in pairwise([Fraction(first), *known]))
         assert abs(known[run.loop] - known[-1]) <= rate
@@ -91,7 +91,7 @@ def test_what_never_comes_back_is_not_known() -> None:
 def test_a_demand_that_stays_open_is_not_met_by_coming_back() -> None:
     rising = "the sw shall always satisfy v = preReal(0.0, v) + 1 | v = 0"
     run = found(rising, "whenever v < 9 the sw shall eventually satisfy v > 4")
-    assert isinstance(run, Lasso)
+    assert isinstance(run, SatisfyingRun)
     assert max(values(run)[run.loop :]) > 4
 
 
@@ -106,14 +106,14 @@ def test_without_numbers_it_is_as_the_game_says() -> None:
             game = staged(*sentences, roles=own, as_fret=as_fret)
             is_kept = game.game(game.arena.counters, Budget(60)).solution().is_realizable
             run = lasso(requirements(*sentences), own, Budget(60), as_fret=as_fret)
-            assert isinstance(run, Lasso) is is_kept, sentences
+            assert isinstance(run, SatisfyingRun) is is_kept, sentences
             seen.add(is_kept)
     assert seen == {True, False}
 
 
 def test_as_fret_nothing_is_owed_at_any_tick() -> None:
     sentences = (RATE.format("0.0", 1), "the sw shall eventually satisfy v > 5")
-    assert isinstance(found(*sentences), Lasso)
+    assert isinstance(found(*sentences), SatisfyingRun)
     assert isinstance(found(*sentences, as_fret=True), Impossible)
 
 

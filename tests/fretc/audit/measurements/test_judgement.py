@@ -55,7 +55,7 @@ def test_a_cut_tick_counts_as_unchanged_only_where_all_of_it_is_known(
 ) -> None:
     watching = monitor("when p the r shall immediately satisfy q")
     columns = {"p": column(bytes([T, last[0]])), "q": column(bytes([T, last[1]]))}
-    judgement = judge(
+    (judgement,) = judge(
         watching,
         columns,
         {"p": TRUTHS[cut[0]], "q": TRUTHS[cut[1]]},

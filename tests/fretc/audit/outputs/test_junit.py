@@ -1,20 +1,18 @@
-"""Results as JUnit XML and as annotations of GitHub Actions."""
+"""Results as JUnit XML."""
 
 import unicodedata
 from typing import Any
 from xml.etree import ElementTree
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.audit.evidence.declared_units import without_samples
 from fretc.audit.evidence.schema import Result
-from fretc.audit.outputs.junit import github, junit
+from fretc.audit.outputs.junit import junit
 from tests.fretc.audit import results
 from tests.fretc.logs.logs import declare
 from tests.fretc.report.junit_schema import MAY, complaints
-from tests.monitoring import requirement
 
 
 def result(verdict: str, run: str = "a.mcap", id: str = "R1", **more: Any) -> Result:
@@ -74,27 +72,3 @@ def test_any_text_gives_xml_that_can_be_read(text: str) -> None:
     xml = junit([result("violated", run=text, reason=text, id=text)])
     assert len(ElementTree.fromstring(xml)[0]) == 1
     assert not {c for c in xml if unicodedata.category(c) == "Cc"} - {"\n", "\t", "\r"}
-
-
-@pytest.mark.parametrize(
-    ("verdict", "level"),
-    [
-        ("satisfied", "notice"),
-        ("violated", "error"),
-        ("inconclusive", "warning"),
-        ("vacuous", "warning"),
-        ("no data", "warning"),
-    ],
-)
-def test_an_annotation_stands_at_the_sentence(verdict: str, level: str) -> None:
-    lines = github([result(verdict)], [requirement("the sw shall always satisfy q").entry])
-    assert lines == f"::{level} file=r.fret,line=1,title=R1 {verdict}::a.mcap: why\n"
-
-
-@given(st.text())
-def test_nothing_in_a_result_makes_another_annotation_or_moves_the_cursor(text: str) -> None:
-    evil = result("violated", run=f"a\n::error::{text}", reason=f"100%\r\n{text}")
-    lines = github([evil], [requirement("the sw shall always satisfy q").entry])
-    assert lines[:-1].isprintable()
-    assert lines.startswith("::error file=r.fret,line=1,title=R1 violated::a\\n::error::")
-    assert "100%25\\r\\n" in lines

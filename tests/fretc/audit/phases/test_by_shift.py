@@ -110,7 +110,7 @@ def at(phase: int, declarations: Declarations, log: Recording, watching: Monitor
     clock = replace(declarations.clock, phase=phase)
     other = replace(declarations, clock=clock)
     truths = trace(other, log, watching.PROPOSITIONS)
-    return judge(
+    (judgement,) = judge(
         watching,
         {name: truths.columns[name] for name in watching.PROPOSITIONS},
         truths.cut,
@@ -118,7 +118,8 @@ def at(phase: int, declarations: Declarations, log: Recording, watching: Monitor
         intact=log.intact,
         end=Verdict(clock.end),
         engine=kernel.stepped,
-    ).verdict
+    )
+    return judgement.verdict
 
 
 def phases_of(declarations: Declarations, log: Recording, watching: Monitor) -> Phases:

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from fretc.report.model.across import Lanes
+from fretc.report.model.pictures import Lanes
 from tests.fretc.report.cases import (
     R1,
     as_html,

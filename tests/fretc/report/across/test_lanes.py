@@ -7,11 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.report.across.lanes import MOST_LANES, RunStretches, plan
+from fretc.report.across.lanes import MOST_LANES, plan
 from fretc.report.across.stretches import Stretches
-from fretc.report.model.across import LaneMark, Lanes
-from fretc.report.model.marks import verdict_mark
+from fretc.report.model.pictures import LaneMark, Lanes
+from fretc.report.model.results import ResultRow
 from tests.effort import examples
+from tests.fretc.report.cases import row
 
 times = st.floats(0, 1e4).map(lambda number: round(number, 3))
 spans = st.lists(st.tuples(times, times).map(lambda pair: (min(pair), max(pair))), max_size=60)
@@ -27,7 +28,7 @@ def stretches(draw: st.DrawFn) -> Stretches:
     )
 
 
-Drawn = list[tuple[RunStretches, Stretches]]
+Drawn = list[tuple[ResultRow, Stretches]]
 
 
 def lanes(drawn: Drawn, most: int = MOST_LANES, marks: int = 1_200) -> Lanes | None:
@@ -36,11 +37,13 @@ def lanes(drawn: Drawn, most: int = MOST_LANES, marks: int = 1_200) -> Lanes | N
     return chosen.lanes({each.place: (own, ()) for each, own in drawn})
 
 
-def result(
-    place: int, word: str, own: Stretches, of: tuple[str, str, str, str, str, str]
-) -> tuple[RunStretches, Stretches]:
-    count = len(own.violations), len(own.unknown), len(own.open)
-    return RunStretches(*of, verdict_mark(word), place, True, count), own
+def result(place: int, word: str, own: Stretches, run: int, id: str) -> tuple[ResultRow, Stretches]:
+    count = {
+        "violations_total": len(own.violations),
+        "unknown": len(own.unknown),
+        "open": len(own.open),
+    }
+    return row(run, word, id, place=place, **count), own
 
 
 @st.composite
@@ -50,8 +53,7 @@ def results(draw: st.DrawFn) -> Drawn:
         for id in draw(st.sampled_from([("R1",), ("R1", "R2")])):
             own = draw(stretches())
             word = "violated" if own.violations else draw(st.sampled_from(["satisfied", "no data"]))
-            of = (f"run-{run}", f"Run {run}", f"{run}.mcap", id, f"req-{id}", f"{id}.{run}")
-            found.append(result(len(found), word, own, of))
+            found.append(result(len(found), word, own, run, id))
     return found
 
 
@@ -115,14 +117,13 @@ def test_what_is_left_out_is_counted_and_never_worse(drawn: Drawn, most: int) ->
 
 def one(
     run: int, length: float, *violations: tuple[float, float], id: str = "R1"
-) -> tuple[RunStretches, Stretches]:
-    of = (f"run-{run}", f"Run {run}", f"{run}.mcap", id, f"req-{id}", f"{id}.{run}")
+) -> tuple[ResultRow, Stretches]:
     word = "violated" if violations else "satisfied"
     own = Stretches(length, violations, (), ())
-    return result(hash((id, run)), word, own, of)
+    return result(hash((id, run)), word, own, run, id)
 
 
-def picture(*drawn: tuple[RunStretches, Stretches]) -> Lanes:
+def picture(*drawn: tuple[ResultRow, Stretches]) -> Lanes:
     found = lanes([*drawn])
     assert found is not None
     return found

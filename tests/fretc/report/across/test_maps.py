@@ -8,13 +8,11 @@ from hypothesis import strategies as st
 
 from compiler.files.records import decoded
 from fretc.audit.evidence.schema import Way
-from fretc.report.across.lanes import RunStretches
 from fretc.report.across.layout import drawn_map
 from fretc.report.across.maps import RunResult, run_map
-from fretc.report.model.marks import verdict_mark
 from tests.effort import examples
 from tests.fretc.audit.results import result as record
-from tests.fretc.report.cases import R1, as_html, project, report_of, result, violation
+from tests.fretc.report.cases import R1, as_html, project, report_of, result, row, violation
 
 PLAIN: dict[str, Any] = {
     "times_ns": [10**9, 5 * 10**9, 7 * 10**9, 11 * 10**9],
@@ -31,9 +29,7 @@ def of_run(*seconds: float) -> RunResult:
     ns = [10**9 + round(s * 1e9) for s in seconds]
     broken = [{"start_ns": n, "start_s": s} for n, s in zip(ns, seconds, strict=True)]
     found = record(violations=broken)
-    names = ("run-1", "Run 1", "a.mcap", "R1", "req-R1", "R1.1")
-    of = RunStretches(*names, verdict_mark("violated"), 0, True, (len(broken), 0, 0))
-    return RunResult(of, found)
+    return RunResult(row(1, "violated", place=0, violations_total=len(broken)), found)
 
 
 @given(st.lists(st.floats(0, 12).map(lambda number: round(number, 3)), max_size=30).map(sorted))
@@ -51,11 +47,11 @@ def test_a_metre_is_as_long_upwards_as_to_the_right() -> None:
     assert found is not None
     assert [(mark.x, mark.y) for mark in found.marks] == [(0, 0), (2, 0), (6, 2)]
     drawn = drawn_map(found, "map", frozenset())
-    places = [(p.x, p.y) for p in drawn.places]
+    places = [(p["x"], p["y"]) for p in drawn["places"]]
     right, up = places[1][0] - places[0][0], places[0][1] - places[2][1]
     assert round(right / 2, 1) == round(up / 2, 1)
-    assert drawn.bar_label == "1 m"
-    assert abs(drawn.bar - right / 2) < 0.2
+    assert drawn["bar_label"] == "1 m"
+    assert abs(drawn["bar"] - right / 2) < 0.2
 
 
 def test_the_page_has_the_map_with_links_and_says_it_in_words(tmp_path: Path) -> None:

@@ -1,6 +1,5 @@
 """How much of a bound was used: by hand, and that no cut hides what is worse."""
 
-from dataclasses import replace
 from math import inf
 from typing import Any
 
@@ -9,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.audit.evidence.schema import Threshold
-from fretc.report.across.uses import RunNumbers, percent, uses
-from fretc.report.model.marks import verdict_mark
+from fretc.report.across.uses import RunThresholds, percent, uses
 from tests.effort import examples
+from tests.fretc.report.cases import row
 
 
 def threshold(comparison: Any, least: Any, greatest: Any, **changes: Any) -> Threshold:
@@ -29,13 +28,13 @@ def replace_record(each: Threshold, **changes: Any) -> Threshold:
     return changed(each, **changes)
 
 
-def run(number: int, word: str = "satisfied", **changes: Any) -> RunNumbers:
-    of = (f"Run {number}", f"{number}.mcap", "req-R1", f"R1.{number}", verdict_mark(word))
-    return replace(RunNumbers(*of, 1, int(word == "violated"), None, ()), **changes)
+def run(number: int, word: str = "satisfied", **changes: Any) -> RunThresholds:
+    thresholds = changes.pop("thresholds", ())
+    return row(number, word, **changes), thresholds
 
 
 def test_a_latency_is_a_part_of_the_time_allowed() -> None:
-    found = uses([run(1, latency=0.1), run(2, latency=0.3), run(3, "violated")], 0.4, 9)
+    found = uses([run(1, latency_max_s=0.1), run(2, latency_max_s=0.3), run(3, "violated")], 0.4, 9)
     assert found is not None
     assert [(row.label, row.uses[0].share, row.uses[0].text) for row in found.rows] == [
         ("Run 3", None, "no answer within 0.4 s"),
@@ -115,7 +114,7 @@ def test_a_percentage_is_never_rounded_onto_the_bound() -> None:
 @examples(25)
 def test_what_is_left_out_is_never_worse(drawn: list[Any], most: int) -> None:
     runs = [
-        run(n, word, latency=late, thresholds=(threshold(kept, -abs(value), value),))
+        run(n, word, latency_max_s=late, thresholds=(threshold(kept, -abs(value), value),))
         for n, (word, late, kept, value) in enumerate(drawn)
     ]
     short, whole = uses(runs, 5.0, most), uses(runs, 5.0, len(runs))
@@ -136,5 +135,5 @@ def test_what_is_left_out_is_never_worse(drawn: list[Any], most: int) -> None:
     left = short.notes[0] if len(whole.rows) > most else ""
     assert left.startswith(f"{max(0, len(whole.rows) - most)} more run") == bool(left)
     assert (f"{len(bad)} of them violated" in left) == bool(bad)
-    for row in whole.rows:
-        assert all(use.is_crossed or (use.share is not None and use.share <= 1) for use in row.uses)
+    used = [use for each in whole.rows for use in each.uses]
+    assert all(use.is_crossed or (use.share is not None and use.share <= 1) for use in used)

@@ -20,7 +20,8 @@ from hypothesis import strategies as st
 from fretc.report.forms.csv_rows import _harmless
 from fretc.report.forms.markdown import markdown
 from fretc.report.model.changes import Change
-from fretc.report.model.views import Remark, Report, verdict_mark
+from fretc.report.model.marks import verdict_mark
+from fretc.report.model.views import Remark, Report
 from fretc.report.sections.details import Details
 from tests.command import Fretc, made_once, write
 from tests.fretc.report import junit_schema

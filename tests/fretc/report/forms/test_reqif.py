@@ -19,7 +19,8 @@ from reqif.parser import ReqIFParser
 from compiler.files.settings import Settings
 from compiler.project.parents import Parent, parents
 from fretc.report.forms.reqif import reqif as form
-from fretc.report.model.views import HazardView, Report, verdict_mark
+from fretc.report.model.marks import verdict_mark
+from fretc.report.model.views import HazardView, Report
 from fretish.diagnostics import extras
 from tests.command import Fretc, made_once, write
 from tests.effort import FULL, examples

@@ -10,12 +10,13 @@ from typing import Any, get_args, get_origin, get_type_hints
 import pytest
 
 from fretc.report.model import views
+from fretc.report.model.results import ResultRow, ResultView
 
 ROOT = Path(__file__).parents[4]
 SCHEMA = json.loads((ROOT / "templates/json/report.schema.json").read_text("utf-8"))
 
 
-WHOLE = {views.ResultRow: views.ResultView, views.RunSummary: views.RunView}
+WHOLE = {ResultRow: ResultView, views.RunSummary: views.RunView}
 """What the report has in rows → what its JSON form has of it."""
 
 

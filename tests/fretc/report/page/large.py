@@ -9,15 +9,9 @@ from pathlib import Path
 
 from fretc.report.make import ReportBuild
 from fretc.report.model.front import ColumnRun, RunGroup
-from fretc.report.model.views import (
-    HazardView,
-    Mark,
-    Report,
-    RequirementView,
-    ResultRow,
-    Row,
-    verdict_mark,
-)
+from fretc.report.model.marks import Mark, verdict_mark
+from fretc.report.model.results import ResultRow
+from fretc.report.model.views import HazardView, Report, RequirementView, Row
 from fretc.report.page.html import html
 from tests.fretc.report.cases import project, report_of, result
 

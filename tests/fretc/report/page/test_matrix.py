@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from fretc.report.make import ReportBuild
 from fretc.report.model.front import RunGroup
-from fretc.report.model.views import Mark, Report
+from fretc.report.model.marks import Mark
+from fretc.report.model.views import Report
 from fretc.report.page.matrix import Picture, picture
 from tests.fretc.report.cases import as_json, project, report_of, requirement, result
 from tests.fretc.report.page.large import MARKS, enlarged, mostly_satisfied, page, small

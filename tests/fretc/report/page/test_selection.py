@@ -86,7 +86,7 @@ def test_a_compact_page_lists_what_is_not_satisfied_and_says_so(
     chosen = selection(build)
     assert chosen.is_compact
     rows = [row for section in chosen.by_anchor.values() for row in section.rows]
-    assert {row.mark.word for row in rows} == {"violated"}
+    assert {row.result.mark.word for row in rows} == {"violated"}
     assert len(rows) < sum(len(view.results) for view in whole(build).requirements)
     assert "This page is compact, because 30 results are more than 20" in html
     assert "Left out here: 3 runs without a row. The evidence file has them all." in html

@@ -68,8 +68,8 @@ def test_what_is_against_a_goal_hangs_on_it_and_all_that_rests_on_the_goal_is_in
         ("X", "support", "defeated"),
     ]
     (piece,) = pieces(elements)
-    assert [shape.name for shape in piece.shapes if shape.cross] == ["Goal", "Goal"]
-    assert [shape.state[2] for shape in piece.shapes if shape.state] == [
+    assert [shape["name"] for shape in piece["shapes"] if shape["cross"]] == ["Goal", "Goal"]
+    assert [shape["state"][2] for shape in piece["shapes"] if shape["state"]] == [
         each.state for each in tree if each.state
     ]
 
@@ -83,7 +83,7 @@ def test_what_is_against_a_goal_stands_on_its_page() -> None:
     drawing = pieces([goal("top", *names), *(goal(name) for name in names), *against])
     assert len(drawing) > 2
     for piece in drawing[1:]:
-        assert [shape.relation for shape in piece.shapes[:2]] == ["support", "challenge"]
+        assert [shape["relation"] for shape in piece["shapes"][:2]] == ["support", "challenge"]
 
 
 def test_each_kind_has_its_shape_and_an_open_goal_its_diamond() -> None:
@@ -97,13 +97,13 @@ def test_each_kind_has_its_shape_and_an_open_goal_its_diamond() -> None:
         Element("J", Kind.JUSTIFICATION, "j"),
     ]
     (piece,) = pieces(elements)
-    shapes = {shape.kind: shape for shape in piece.shapes}
+    shapes = {shape["kind"]: shape for shape in piece["shapes"]}
     assert set(shapes) == {kind.name.lower() for kind in Kind}
-    assert len({shape.path for shape in piece.shapes}) == 7
-    letters = {kind: shape.letter[2] for kind, shape in shapes.items() if shape.letter}
+    assert len({shape["path"] for shape in piece["shapes"]}) == 7
+    letters = {kind: shape["letter"][2] for kind, shape in shapes.items() if shape["letter"]}
     assert letters == {"assumption": "A", "justification": "J"}
-    assert [kind for kind, shape in shapes.items() if shape.diamond] == ["goal"]
-    assert {kind for kind, shape in shapes.items() if shape.relation == "context"} == {
+    assert [kind for kind, shape in shapes.items() if shape["diamond"]] == ["goal"]
+    assert {kind for kind, shape in shapes.items() if shape["relation"] == "context"} == {
         "context",
         "assumption",
         "justification",
@@ -143,8 +143,8 @@ def test_never_more_elements_are_drawn_than_stated() -> None:
 def test_a_long_argument_is_drawn_in_pieces_of_a_page() -> None:
     drawing = pieces(many(40, 0))
     assert len(drawing) > 1
-    assert all(piece.height <= 900 for piece in drawing)
-    assert sum(len(piece.shapes) for piece in drawing) == len(many(40, 0))
+    assert all(piece["height"] <= 900 for piece in drawing)
+    assert sum(len(piece["shapes"]) for piece in drawing) == len(many(40, 0))
 
 
 def test_many_assumptions_are_drawn_as_one() -> None:
@@ -158,7 +158,7 @@ def test_many_assumptions_are_drawn_as_one() -> None:
 
 def test_a_long_text_ends_with_an_ellipsis_and_never_leaves_its_shape() -> None:
     (piece,) = pieces([Element("G", Kind.GOAL, "word " * 500 + "x" * 400)])
-    lines = [line for _, _, line in piece.shapes[0].lines]
+    lines = [line for _, _, line in piece["shapes"][0]["lines"]]
     assert len(lines) == 3
     assert lines[2].endswith("…")
     assert max(map(len, lines)) < 90

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from compiler.files.templating import render
 from fretc.report.model.pictures import Bin, Histogram
-from fretc.report.pictures.histograms import step
 from fretc.report.pictures.plots import histogram as layout
+from fretc.report.pictures.scales import step
 from tests.fretc.report.cases import THRESHOLDS, content_of, moment, project, requirement, result
 
 WITHIN = requirement("R1", "whenever near the robot shall within 30 ticks satisfy stopped")
@@ -97,17 +97,17 @@ def test_what_waits_for_no_answer_lacks_none(tmp_path: Path) -> None:
 def test_what_has_no_value_stands_apart_and_no_condition_in_the_colour_of_violations() -> None:
     bins = (Bin(0.0, 1.0, 4), Bin(1.0, 2.0, 1))
     late = layout(Histogram("t", "s", bins, 1.0, "bound 1 s", "", unanswered=8, open=2), "h")
-    kinds = [(each.kind, each.name, each.label) for each in late.columns]
+    kinds = [(each["kind"], each["name"], each["label"]) for each in late["columns"]]
     assert kinds == [
         ("column", "", "4"),
         ("column", "", "1"),
         ("unanswered", "none", "8"),
         ("open", "open", "2"),
     ]
-    assert all(each.x > late.right for each in late.columns[2:])
-    assert max(each.height for each in late.columns) == late.columns[2].height
-    (*_, crossed) = layout(Histogram("t", "m", bins, 0.0, "", "", crossed=3), "h").columns
-    assert (crossed.kind, crossed.label) == ("crossed", "3")
+    assert all(each["x"] > late["right"] for each in late["columns"][2:])
+    assert max(each["height"] for each in late["columns"]) == late["columns"][2]["height"]
+    (*_, crossed) = layout(Histogram("t", "m", bins, 0.0, "", "", crossed=3), "h")["columns"]
+    assert (crossed["kind"], crossed["label"]) == ("crossed", "3")
     style = render("report/style.css.j2")
     (requirement,) = re.findall(r"svg \.crossed \{ fill: var\((.*?)\)", style)
     assert requirement != "--bad"

@@ -6,7 +6,7 @@ import pytest
 
 from compiler.logic.claims import Result, not_checked, proved
 from fretc.verification.loop import abstraction as looptwin
-from fretc.verification.loop import bounds
+from fretc.verification.loop import invariant
 from fretc.verification.loop.abstraction import Plain, Times, TwinState, covered
 from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.bounds import Answer, Question, search
@@ -140,7 +140,7 @@ def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.Monke
     def too_strong(at: TwinState, times: Times, bound: object, logic: Plain) -> object:
         return logic.both(real(at, times, bound, logic), at.open <= 0)
 
-    real = bounds._invariant
-    monkeypatch.setattr(bounds, "_invariant", too_strong)
+    real = invariant._invariant
+    monkeypatch.setattr(invariant, "_invariant", too_strong)
     answer = search(question(EVENTUALLY, interceptor_options(), Channel(1)))
     assert answer.answered == not_checked("of the invariant: a step does not preserve it")

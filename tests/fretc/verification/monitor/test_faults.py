@@ -12,12 +12,12 @@ import pytest
 
 from compiler.logic.claims import Result
 from compiler.targets.python import monitor as target
-from fretc.verification.monitor.verifying import verified
 from monitors.loading import load
 from tests.compiler.formalization.test_mutants import DIFFERS, MARK, REFUSED, REFUTED, SAME, Judge
 from tests.each import each
 from tests.effort import some
 from tests.monitoring import requirement, with_step, without_step
+from tests.proofs import verified
 
 WITHIN = "in m mode whenever p the sw shall within 3 ticks satisfy q"
 FOR = "upon p the sw shall for 2 ticks satisfy q & !m"

@@ -8,10 +8,10 @@ import pytest
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Outcome, Result
 from compiler.targets.python import monitor as target
-from fretc.verification.monitor.verifying import verified
 from tests.each import each
 from tests.effort import some
 from tests.monitoring import requirement
+from tests.proofs import verified
 
 SENTENCE = "whenever battery < 20 & preReal(0, speed) < 2 the agv shall within 1 ticks satisfy docking | level = 3"
 LESS = 'compared(battery, "<", exact("20"))'

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from compiler.logic.claims import Outcome, Result
 from fretc.verification.monitor.slices import slice_of
-from fretc.verification.monitor.verifying import verified
 from monitors.loading import load
 from tests.effort import FULL
 from tests.monitoring import emitted, requirement
+from tests.proofs import verified
 from tests.strategies import Template, templates
 
 SENTENCES = (

@@ -9,7 +9,7 @@ import pytest
 from compiler.formalization.letters import Valuation
 from compiler.logic.claims import Outcome, Result, Trace, refuted
 from compiler.targets.python import monitor as target
-from fretc.verification.monitor.verifying import NotAMonitorError, verified
+from fretc.verification.monitor.verifying import NotAMonitorError
 from monitors.kernel import Monitor
 from monitors.loading import load
 from monitors.source_text import kernel
@@ -17,6 +17,7 @@ from tests.each import each
 from tests.effort import FULL, some
 from tests.meaning import COUNTING
 from tests.monitoring import emitted, requirement, with_step, without_step
+from tests.proofs import verified
 from tests.strategies import Template, few_templates, templates
 
 WITHIN = "whenever p the sw shall within 3 ticks satisfy q"

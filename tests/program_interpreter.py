@@ -1,6 +1,6 @@
 """An interpreter of programs, straight from the definition of instructions.
 
-The product does not call this module: tests compare the generated code of each language with it.
+Tests compare the generated code of each language with it.
 """
 
 from __future__ import annotations

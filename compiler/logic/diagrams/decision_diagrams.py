@@ -1,58 +1,56 @@
-"""Boolean functions as binary decision diagrams, computed by BuDDy, which is part of Spot.
+"""Boolean functions as binary decision diagrams, computed by OxiDD or by BuDDy.
 
 A variable is a number, and numbers give the order of variables: variables that are read together
-should be adjacent, or diagrams grow. Functions have the operators `&`, `|`, `^`, `-f` and `f - g`;
-equal functions are equal objects. All users in a process share one table of nodes, and one
-numbering.
+should be adjacent, or diagrams grow. Functions have the operators `&`, `|`, `^`, `-f`, `f - g` and
+`f >> g`; equal functions are equal objects. All users in a process share one engine, one table of
+nodes, and one numbering. If the table is full, an operation raises MemoryError or ends the process.
 
 Source: Bryant, Graph-based algorithms for Boolean function manipulation, IEEE Trans. Computers 35
-(1986); Duret-Lutz et al., From Spot 2.0 to Spot 2.10, CAV 2022.
+(1986).
 """
 
 from __future__ import annotations
 
-import warnings
+import os
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+if TYPE_CHECKING:
+    from compiler.logic.diagrams.buddy_engine import BuddyEngine
+    from compiler.logic.diagrams.oxidd_engine import OxiddEngine
+
+    Engine: TypeAlias = BuddyEngine | OxiddEngine
 
 Function = Any
-"""A diagram; the library has no type stubs."""
+"""A diagram; the libraries have no type in common."""
 
 
 @lru_cache(maxsize=1)
-def _buddy() -> Any:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of SWIG, not ours
-        import spot
+def engine() -> Engine:
+    """OxiDD, or the engine of Spot if `FRETC_DIAGRAMS` is `buddy`, which tests compare with it."""
+    if os.environ.get("FRETC_DIAGRAMS") == "buddy":
+        from compiler.logic.diagrams.buddy_engine import BuddyEngine
 
-        spot.make_bdd_dict()  # it starts BuDDy
-        import buddy
-    return buddy
+        return BuddyEngine()
+    from compiler.logic.diagrams.oxidd_engine import OxiddEngine
 
-
-_STEP = 256
-_allocated = 0
+    return OxiddEngine()
 
 
 def true() -> Function:
     """The function that is true."""
-    return _buddy().bddtrue
+    return engine().true
 
 
 def false() -> Function:
     """The function that is false."""
-    return _buddy().bddfalse
+    return engine().false
 
 
 def variable(number: int) -> Function:
     """The function that is true where the variable is."""
-    global _allocated
-    buddy = _buddy()
-    while number >= _allocated:
-        buddy.bdd_extvarnum(_STEP)
-        _allocated += _STEP
-    return buddy.bdd_ithvar(number)
+    return engine().variable(number)
 
 
 def literal(number: int, value: bool) -> Function:
@@ -80,49 +78,46 @@ def point(values: Mapping[int, bool]) -> Function:
 
 def ite(condition: Function, then: Function, otherwise: Function) -> Function:
     """`condition ? then : otherwise`."""
-    return _buddy().bdd_ite(condition, then, otherwise)
+    return engine().ite(condition, then, otherwise)
 
 
 def exists(function: Function, variables: Function) -> Function:
     """Existential quantification over the variables of a cube."""
-    return _buddy().bdd_exist(function, variables)
-
-
-def forall(function: Function, variables: Function) -> Function:
-    """Universal quantification over the variables of a cube."""
-    return _buddy().bdd_forall(function, variables)
+    return engine().exists(function, variables)
 
 
 def and_exists(left: Function, right: Function, variables: Function) -> Function:
     """`exists(left & right, variables)`, without the conjunction ever being built."""
-    buddy = _buddy()
-    return buddy.bdd_appex(left, right, buddy.bddop_and, variables)
+    return engine().and_exists(left, right, variables)
 
 
 def forall_implies(left: Function, right: Function, variables: Function) -> Function:
     """`forall(left >> right, variables)`, without the implication ever being built."""
-    buddy = _buddy()
-    return buddy.bdd_appall(left, right, buddy.bddop_imp, variables)
+    return engine().forall_implies(left, right, variables)
 
 
-def compose(function: Function, number: int, value: Function) -> Function:
-    """The function with a variable replaced by another function."""
-    return _buddy().bdd_compose(function, value, number)
+def substitute(
+    function: Function, values: Mapping[int, Function], spare: Mapping[int, int] | None = None
+) -> Function:
+    """The function with variables replaced by functions, all at once.
+
+    Args:
+        function: the function.
+        values: a function for each replaced variable.
+        spare: for each replaced variable one that no function reads, best the next in the order;
+            left out only if the values read none of the replaced variables.
+    """
+    return engine().substitute(function, values, spare or {}) if values else function
 
 
 def at(function: Function, literals: Function) -> Function:
     """The function restricted by the literals of a cube."""
-    return _buddy().bdd_restrict(function, literals)
+    return engine().at(function, literals)
 
 
 def support(function: Function) -> tuple[int, ...]:
     """The variables on which the function depends, in their order."""
-    buddy = _buddy()
-    variables, rest = [], buddy.bdd_support(function)
-    while rest != buddy.bddtrue:
-        variables.append(buddy.bdd_var(rest))
-        rest = buddy.bdd_high(rest)
-    return tuple(variables)
+    return engine().support(function)
 
 
 def witness(function: Function, prefer: bool = False) -> dict[int, bool]:
@@ -132,38 +127,37 @@ def witness(function: Function, prefer: bool = False) -> dict[int, bool]:
         function: not false.
         prefer: the value that is tried first, variable by variable in their order.
     """
-    buddy = _buddy()
-    assert function != buddy.bddfalse
+    assert function != false()
     values = {}
-    while function != buddy.bddtrue:
-        branches = {False: buddy.bdd_low(function), True: buddy.bdd_high(function)}
-        value = prefer if branches[prefer] != buddy.bddfalse else not prefer
-        values[buddy.bdd_var(function)] = value
-        function = branches[value]
+    while function != true():
+        number, high, low = branches(function)
+        value = prefer if (high if prefer else low) != false() else not prefer
+        values[number] = value
+        function = high if value else low
     return values
 
 
 def size(function: Function) -> int:
-    """The number of nodes."""
-    return int(_buddy().bdd_nodecount(function))
+    """The number of nodes, without the constants."""
+    return engine().size(function)
 
 
 def branches(function: Function) -> tuple[int, Function, Function]:
     """The topmost variable of a non-constant function, and the cofactors for true and for false."""
-    buddy = _buddy()
-    return buddy.bdd_var(function), buddy.bdd_high(function), buddy.bdd_low(function)
+    return engine().branches(function)
 
 
 def nodes(functions: Iterable[Function]) -> tuple[Function, ...]:
     """The non-constant nodes of the diagrams, each after its successors."""
+    constants = (true(), false())
     nodes: dict[Function, None] = {}
     waiting = [*functions]
     while waiting:
         function = waiting[-1]
         needed = []
-        if function not in nodes and function not in (true(), false()):
+        if function not in nodes and function not in constants:
             _, high, low = branches(function)
-            needed = [n for n in (high, low) if n not in nodes and n not in (true(), false())]
+            needed = [n for n in (high, low) if n not in nodes and n not in constants]
             if not needed:
                 nodes[function] = None
         waiting.extend(needed)

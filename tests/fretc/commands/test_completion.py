@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fretc.cli import cli
-from fretc.terminal.completion import SHELLS
+from fretc.commands.completion import SHELLS
 from fretc.terminal.group import DEFAULT
 from tests.command import Fretc, write
 

@@ -1,7 +1,7 @@
 """What a result shows of its requirement."""
 
 from fretc.audit.evidence.result_summaries import brief
-from fretc.report.model.audits import SingleAudit
+from fretc.report.model.assessments import SingleAudit
 from tests.fretc.audit.results import result
 
 
