@@ -22,7 +22,7 @@ from compiler.files.records import UNSET, decoded, plain, replace
 from compiler.files.text_files import sha256
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.reader import read as read_file
-from fretc.audit.evidence.schema import Document, Result
+from fretc.audit.evidence.schema import EvidenceDocument, Result
 from fretc.audit.outputs.summary import run_query, summarize
 from fretc.audit.outputs.table import read as read_tables
 from fretc.audit.store.anywhere import source
@@ -123,7 +123,7 @@ def _violations(choose: random.Random, original: Result) -> list[dict[str, Any]]
 # Steps --------------------------------------------------------------------------------------------
 
 
-def write(path: Path, head: Document, runs: Iterator[list[Result]]) -> None:
+def write(path: Path, head: EvidenceDocument, runs: Iterator[list[Result]]) -> None:
     file = StoreFile(path / "unfinished-1.sqlite")
     for place, run in enumerate(runs):
         file.put(*packed(place, run))
@@ -236,7 +236,7 @@ def _changed(path: Path, evidence: str, runs: int, requirements: int) -> tuple[f
     return _timed(change, path, fresh)
 
 
-def _original(path: str) -> tuple[Document, Result]:
+def _original(path: str) -> tuple[EvidenceDocument, Result]:
     found = read_file(path)
     assert isinstance(found, EvidenceFile), found
     return replace(found.document, results=()), found.document.results[0]

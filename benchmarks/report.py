@@ -26,7 +26,7 @@ from compiler.project.project import Project
 from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import BINDINGS as BOUND
 from fretc.audit.evidence.basis import of_all
-from fretc.audit.evidence.schema import SCHEMA, Document, Result
+from fretc.audit.evidence.schema import SCHEMA, EvidenceDocument, Result
 from fretc.audit.store.container import packed
 from fretc.audit.store.writer import StoreFile, complete, publish
 from fretc.report.make import make
@@ -255,7 +255,7 @@ def written(folder: Path, requirements: int, runs: int, share: float, form: str)
     file = StoreFile(folder / STORE / "unfinished-1.sqlite")
     for place, run in enumerate(of_runs):
         file.put(*packed(place, decoded(run, list[Result])))
-    document = decoded({**head(known), "results": []}, Document)
+    document = decoded({**head(known), "results": []}, EvidenceDocument)
     complete(file.path, document, file.close())
     publish(file.path)
 

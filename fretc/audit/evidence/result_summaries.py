@@ -27,15 +27,15 @@ from compiler.files.records import field as record_field
 from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.probabilities import Estimated, Outcomes
 from fretc.audit.evidence.schema import (
-    Bindings,
+    BindingsRecord,
     Hashes,
     Health,
     Labels,
-    Requirement,
+    RequirementRecord,
     Result,
     Selection,
     Situations,
-    Threshold,
+    ThresholdRecord,
     Verdict,
     trials_of,
 )
@@ -129,11 +129,11 @@ class Head(Protocol):
         """Version of the tool that audited."""
 
     @property
-    def bindings(self) -> Bindings:
+    def bindings(self) -> BindingsRecord:
         """The bindings with which the logs were read."""
 
     @property
-    def requirements(self) -> Sequence[Requirement]:
+    def requirements(self) -> Sequence[RequirementRecord]:
         """The requirements of the audit."""
 
     @property
@@ -159,12 +159,12 @@ class HeadProperties:
         return self.head.fretc
 
     @property
-    def bindings(self) -> Bindings:
+    def bindings(self) -> BindingsRecord:
         """The bindings with which the logs were read."""
         return self.head.bindings
 
     @property
-    def requirements(self) -> Sequence[Requirement]:
+    def requirements(self) -> Sequence[RequirementRecord]:
         """The requirements of the audit."""
         return self.head.requirements
 
@@ -195,11 +195,11 @@ class EvidenceSource(Protocol):
         """Version of the tool that audited."""
 
     @property
-    def bindings(self) -> Bindings:
+    def bindings(self) -> BindingsRecord:
         """The bindings with which the logs were read."""
 
     @property
-    def requirements(self) -> Sequence[Requirement]:
+    def requirements(self) -> Sequence[RequirementRecord]:
         """The requirements of the audit."""
 
     @property
@@ -227,7 +227,7 @@ class EvidenceSource(Protocol):
 
     def thresholds(
         self, requirements: Collection[str]
-    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+    ) -> Iterator[tuple[int, Sequence[ThresholdRecord]]]:
         """The thresholds of each result of some requirements, with its index, in order."""
 
     def situations(

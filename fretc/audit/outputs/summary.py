@@ -86,7 +86,7 @@ _STEPS = 100_000
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class QueryResult:
     """The result of a query."""
 
     columns: tuple[str, ...]
@@ -99,14 +99,14 @@ class Answer:
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class TableSummary:
     """The summary of a table."""
 
     whole: Mapping[str, Any]
-    requirements: Answer
-    failed: Answer
+    requirements: QueryResult
+    failed: QueryResult
     """Runs in which not every requirement is satisfied, the worst first."""
-    slowest: Answer
+    slowest: QueryResult
     remarks: tuple[Diagnostic, ...]
     """Requirements with several fingerprints, and logs with several verdicts."""
 
@@ -133,11 +133,11 @@ class Summary:
         }
 
 
-def summarize(tables: sqlite3.Connection) -> Summary:
+def summarize(tables: sqlite3.Connection) -> TableSummary:
     """The summary of all results."""
     tables.execute(_COUNTED)
     (totals,) = _answer(tables, _WHOLE).records
-    return Summary(
+    return TableSummary(
         totals,
         _answer(tables, _REQUIREMENTS),
         _answer(tables, _FAILED),
@@ -149,7 +149,7 @@ def summarize(tables: sqlite3.Connection) -> Summary:
     )
 
 
-def run_query(tables: sqlite3.Connection, query: str) -> Answer | Diagnostic:
+def run_query(tables: sqlite3.Connection, query: str) -> QueryResult | Diagnostic:
     """The answer to a query of the user, which can only read these tables."""
     end = time.monotonic() + _MOST_SECONDS
     tables.set_authorizer(
@@ -163,10 +163,10 @@ def run_query(tables: sqlite3.Connection, query: str) -> Answer | Diagnostic:
     return answer if answer.columns else diagnostic("query_fails", message="it is empty")
 
 
-def _answer(tables: sqlite3.Connection, query: str) -> Answer:
+def _answer(tables: sqlite3.Connection, query: str) -> QueryResult:
     found = tables.execute(query)
     columns = tuple(column[0] for column in found.description or ())
-    return Answer(columns, tuple(found.fetchall()))
+    return QueryResult(columns, tuple(found.fetchall()))
 
 
 def _mixed(requirement: str, kinds: int) -> Diagnostic:

@@ -23,10 +23,10 @@ from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.result_summaries import brief
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
 from fretc.audit.evidence.schema import (
-    Bindings,
-    Document,
+    BindingsRecord,
+    EvidenceDocument,
     Hashes,
-    Requirement,
+    RequirementRecord,
     Result,
     Selection,
 )
@@ -61,8 +61,8 @@ class _Part(Record, frozen=True):
 class _Manifest(Record, frozen=True):
     schema: Literal["fretc-store-1"]
     fretc: str
-    bindings: Bindings
-    requirements: tuple[Requirement, ...]
+    bindings: BindingsRecord
+    requirements: tuple[RequirementRecord, ...]
     confidence: float | None
     parts: tuple[_Part, ...]
     register: _Table | UnsetType = UNSET
@@ -115,7 +115,7 @@ def read(path: str) -> EvidenceFile | Diagnostic:
         return bad_store(path, f"cannot be read: {error}")
     except (LookupError, TypeError, ValueError, AttributeError):
         return bad_store(path, "cannot be read: it has other tables than an earlier fretc wrote")
-    document = Document(
+    document = EvidenceDocument(
         schema=EVIDENCE,
         fretc=manifest.fretc,
         bindings=manifest.bindings,

@@ -39,15 +39,15 @@ from fretc.audit.evidence.result_summaries import (
     run_facts,
 )
 from fretc.audit.evidence.schema import (
-    Document,
+    EvidenceDocument,
     Health,
     Labels,
     Result,
     Situations,
-    Threshold,
+    ThresholdRecord,
     Violation,
 )
-from fretc.audit.measurements.tallies import Tally
+from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.store import container, earlier_store
 from fretc.audit.store.container import (
     FILE,
@@ -88,7 +88,7 @@ class _Violations(PartialRecord, frozen=True):
 
 
 class _Propositions(PartialRecord, frozen=True):
-    propositions: dict[str, Tally]
+    propositions: dict[str, PropositionTally]
 
 
 @dataclass(frozen=True)
@@ -100,12 +100,12 @@ class Store(HeadProperties):
     sha256: str
     path: Path
     """The container."""
-    document: Document
+    document: EvidenceDocument
     """The evidence without its results."""
     rows: Sequence[Row]
 
     @property
-    def head(self) -> Document:
+    def head(self) -> EvidenceDocument:
         """The facts of the audit as a whole."""
         return self.document
 
@@ -158,12 +158,12 @@ class Store(HeadProperties):
 
     def thresholds(
         self, requirements: Collection[str]
-    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+    ) -> Iterator[tuple[int, Sequence[ThresholdRecord]]]:
         """The thresholds of each result of some requirements, with its index, in order."""
         for index, each in enumerate(self._parts(_Thresholds)):
             if each.requirement in requirements:
                 with self._valid():
-                    found = strict(each.thresholds, list[Threshold])
+                    found = strict(each.thresholds, list[ThresholdRecord])
                 yield index, found
 
     def situations(
@@ -177,7 +177,7 @@ class Store(HeadProperties):
                     found = UNSET if raw is UNSET else strict(raw, Situations)
                 yield index, found
 
-    def tallies(self) -> Iterator[dict[str, Tally]]:
+    def tallies(self) -> Iterator[dict[str, PropositionTally]]:
         """The tally of each proposition in each run."""
         for run in self._runs(_Propositions):
             yield {name: one for part in run.results for name, one in part.propositions.items()}
@@ -238,7 +238,7 @@ def opened(path: str) -> Store | EvidenceFile | Diagnostic:
             ((text, sha256),) = connection.execute("SELECT head, sha256 FROM about LIMIT 2")
             if text is None:
                 raise SchemaError("its audit was not finished")
-            head, rows = decoded(parsed(text), Document), container.rows(connection)
+            head, rows = decoded(parsed(text), EvidenceDocument), container.rows(connection)
             if identity(text, rows) != sha256 or head.results:
                 raise SchemaError("its runs are not those of its head")
             for row in rows:

@@ -11,7 +11,7 @@ from sqlite3 import Error as SqliteError
 
 from compiler.files.records import UNSET, replace
 from compiler.files.text_files import destination
-from fretc.audit.evidence.schema import Document, Result
+from fretc.audit.evidence.schema import EvidenceDocument, Result
 from fretc.audit.evidence.writer import text
 from fretc.audit.store import earlier_store
 from fretc.audit.store.container import (
@@ -83,7 +83,7 @@ class StoreFile:
             closed(self.connection)
 
 
-def complete(path: Path, document: Document, found: Sequence[Row]) -> str:
+def complete(path: Path, document: EvidenceDocument, found: Sequence[Row]) -> str:
     """Write the head of a file that was closed; gives the SHA-256 of the evidence.
 
     Args:
@@ -144,7 +144,7 @@ def _shared(result: Result) -> tuple[object, ...]:
     return result.run, result.health, result.labels
 
 
-def write_document(folder: Path, document: Document) -> str | Diagnostic:
+def write_document(folder: Path, document: EvidenceDocument) -> str | Diagnostic:
     """Write evidence that is in memory as a store; gives the SHA-256 of the evidence."""
     try:
         destination(folder / FILE)

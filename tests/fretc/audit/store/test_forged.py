@@ -10,7 +10,7 @@ import pytest
 
 from compiler.files.records import decoded
 from fretc.audit.evidence.result_summaries import brief, run_facts
-from fretc.audit.evidence.schema import Document
+from fretc.audit.evidence.schema import EvidenceDocument
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read, source
 from fretc.audit.store.container import StoreError, record_text
@@ -21,7 +21,7 @@ from tests.effort import some
 from tests.fretc.audit.store.test_hostile import with_record
 from tests.fretc.audit.store.test_whole_numbers import evidence, put
 
-DOCUMENT = decoded(json.loads(evidence((("results", 0, "ticks"), 1))), Document)
+DOCUMENT = decoded(json.loads(evidence((("results", 0, "ticks"), 1))), EvidenceDocument)
 """One run with something in each field."""
 Step = str | int
 
