@@ -31,7 +31,7 @@ from mcap_ros2.decoder import DecoderFactory as Ros2
 
 from benchmarks.timing import least
 from compiler.project.folder import load
-from fretc.audit.many_logs import Audit, audit_logs
+from fretc.audit.many_logs import AuditOutcome, audit_logs
 from fretc.audit.plan import Plan, planned
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
@@ -183,9 +183,9 @@ def plan(integrity: Integrity) -> Plan:
     return made
 
 
-def audited(path: str, judged: Plan) -> Audit:
+def audited(path: str, judged: Plan) -> AuditOutcome:
     audit = audit_logs(judged, [path])
-    assert isinstance(audit, Audit), audit.message
+    assert isinstance(audit, AuditOutcome), audit.message
     assert audit.read == 1
     return audit
 

@@ -22,7 +22,7 @@ from compiler.emit import TARGETS
 from compiler.files.text_files import write as deliver
 from compiler.project.folder import load
 from compiler.project.paths import expanded_paths
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.ros1 import PYTHON, missing, ros, until
 
@@ -81,7 +81,7 @@ def package(folder: Path, kind: str, count: int, time: str) -> Path:
     project = load(paths)
     target, options = (
         TARGETS["ros1-package"],
-        Options(declarations=project.declarations, attribution=project.attribution),
+        TargetOptions(declarations=project.declarations, attribution=project.attribution),
     )
     assert [target.refuse(requirement) for requirement in project.formalized] == [None] * count
     files = target.emit(project.formalized, options)

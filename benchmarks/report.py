@@ -26,9 +26,9 @@ from compiler.project.project import Project
 from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import BINDINGS as BOUND
 from fretc.audit.evidence.basis import of_all
-from fretc.audit.evidence.schema import SCHEMA, Document, Result
+from fretc.audit.evidence.schema import SCHEMA, EvidenceDocument, Result
 from fretc.audit.store.manifest import SCHEMA as STORES
-from fretc.audit.store.manifest import Manifest, Part
+from fretc.audit.store.manifest import Part, StoreManifest
 from fretc.audit.store.parts import parts as parts_of
 from fretc.audit.store.tables import to_tables
 from fretc.audit.store.writer import write_manifest, write_part
@@ -260,9 +260,9 @@ def written(folder: Path, requirements: int, runs: int, share: float, form: str)
         part = write_part(folder / STORE, to_tables(of_part, __version__))
         assert isinstance(part, Part), part
         parts.append(part)
-    document = decoded({**head(known), "results": []}, Document)
+    document = decoded({**head(known), "results": []}, EvidenceDocument)
     fields = (document.fretc, document.bindings, document.requirements, None, tuple(parts))
-    assert isinstance(write_manifest(folder / STORE, Manifest(STORES, *fields)), str)
+    assert isinstance(write_manifest(folder / STORE, StoreManifest(STORES, *fields)), str)
 
 
 def report(folder: Path, requirements: int, form: str) -> tuple[float, float, float, float]:

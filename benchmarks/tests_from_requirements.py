@@ -24,7 +24,7 @@ from compiler.project.paths import requirement_files
 from compiler.situations.mutants import mutants
 from fretc.testing.assembly import jobs
 from fretc.testing.suite import MutantStatus
-from fretc.testing.words import Word, is_killed, judged
+from fretc.testing.words import RunColumns, is_killed, judged
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.requirement_sets import requirement
 
@@ -50,16 +50,16 @@ def sentences() -> list[FormalizedRequirement]:
     ]
 
 
-def as_word(requirement: FormalizedRequirement, rows: Sequence[Valuation]) -> Word:
+def as_word(requirement: FormalizedRequirement, rows: Sequence[Valuation]) -> RunColumns:
     """Valuations of the atoms of a requirement, tick by tick."""
     columns = {
         name: sum(row[place] << tick for tick, row in enumerate(rows))
         for place, name in enumerate(requirement.watched)
     }
-    return Word((), columns, len(rows))
+    return RunColumns((), columns, len(rows))
 
 
-def by_flips(requirement: FormalizedRequirement) -> Iterator[Word]:
+def by_flips(requirement: FormalizedRequirement) -> Iterator[RunColumns]:
     """For each atom a shortest accepted word that one flip of it makes a rejected one."""
     template = reference.template(requirement.sentence, requirement.ticks or 0)
     letters = letters_by_valuation(requirement.sentence, requirement.watched)
@@ -94,7 +94,7 @@ def by_flips(requirement: FormalizedRequirement) -> Iterator[Word]:
 
 def at_random(
     requirement: FormalizedRequirement, lengths: Sequence[int], seed: int
-) -> Iterator[Word]:
+) -> Iterator[RunColumns]:
     """Words of the same lengths."""
     drawn = random.Random(f"{requirement.id} {seed}")
     for ticks in lengths:
@@ -107,7 +107,7 @@ def at_random(
 def killed(
     requirement: FormalizedRequirement,
     wrong: Sequence[FormalizedRequirement],
-    words: Sequence[Word],
+    words: Sequence[RunColumns],
 ) -> int:
     """How many of the mutants some word kills."""
     own = [judged(requirement, word) for word in words]

@@ -16,17 +16,17 @@ import numpy as np
 from simulation import __version__
 from simulation.nodes import messages
 from simulation.nodes.bus import Bus
-from simulation.nodes.driving import Driver
-from simulation.nodes.guarding import WARM_UP, Gate, SafetyFunction
+from simulation.nodes.driving import DriverNode
+from simulation.nodes.guarding import WARM_UP, Gate, SafetyFunctionNode
 from simulation.nodes.navigation import RESOLUTION, PoseError
 from simulation.nodes.safety import Decision, Interceptor, TooClose
-from simulation.recording import TOPICS, Encoding, Recording, recording
+from simulation.recording import TOPICS, Encoding, MissionRecording, recording
 from simulation.world.lidar import Lidar
 from simulation.world.motion import STANDSTILL, Pose
 from simulation.world.robot import PHYSICS_STEP, Robot
 from simulation.world.scenario import Scenario
 from simulation.world.scene import STORE, Scene
-from simulation.world.walking import Walk
+from simulation.world.walking import WalkerPath
 
 EPOCH = 1_700_000_000 * 10**9
 """Nanoseconds; the log's time at the start of each mission."""
@@ -144,7 +144,7 @@ def record(
     """
     limit = scenario.duration if max_seconds is None else max_seconds
     with recording(out, encoding, scenario.recorder, EPOCH) as log:
-        run = _Run(scenario, interceptor, seed, log, decision)
+        run = _MissionRun(scenario, interceptor, seed, log, decision)
         ticks = round(limit * _SECOND / TICK)
         while run.tick < ticks and not run.over:
             if progress and run.tick % _TICKS_PER_SECOND == 0:
@@ -195,7 +195,7 @@ def possible(scenario: Scenario) -> None:
         raise ValueError(f"the robot has no topic `{unknown[0]}`")
 
 
-class _Run:
+class _MissionRun:
     """A mission under way: the parts, wired by topics as on the robot."""
 
     def __init__(
@@ -203,7 +203,7 @@ class _Run:
         scenario: Scenario,
         interceptor: Interceptor,
         seed: int,
-        log: Recording,
+        log: MissionRecording,
         decision: Decision | None,
     ) -> None:
         self.tick = 0
@@ -211,17 +211,17 @@ class _Run:
         sensor = scenario.lidar
         lidar = Lidar(range_min=sensor.range_min, loses_near=sensor.nearer == "lost")
         self._lidar, self._scene = lidar, really(STORE, scenario)
-        self._walk = Walk(scenario.store.walker) if scenario.store.walker else None
+        self._walk = WalkerPath(scenario.store.walker) if scenario.store.walker else None
         walker = self._walk.obstacle if self._walk else None
         self._robot = Robot(self._scene, lidar, seed, walker)
         self._error = PoseError(seed)
         self._wheels = STANDSTILL
         self._bus = Bus(log.write, scenario.transport, seed, EPOCH + WARM_UP)
         self._bus.subscribe("/cmd_vel_filtered", self._hear_wheels)
-        self._driver = Driver(self._bus, STORE, scenario, lidar, EPOCH)
+        self._driver = DriverNode(self._bus, STORE, scenario, lidar, EPOCH)
         if scenario.safety.on:
             rule = decision or TooClose(lidar, scenario.safety.threshold)
-            SafetyFunction(self._bus, rule, scenario.safety, EPOCH)
+            SafetyFunctionNode(self._bus, rule, scenario.safety, EPOCH)
         Gate(self._bus, interceptor, scenario.interceptor.period, EPOCH)
         self._judge = _Judge(self._robot)
         self._bus.subscribe("/gwendolen_control", self._judge.hear_stop)

@@ -34,7 +34,7 @@ class Encoding(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Topic:
+class RecordedTopic:
     """A topic's message type and the quality of service that its publisher offers."""
 
     name: str
@@ -56,24 +56,24 @@ class Topic:
 
 
 TOPICS = (
-    Topic("/scan", "sensor_msgs/msg/LaserScan", depth=5, reliability="best_effort"),
-    Topic("/odom", "nav_msgs/msg/Odometry"),
-    Topic("/ground_truth", "nav_msgs/msg/Odometry"),
-    Topic("/ground_truth/clearance", "std_msgs/msg/Float64"),
-    Topic("/cmd_vel", "geometry_msgs/msg/Twist"),
-    Topic("/cmd_vel_filtered", "geometry_msgs/msg/Twist"),
-    Topic("/gwendolen_control", "std_msgs/msg/Bool", 1, durability="transient_local"),
-    Topic("/manual_control", "std_msgs/msg/Bool", 1, durability="transient_local"),
-    Topic("/goal", "geometry_msgs/msg/PoseStamped", 1, durability="transient_local"),
-    Topic("/tf", "tf2_msgs/msg/TFMessage", depth=100),
-    Topic("/tf_static", "tf2_msgs/msg/TFMessage", 1, durability="transient_local"),
-    Topic("/map", "nav_msgs/msg/OccupancyGrid", 1, durability="transient_local"),
-    Topic("/robot_description", "std_msgs/msg/String", 1, durability="transient_local"),
-    Topic("/clock", "rosgraph_msgs/msg/Clock", 1, reliability="best_effort"),
+    RecordedTopic("/scan", "sensor_msgs/msg/LaserScan", depth=5, reliability="best_effort"),
+    RecordedTopic("/odom", "nav_msgs/msg/Odometry"),
+    RecordedTopic("/ground_truth", "nav_msgs/msg/Odometry"),
+    RecordedTopic("/ground_truth/clearance", "std_msgs/msg/Float64"),
+    RecordedTopic("/cmd_vel", "geometry_msgs/msg/Twist"),
+    RecordedTopic("/cmd_vel_filtered", "geometry_msgs/msg/Twist"),
+    RecordedTopic("/gwendolen_control", "std_msgs/msg/Bool", 1, durability="transient_local"),
+    RecordedTopic("/manual_control", "std_msgs/msg/Bool", 1, durability="transient_local"),
+    RecordedTopic("/goal", "geometry_msgs/msg/PoseStamped", 1, durability="transient_local"),
+    RecordedTopic("/tf", "tf2_msgs/msg/TFMessage", depth=100),
+    RecordedTopic("/tf_static", "tf2_msgs/msg/TFMessage", 1, durability="transient_local"),
+    RecordedTopic("/map", "nav_msgs/msg/OccupancyGrid", 1, durability="transient_local"),
+    RecordedTopic("/robot_description", "std_msgs/msg/String", 1, durability="transient_local"),
+    RecordedTopic("/clock", "rosgraph_msgs/msg/Clock", 1, reliability="best_effort"),
 )
 
 
-class Recording:
+class MissionRecording:
     """An MCAP file that is being written."""
 
     def __init__(
@@ -82,7 +82,7 @@ class Recording:
         encoding: Encoding = Encoding.ROS2,
         faults: Recorder = Recorder(),  # noqa: B008 - frozen
         epoch: int = 0,
-        topics: Sequence[Topic] = TOPICS,
+        topics: Sequence[RecordedTopic] = TOPICS,
     ) -> None:
         # Any: the writer's `finish` carries no annotations.
         self._writer: Any = Writer(stream, compression=CompressionType.ZSTD)
@@ -120,7 +120,7 @@ class Recording:
         data = bytes(TYPES.serialize_cdr(message, message.__msgtype__, little_endian=True))
         return data if self._ros1 is None else bytes(TYPES.cdr_to_ros1(data, message.__msgtype__))
 
-    def _register(self, topic: Topic) -> int:
+    def _register(self, topic: RecordedTopic) -> int:
         """Declare a topic and its message type; the number of its channel."""
         if self._ros1 is not None:
             return self._register_ros1(topic, self._ros1)
@@ -129,7 +129,7 @@ class Recording:
         qos = {"offered_qos_profiles": topic.offered_qos_profiles()}
         return int(self._writer.register_channel(topic.name, "cdr", schema, qos))
 
-    def _register_ros1(self, topic: Topic, types: "Typestore") -> int:
+    def _register_ros1(self, topic: RecordedTopic, types: "Typestore") -> int:
         text, digest = types.generate_msgdef(topic.type, ros_version=1)
         name = topic.type.replace("/msg/", "/")
         schema = self._writer.register_schema(name, "ros1msg", text.encode())
@@ -152,13 +152,13 @@ def recording(
     encoding: Encoding = Encoding.ROS2,
     faults: Recorder = Recorder(),  # noqa: B008 - frozen
     epoch: int = 0,
-    topics: Sequence[Topic] = TOPICS,
-) -> Iterator[Recording]:
+    topics: Sequence[RecordedTopic] = TOPICS,
+) -> Iterator[MissionRecording]:
     """Write a log that is there complete or not at all.
 
     Until the end of the block the file has another name in the same folder. Whatever ends the
     block early, Ctrl-C included, that file is removed and an older one at `path` stays.
-    The block has to call `Recording.finish`.
+    The block has to call `MissionRecording.finish`.
 
     Args:
         path: of the file.
@@ -173,7 +173,7 @@ def recording(
     partial = path.with_name(f".{path.name}.{secrets.token_hex(4)}.partial")
     try:
         with open(partial, "xb", opener=_private) as stream:
-            yield Recording(stream, encoding, faults, epoch, topics)
+            yield MissionRecording(stream, encoding, faults, epoch, topics)
         if faults.keep < 1:
             os.truncate(partial, round(partial.stat().st_size * faults.keep))
         mask = os.umask(0o077)

@@ -15,16 +15,16 @@ from pathlib import Path
 from typing import Any
 
 from simulation.nodes import messages as say
-from simulation.recording import Topic, recording
-from simulation.world.motion import Pose, Velocity
+from simulation.recording import RecordedTopic, recording
+from simulation.world.motion import BodyVelocity, Pose
 
 TOPICS = (
-    Topic("/odom", "nav_msgs/msg/Odometry"),
-    Topic("/battery", "sensor_msgs/msg/BatteryState"),
-    Topic("/mode", "std_msgs/msg/String"),
-    Topic("/docked", "std_msgs/msg/Bool"),
-    Topic("/estop", "std_msgs/msg/Bool"),
-    Topic("/person", "std_msgs/msg/Float64"),
+    RecordedTopic("/odom", "nav_msgs/msg/Odometry"),
+    RecordedTopic("/battery", "sensor_msgs/msg/BatteryState"),
+    RecordedTopic("/mode", "std_msgs/msg/String"),
+    RecordedTopic("/docked", "std_msgs/msg/Bool"),
+    RecordedTopic("/estop", "std_msgs/msg/Bool"),
+    RecordedTopic("/person", "std_msgs/msg/Float64"),
 )
 EPOCH = 1_700_000_000_000_000_000
 STEP_MS, LENGTH_MS = 50, 65_000
@@ -56,30 +56,30 @@ GOOD = Timetable()
 PLANTED = Timetable(hurry=1.8, notices_person=31_000, notices_battery=46_600)
 
 
-def _wanted(plan: Timetable, at: int) -> Velocity:
+def _wanted(plan: Timetable, at: int) -> BodyVelocity:
     """What the planner asks for."""
     if at < 2_000 or 36_000 <= at < 38_000:  # it begins; somebody presses the button
-        return Velocity(0.0, 0.0)
+        return BodyVelocity(0.0, 0.0)
     if plan.notices_person <= at < 33_500:
-        return Velocity(0.0, 0.0)
+        return BodyVelocity(0.0, 0.0)
     if at >= plan.notices_battery - 500:  # it slows down before it says that it docks
-        return Velocity(0.25 if at < plan.docked - 500 else 0.0, 0.0)
+        return BodyVelocity(0.25 if at < plan.docked - 500 else 0.0, 0.0)
     if 20_000 <= at < 24_500:
-        return Velocity(0.4, math.pi / 4 if at >= 20_500 else 0.0)
-    return Velocity(plan.hurry if 25_000 <= at < 28_000 else 1.2 if at < 36_000 else 0.8, 0.0)
+        return BodyVelocity(0.4, math.pi / 4 if at >= 20_500 else 0.0)
+    return BodyVelocity(plan.hurry if 25_000 <= at < 28_000 else 1.2 if at < 36_000 else 0.8, 0.0)
 
 
-def _moved(pose: Pose, velocity: Velocity) -> Pose:
+def _moved(pose: Pose, velocity: BodyVelocity) -> Pose:
     way = velocity.forward * STEP_MS / 1000
     yaw = pose.yaw + velocity.turn * STEP_MS / 1000
     return Pose(pose.x + way * math.cos(yaw), pose.y + way * math.sin(yaw), yaw)
 
 
-def _driven(before: Velocity, wanted: Velocity) -> Velocity:
+def _driven(before: BodyVelocity, wanted: BodyVelocity) -> BodyVelocity:
     """What the wheels make of it in a step."""
     least, most = -BRAKING * STEP_MS / 1000, ACCELERATION * STEP_MS / 1000
     change = min(max(wanted.forward - before.forward, least), most)
-    return Velocity(round(before.forward + change, 6), wanted.turn)
+    return BodyVelocity(round(before.forward + change, 6), wanted.turn)
 
 
 def _mode(plan: Timetable, at: int) -> str:
@@ -90,7 +90,7 @@ def _mode(plan: Timetable, at: int) -> str:
 
 def drive(plan: Timetable) -> Iterator[tuple[str, Any, int]]:
     """Topic, message and time (nanoseconds), in their order."""
-    pose, velocity, charge = Pose(1.0, 0.0), Velocity(0.0, 0.0), 0.2595
+    pose, velocity, charge = Pose(1.0, 0.0), BodyVelocity(0.0, 0.0), 0.2595
     for at in range(0, LENGTH_MS + 1, STEP_MS):
         time = EPOCH + at * 10**6
         velocity = _driven(velocity, _wanted(plan, at))

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.c.monitor import TARGET
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from monitors.kernel import Monitor
 from monitors.kernel.stepping import Marks
 from monitors.kernel.verdicts import Requirement, Signals, Truth
@@ -68,7 +68,7 @@ class Source:
         assert [TARGET.refuse(requirement) for requirement in requirements] == [None] * len(
             requirements
         )
-        files = TARGET.emit(requirements, Options(one_file=len(requirements) > 1))
+        files = TARGET.emit(requirements, TargetOptions(one_file=len(requirements) > 1))
         texts = {str(file.path): file.text for file in files}
         header = next(text for name, text in texts.items() if name.endswith(".h"))
         (base,) = re.findall(r"^} (\w+)_inputs;$", header, re.M)

@@ -74,7 +74,7 @@ def without_processes(monkeypatch: pytest.MonkeyPatch) -> None:
         for place in places:
             yield place, function(things[place])
 
-    monkeypatch.setattr(sandbox.Session, "call", call)
+    monkeypatch.setattr(sandbox.SandboxSession, "call", call)
     monkeypatch.setattr(pool, "_shared", here)
 
 

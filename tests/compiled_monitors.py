@@ -11,7 +11,7 @@ from tempfile import mkdtemp
 from typing import Any, ParamSpec, TypeVar
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.claims import Outcome, Result
+from compiler.logic.claims import ClaimOutcome, ClaimResult
 from compiler.targets.javascript.monitor import text as in_javascript
 from fretc.verification.c import language as c
 from fretc.verification.compiled.plan import Executable, Language, ParsedSource, SourceText
@@ -54,7 +54,11 @@ SENTENCES = (
     "whenever p the sw shall immediately satisfy x < 3",
 )
 REFUTED, REFUSED, SAME = "refuted", "refused", "same"
-KINDS = {Result.COUNTEREXAMPLE: REFUTED, Result.PROVED: SAME, Result.NOT_CHECKED: REFUSED}
+KINDS = {
+    ClaimResult.COUNTEREXAMPLE: REFUTED,
+    ClaimResult.PROVED: SAME,
+    ClaimResult.NOT_CHECKED: REFUSED,
+}
 
 
 def edited(monitor: SourceText, old: str, new: str) -> SourceText:
@@ -85,7 +89,7 @@ class Checker:
 
     def outcomes(
         self, monitor: SourceText, requirements: Sequence[FormalizedRequirement]
-    ) -> list[Outcome]:
+    ) -> list[ClaimOutcome]:
         """Of each requirement of one text."""
         checked, executable = self.prepared(monitor, *requirements)
         return [
@@ -93,7 +97,7 @@ class Checker:
             for requirement in requirements
         ]
 
-    def outcome(self, monitor: SourceText, requirement: FormalizedRequirement) -> Outcome:
+    def outcome(self, monitor: SourceText, requirement: FormalizedRequirement) -> ClaimOutcome:
         """Of a text of one requirement."""
         (outcome,) = self.outcomes(monitor, [requirement])
         return outcome

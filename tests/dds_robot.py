@@ -22,7 +22,7 @@ from mcap.records import Channel, Message, Schema
 from mcap.stream_reader import StreamReader
 
 from fretc.logs.messages.ros2_types import definitions
-from fretc.watch.sources.dds_domain import Domain, Writer, join
+from fretc.watch.sources.dds_domain import DdsWriter, Domain, join
 from fretc.watch.sources.dds_types import Offer
 from simulation.recording import TOPICS
 
@@ -30,7 +30,7 @@ _STAMP = struct.Struct("<iI")
 _SECOND = 10**9
 
 
-def writers(domain: Domain) -> dict[str, Writer]:
+def writers(domain: Domain) -> dict[str, DdsWriter]:
     """As a robot's nodes offer them: with a type hash, without type information."""
     found = {}
     for topic in TOPICS:

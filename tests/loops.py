@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from compiler.targets.python import monitor as target
-from fretc.verification.loop.actuation_model import Channel
+from fretc.verification.loop.actuation_model import ActuationAssumptions
 from fretc.verification.loop.search import Case
 from monitors.interceptor import Options
 from monitors.source_text import interceptor
@@ -30,7 +30,7 @@ CORE = f"{interceptor().imports}\n\n{interceptor().text}\n"
 def case(
     sentence: str,
     settings: Options = TIMER,
-    channel: Channel = Channel(1),  # noqa: B008
+    channel: ActuationAssumptions = ActuationAssumptions(1),  # noqa: B008
     core: str = CORE,
 ) -> Case:
     """The case of a sentence about `near` and `stopped`."""

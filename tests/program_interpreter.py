@@ -13,12 +13,12 @@ from compiler.program.instructions import (
     Advance,
     Assign,
     Choose,
-    Count,
     Instruction,
+    SetCounter,
     Shift,
     Slide,
 )
-from compiler.program.program import Counter, Flag, Program, Requirement, Window
+from compiler.program.program import Counter, Program, RequirementProgram, StoredFlag, WindowMemory
 from compiler.program.values import (
     Age,
     And,
@@ -57,9 +57,9 @@ def initial(program: Program) -> State:
     windows: dict[str, Pairs] = {}
     for cell in program.cells:
         match cell:
-            case Flag() | Counter():
+            case StoredFlag() | Counter():
                 values[cell.name] = cell.initial
-            case Window():
+            case WindowMemory():
                 windows[cell.name] = ()
             case _:
                 assert_never(cell)
@@ -75,7 +75,7 @@ def step(program: Program, state: State, row: Mapping[str, Truth], doubt: bool =
         row: the truth of each proposition; None: unknown.
         doubt: the value that an unknown literal counts as.
     """
-    sizes = {cell.name: cell for cell in program.cells if isinstance(cell, Window)}
+    sizes = {cell.name: cell for cell in program.cells if isinstance(cell, WindowMemory)}
     tick = _Tick(row, doubt, sizes, dict(state.values), dict(state.windows))
     for block in program.blocks:
         for instruction in block.instructions:
@@ -88,7 +88,7 @@ def step(program: Program, state: State, row: Mapping[str, Truth], doubt: bool =
     return State(now, tick.values, tick.windows, signals, tuple(marks))
 
 
-def _marked(requirement: Requirement, before: Marks, now: Signals[bool], tick: int) -> Marks:
+def _marked(requirement: RequirementProgram, before: Marks, now: Signals[bool], tick: int) -> Marks:
     """The marks after a tick with these signals."""
     broken = tick if before.broken < 0 and now.breach else before.broken
     doomed = tick if before.doomed < 0 and now.doom else before.doomed
@@ -106,7 +106,7 @@ class _Tick:
 
     row: Mapping[str, Truth]
     doubt: bool
-    sizes: Mapping[str, Window]
+    sizes: Mapping[str, WindowMemory]
     values: dict[str, bool | int] = field(default_factory=dict)
     windows: dict[str, Pairs] = field(default_factory=dict)
 
@@ -136,7 +136,7 @@ class _Tick:
                 self.values[name] = self.value(value)
             case Shift(name, cell, value):
                 self.values[name], self.values[cell] = self.values[cell], self.value(value)
-            case Count(counter, number):
+            case SetCounter(counter, number):
                 self.values[counter] = number
             case Advance(counter, most):
                 self.values[counter] = min(int(self.values[counter]) + 1, most)

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.claims import Outcome, Proof
+from compiler.logic.claims import ClaimOutcome, Proof
 from fretc.verification.monitor.verifying import MOST_STATES, verified_beside, written
 
 
-def outcome(proof: Proof) -> Outcome:
+def outcome(proof: Proof) -> ClaimOutcome:
     """What the engine answered."""
-    return Outcome(proof.result, proof.detail, proof.run)
+    return ClaimOutcome(proof.result, proof.detail, proof.run)
 
 
 def verified(
@@ -17,6 +17,6 @@ def verified(
     text: str,
     limit: int = MOST_STATES,
     others: Sequence[FormalizedRequirement] = (),
-) -> Outcome:
+) -> ClaimOutcome:
     """The comparison of a monitor's text with its requirement, among the others of the text."""
     return verified_beside(requirement, text, written(text, (requirement, *others)), limit)

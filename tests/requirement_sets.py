@@ -11,7 +11,7 @@ import spot
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
-from fretc.analysis.analysis import Options, analyze
+from fretc.analysis.analysis import AnalysisOptions, analyze
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.findings import Analysis
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
@@ -61,7 +61,10 @@ def analyzed(
     """All that is found of them."""
     assumptions = [requirement(f"A{i}", sentence) for i, sentence in enumerate(assumed, 1)]
     return analyze(
-        requirements(*sentences), roles, assumptions, Options(as_fret=as_fret, repairs=repairs)
+        requirements(*sentences),
+        roles,
+        assumptions,
+        AnalysisOptions(as_fret=as_fret, repairs=repairs),
     )
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.rust.monitor import TARGET
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from tests.c_monitors import VERDICTS, Outcome, Reading, Rows
 from tests.programs import installed
 
@@ -23,7 +23,7 @@ def crate(*requirements: FormalizedRequirement) -> Mapping[str, str]:
     assert [TARGET.refuse(requirement) for requirement in requirements] == [None] * len(
         requirements
     )
-    files = TARGET.emit(requirements, Options(one_file=len(requirements) > 1))
+    files = TARGET.emit(requirements, TargetOptions(one_file=len(requirements) > 1))
     return {str(file.path): file.text for file in files}
 
 

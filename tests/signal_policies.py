@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals import numbers as n
 from compiler.signals.policies import meaning
-from fretc.logs.signals.measures import Scope
+from fretc.logs.signals.measures import NameValues
 from fretc.logs.signals.propositions import truth, truth_values
 from fretc.logs.signals.samples import EXACT, Values
 from fretc.logs.signals.signals import is_chosen, sample
@@ -378,7 +378,7 @@ def audited_truth(
     """What the audit says of a proposition where its signals have these numbers."""
     scales = {name: signal.scale for name, signal in given.items()}
     words = {name: signal.values for name, signal in given.items()}
-    (value,) = truth_values(truth(tree, Scope(1, row, scales=scales, words=words)))
+    (value,) = truth_values(truth(tree, NameValues(1, row, scales=scales, words=words)))
     return value
 
 
@@ -409,7 +409,7 @@ def truth_of(tree: n.Truth, row: Mapping[str, Any]) -> Truth:
     match tree:
         case n.Known(value):
             return value
-        case n.Flag(name):
+        case n.BooleanSignal(name):
             number = readings.number(row[name], name)
             return None if number not in (0, 1) else number == 1
         case n.Comparison(sign, left, right):

@@ -19,7 +19,7 @@ import numpy as np
 from compiler.emit import TARGETS
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.policies import policy
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from tests.c_monitors import CHECKED, STRICT
 from tests.effort import FULL
 from tests.programs import installed
@@ -59,7 +59,7 @@ class Language:
         self, folder: Path, requirements: Sequence[FormalizedRequirement], text: str
     ) -> Callable[[bytes], bytes]:
         """What runs the program over the monitor of all requirements."""
-        files = TARGETS[self.target].emit(requirements, Options(one_file=True))
+        files = TARGETS[self.target].emit(requirements, TargetOptions(one_file=True))
         write(folder, {str(file.path): file.text for file in files})
         command = self.build(folder, text)
 

@@ -16,7 +16,7 @@ from typing import Any, get_args
 import pytest
 
 from compiler.formalization import obligation, reference
-from compiler.formalization.obligation import Kind
+from compiler.formalization.obligation import ObligationKind
 from compiler.targets import dafny
 from fretish import syntax as s
 from fretish.diagnostics.source import Source
@@ -40,8 +40,8 @@ TABLES: tuple[tuple[ModuleType, str, object], ...] = (
     (reference, "_DEMANDS", TIMINGS),
     (reference, "_NEGATED", TIMINGS),
     (dafny, "_COUNTERS", TIMINGS),
-    (obligation, "TRAITS", Kind),
-    (obligation, "_DUALS", Kind),
+    (obligation, "TRAITS", ObligationKind),
+    (obligation, "_DUALS", ObligationKind),
     (meaning, "_DEMANDS", KEYS),
     (meaning, "_NEGATED", KEYS),
 )

@@ -14,7 +14,7 @@ from benchmarks.compiled_monitors import copilot_files
 from benchmarks.compiled_monitors.requirement_files import Demand, Task
 from compiler.targets.c.monitor import TARGET as C
 from compiler.targets.rust.monitor import TARGET as RUST
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 
 HERE = Path(__file__).parent
 
@@ -106,7 +106,7 @@ uint64_t monitor_run(const uint8_t *rows, size_t ticks)
 
 
 def _emitted(task: Task) -> Mapping[str, str]:
-    files = C.emit([each.requirement() for each in task.demands], Options(one_file=True))
+    files = C.emit([each.requirement() for each in task.demands], TargetOptions(one_file=True))
     header, source = (
         next(file.text for file in files if str(file.path).endswith(e)) for e in (".h", ".c")
     )
@@ -131,7 +131,7 @@ def _members(header: str, name: str, kind: str) -> list[str]:
 
 
 def _rust(task: Task, folder: Path) -> Program:
-    files = RUST.emit([each.requirement() for each in task.demands], Options(one_file=True))
+    files = RUST.emit([each.requirement() for each in task.demands], TargetOptions(one_file=True))
     library = next(file.text for file in files if str(file.path).endswith("src/lib.rs"))
     names = re.findall(r"^    pub (\w+):", _struct(library, "Inputs"), re.M)
     outcomes = re.findall(r"^    pub (\w+):", _struct(library, "Outcomes"), re.M)

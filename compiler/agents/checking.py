@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from compiler.agents import gwendolen, psl
 from compiler.agents.gwendolen import Action, Agent, BeliefChange
-from compiler.agents.model import Model, State, narration
+from compiler.agents.model import AgentState, Model, narration
 from compiler.agents.psl import Property
 from compiler.agents.psl_printing import property_text
 from compiler.agents.vacuity import positive_atoms, without_consequences
@@ -23,11 +23,11 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from compiler.logic import spot as automata
 from compiler.logic.claims import (
+    ClaimOutcome,
+    ClaimResult,
+    ClaimTrace,
     Layer,
-    Outcome,
     Proof,
-    Result,
-    Trace,
     not_checked,
     proof,
     proved,
@@ -180,7 +180,7 @@ class _ExploredModel:
     """A model with all of its reachable states."""
 
     model: Model
-    graph: Explored[State]
+    graph: Explored[AgentState]
 
     @staticmethod
     def of(model: Model, limit: int) -> _ExploredModel:
@@ -193,11 +193,11 @@ class _ExploredModel:
     def violation(self, formula: f.Formula) -> Lasso | None:
         return check(self.graph.kripke, formula)
 
-    def trace(self, formula: f.Formula, lasso: Lasso) -> Trace:
+    def trace(self, formula: f.Formula, lasso: Lasso) -> ClaimTrace:
         """The lasso as a table: a row for each state, with the atoms and the event before."""
         names = tuple(f.atoms(formula))
         labels = [self.graph.kripke.labels[state] for state in lasso.states]
-        return Trace(
+        return ClaimTrace(
             names,
             tuple(tuple(name in label for name in names) for label in labels),
             narration(self.model, self.graph, lasso.states),
@@ -239,10 +239,10 @@ class _PropertyProofs:
                 continue
             outcome = self._main(prop)
             yield self._line(prop, _claim(prop), outcome)
-            if outcome.result is Result.PROVED:
+            if outcome.result is ClaimResult.PROVED:
                 yield from self._of_mutant(prop)
 
-    def _line(self, prop: Property, claim: str, outcome: Outcome) -> Proof:
+    def _line(self, prop: Property, claim: str, outcome: ClaimOutcome) -> Proof:
         engine = f"explicit states, Spot {automata.version()}"
         assumed = _assumptions(self.explored.model.percepts)
         return proof(prop.key, Layer.AGENT, claim, outcome, engine, assumed, self.artefacts)
@@ -254,7 +254,7 @@ class _PropertyProofs:
             return None
         return next((p for p in self.properties if p.key == main), None)
 
-    def _main(self, prop: Property) -> Outcome:
+    def _main(self, prop: Property) -> ClaimOutcome:
         if any("_" in re.findall(r"\b_\b", atom) for atom in f.atoms(prop.formula)):
             return not_checked("`_`, which matches everything, is not in the model")
         lasso = self.explored.violation(prop.formula)
@@ -281,7 +281,7 @@ class _PropertyProofs:
                 return f"its control {other.key} holds{because}"
         return None
 
-    def _control(self, prop: Property) -> Outcome:
+    def _control(self, prop: Property) -> ClaimOutcome:
         lasso = self.explored.violation(prop.formula)
         if lasso is None:
             reasons = "; ".join(self.explored.never(prop.formula)) or "every run keeps it"

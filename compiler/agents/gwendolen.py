@@ -59,7 +59,7 @@ Deed = BeliefChange | Action
 
 
 @dataclass(frozen=True, slots=True)
-class Guard:
+class BeliefGuard:
     """`B b` or `~B b`."""
 
     positive: bool
@@ -67,11 +67,11 @@ class Guard:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class AgentPlan:
     """`event : {guards} <- deeds;`; it may be chosen where all of the guards hold."""
 
     event: BeliefChange
-    guards: tuple[Guard, ...]
+    guards: tuple[BeliefGuard, ...]
     """The guard, or None for `True`."""
     deeds: tuple[Deed, ...]
     span: Span = field(compare=False, repr=False)
@@ -84,7 +84,7 @@ class Agent:
     name: str
     beliefs: tuple[str, ...]
     """The initial beliefs."""
-    plans: tuple[Plan, ...]
+    plans: tuple[AgentPlan, ...]
     """In the order of the file, in which they are tried."""
     name_span: Span = field(compare=False, repr=False)
 
@@ -99,7 +99,7 @@ def read(source: Source) -> Agent | Diagnostic:
 
 def _read(source: Source) -> Agent | Diagnostic:
     try:
-        return _Reader(source).agent(_lark().parse(source.text))
+        return _AgentReader(source).agent(_lark().parse(source.text))
     except UnexpectedInput as error:
         return unexpected(error, source)
     except TrapError as trap:
@@ -116,7 +116,7 @@ GRAMMAR = Grammar(
 )
 
 
-class _Reader:
+class _AgentReader:
     """Converts Lark's tree into an `Agent`; raises TrapError at the first invalid part."""
 
     def __init__(self, source: Source) -> None:
@@ -199,14 +199,14 @@ class _Reader:
             raise TrapError(diagnostic("plan_missing", self.span(heading)))
         return plans
 
-    def plan(self, plan: Tree[Token]) -> Plan:
+    def plan(self, plan: Tree[Token]) -> AgentPlan:
         event, guards, *rest = _trees(plan)
         span = self.span(plan)
         if not guards.children:
             raise TrapError(diagnostic("empty_guard", self.span(guards)))
         if rest and not rest[1].children:
             raise TrapError(diagnostic("deed_missing", self.span(rest[0])))
-        return Plan(
+        return AgentPlan(
             self.change(event),
             tuple(g for guard in _trees(guards) if (g := self.guard(guard)) is not None),
             tuple(self.deed(deed) for deed in _trees(rest[1])) if rest else (),
@@ -219,7 +219,7 @@ class _Reader:
             raise beyond("a goal", self.span(part))
         return BeliefChange(cast(Sign, str(part.children[0])), self.unnegated(part))
 
-    def guard(self, guard: Tree[Token]) -> Guard | None:
+    def guard(self, guard: Tree[Token]) -> BeliefGuard | None:
         """The guard, or None for `True`."""
         first = cast(Token, guard.children[0])
         negated = first.type == "NOT"
@@ -232,7 +232,7 @@ class _Reader:
         inner = [t for t in guard.children[negated:] if isinstance(t, Token) and t.type == "NOT"]
         if inner:
             raise TrapError(diagnostic("tilde_behind_b", self.span(inner[0])))
-        return Guard(not negated, self.literal(_trees(guard, "literal")[0]))
+        return BeliefGuard(not negated, self.literal(_trees(guard, "literal")[0]))
 
     def deed(self, deed: Tree[Token]) -> Deed:
         match deed.data:

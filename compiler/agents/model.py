@@ -67,7 +67,7 @@ class Intention:
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class AgentState:
     """The agent and its environment between two stages."""
 
     percepts: Beliefs
@@ -92,7 +92,7 @@ class State:
         return self.perceived | self.own
 
 
-Step = tuple[str, State]
+Step = tuple[str, AgentState]
 """An event in words, and the state after it."""
 
 
@@ -104,12 +104,12 @@ class Model:
     percepts: tuple[str, ...]
 
     @property
-    def initial(self) -> State:
+    def initial(self) -> AgentState:
         """The state before the environment draws the first percepts."""
         own = frozenset(self.agent.beliefs)
-        return State(frozenset(), False, frozenset(), own, None, (), ReasoningStep.BEGIN, None)
+        return AgentState(frozenset(), False, frozenset(), own, None, (), ReasoningStep.BEGIN, None)
 
-    def steps(self, state: State) -> Iterator[Step]:
+    def steps(self, state: AgentState) -> Iterator[Step]:
         """Every possible next event with the state after it; at least one."""
         match state.stage:
             case ReasoningStep.BEGIN:
@@ -126,7 +126,7 @@ class Model:
             case ReasoningStep.EXECUTE:
                 yield from self._executed(state)
 
-    def explored(self, limit: int) -> Explored[State]:
+    def explored(self, limit: int) -> Explored[AgentState]:
         """All states, breadth first.
 
         Raises:
@@ -139,7 +139,7 @@ class Model:
             limit,
         )
 
-    def label(self, state: State) -> frozenset[str]:
+    def label(self, state: AgentState) -> frozenset[str]:
         """The atoms of AJPF's properties that are true; there are no goals, so no `G` and no `I`.
 
         A belief with a string in it matches no property.
@@ -155,7 +155,7 @@ class Model:
         )
         return frozenset(atom for atom in atoms if "'" not in atom)
 
-    def _drawn(self, state: State) -> Iterator[Step]:
+    def _drawn(self, state: AgentState) -> Iterator[Step]:
         for percepts in self._draws():
             after = _with_percepts(state, percepts)
             stage = ReasoningStep.SLEEP if after.up_to_date else ReasoningStep.PERCEIVE
@@ -165,7 +165,7 @@ class Model:
         sizes = range(len(self.percepts) + 1)
         return map(frozenset, chain.from_iterable(combinations(self.percepts, n) for n in sizes))
 
-    def _planned(self, state: State) -> Step:
+    def _planned(self, state: AgentState) -> Step:
         intention = state.current
         assert intention is not None
         if intention.deeds:
@@ -182,7 +182,7 @@ class Model:
         description = f"drops {intention.event}: there is nothing to do"
         return description, replace(state, current=None, stage=ReasoningStep.PERCEIVE)
 
-    def _executed(self, state: State) -> Iterator[Step]:
+    def _executed(self, state: AgentState) -> Iterator[Step]:
         intention = state.current
         assert intention is not None
         deed, *rest = intention.deeds
@@ -211,13 +211,13 @@ def _set(names: Beliefs) -> str:
     return ", ".join(sorted(names)) or "nothing"
 
 
-def _with_percepts(state: State, percepts: Beliefs) -> State:
+def _with_percepts(state: AgentState, percepts: Beliefs) -> AgentState:
     """The state with newly drawn percepts; drawing none after none is no news for the agent."""
     up_to_date = state.up_to_date and not state.percepts and not percepts
     return replace(state, percepts=percepts, up_to_date=up_to_date)
 
 
-def _perceived(state: State) -> Iterator[Step]:
+def _perceived(state: AgentState) -> Iterator[Step]:
     """The next changes of beliefs: first those without a percept go, then new percepts come."""
     gone = [BeliefChange("-", belief) for belief in sorted(state.perceived - state.percepts)]
     come = [BeliefChange("+", belief) for belief in sorted(state.percepts - state.perceived)]
@@ -234,14 +234,14 @@ def _perceived(state: State) -> Iterator[Step]:
                 yield f"perceives {change}", after
 
 
-def _noticed(state: State, changes: tuple[BeliefChange, ...]) -> State:
+def _noticed(state: AgentState, changes: tuple[BeliefChange, ...]) -> AgentState:
     """One intention for each change, unless the same intention waits already."""
     intentions = (Intention(Notice(change), (Notice(change),)) for change in changes)
     new = [intention for intention in intentions if intention not in state.waiting]
     return replace(state, waiting=(*state.waiting, *new))
 
 
-def _believed(state: State, change: BeliefChange) -> tuple[State, ...]:
+def _believed(state: AgentState, change: BeliefChange) -> tuple[AgentState, ...]:
     """One percept comes or goes; several outcomes where the agent has added the belief itself."""
     belief = {change.belief}
     if change.sign == "+":
@@ -257,7 +257,7 @@ def _believed(state: State, change: BeliefChange) -> tuple[State, ...]:
     return new, raised, replace(raised, own=state.own - belief)
 
 
-def _selected(state: State) -> Step:
+def _selected(state: AgentState) -> Step:
     queue = state.waiting if state.current is None else (*state.waiting, state.current)
     if not queue:
         return "falls asleep", replace(state, stage=ReasoningStep.SLEEP)
@@ -265,12 +265,12 @@ def _selected(state: State) -> Step:
     return f"turns to {queue[0].event}", after
 
 
-def _added(state: State, belief: str) -> State:
+def _added(state: AgentState, belief: str) -> AgentState:
     after = replace(state, own=state.own | {belief})
     return after if belief in state.beliefs else _raised(after, BeliefChange("+", belief), 1)
 
 
-def _removed(state: State, belief: str) -> tuple[State, ...]:
+def _removed(state: AgentState, belief: str) -> tuple[AgentState, ...]:
     """The agent removes a belief; several outcomes where the belief is also perceived."""
     gone = BeliefChange("-", belief)
     less = replace(state, own=state.own - {belief})
@@ -282,11 +282,13 @@ def _removed(state: State, belief: str) -> tuple[State, ...]:
     return (_raised(neither, gone, 1),)
 
 
-def _raised(state: State, event: BeliefChange, times: int) -> State:
+def _raised(state: AgentState, event: BeliefChange, times: int) -> AgentState:
     return replace(state, waiting=(*state.waiting, *[Intention(event)] * times))
 
 
-def narration(model: Model, explored: Explored[State], numbers: tuple[int, ...]) -> tuple[str, ...]:
+def narration(
+    model: Model, explored: Explored[AgentState], numbers: tuple[int, ...]
+) -> tuple[str, ...]:
     """The event before each state of a run, in words.
 
     Args:

@@ -98,7 +98,7 @@ class JoinedText:
 
 
 @dataclass(frozen=True, slots=True)
-class _Token:
+class _PropertyToken:
     kind: str
     text: str
     span: Span = field(repr=False)
@@ -110,7 +110,7 @@ def formula(text: JoinedText) -> tuple[f.Formula, tuple[Span, ...]]:
     Raises:
         AjpfDivergenceError: AJPF would repair the text, drop a part of it, or crash.
     """
-    reader = _Reader(deque(_tokens(text)), text.span(0, 0))
+    reader = _PropertyParser(deque(_tokens(text)), text.span(0, 0))
     tree = reader.formula()
     if reader.tokens:
         tail = reader.tokens[0]
@@ -120,7 +120,7 @@ def formula(text: JoinedText) -> tuple[f.Formula, tuple[Span, ...]]:
     return tree, tuple(reader.strings)
 
 
-def _tokens(text: JoinedText) -> Iterator[_Token]:
+def _tokens(text: JoinedText) -> Iterator[_PropertyToken]:
     for match in _TOKEN.finditer(text.text):
         kind, span = str(match.lastgroup), text.span(*match.span())
         if kind == "skip":
@@ -132,7 +132,7 @@ def _tokens(text: JoinedText) -> Iterator[_Token]:
             raise AjpfDivergenceError(diagnostic("slashes_in_property", span.part(0, 2)))
         if broken:
             raise AjpfDivergenceError(diagnostic("lines_become_one_word", span, word=match[0]))
-        yield _Token(kind, match[0], span)
+        yield _PropertyToken(kind, match[0], span)
 
 
 _BINARY: tuple[tuple[str, Callable[[f.Formula, f.Formula], f.Formula]], ...] = (
@@ -145,19 +145,19 @@ _BINARY: tuple[tuple[str, Callable[[f.Formula, f.Formula], f.Formula]], ...] = (
 """The binary operators, the loosest first."""
 
 
-class _Reader:
+class _PropertyParser:
     """A parser with one method for each level of the grammar; it collects `strings`."""
 
-    def __init__(self, tokens: deque[_Token], end: Span) -> None:
+    def __init__(self, tokens: deque[_PropertyToken], end: Span) -> None:
         self.tokens = tokens
-        self.end = _Token("end", "the end", end)
+        self.end = _PropertyToken("end", "the end", end)
         self.strings: list[Span] = []
         self.level = 0
 
     # Tokens
 
     @property
-    def next(self) -> _Token:
+    def next(self) -> _PropertyToken:
         return self.tokens[0] if self.tokens else self.end
 
     def take(self, *wanted: str) -> bool:
@@ -234,7 +234,7 @@ class _Reader:
                 diagnostic("too_many_parentheses", self.next.span, most=_MOST_LEVELS)
             )
 
-    def _no_formula(self, token: _Token) -> AjpfDivergenceError:
+    def _no_formula(self, token: _PropertyToken) -> AjpfDivergenceError:
         if token.kind == "end":
             return AjpfDivergenceError(diagnostic("formula_missing", token.span))
         fix = _DROPPED.get(token.text, "an atom is `B(agent,belief)`")

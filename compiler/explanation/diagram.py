@@ -26,7 +26,7 @@ _LEAD, _TAIL, _WAIT = 2, 2, 3
 """Ticks before and after the scope, and ticks to wait if the sentence sets no bound."""
 
 
-class Kind(StrEnum):
+class LaneKind(StrEnum):
     """What a lane shows."""
 
     MODE = "mode"
@@ -43,7 +43,7 @@ class Kind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class LaneInterval:
     """Ticks of a lane, both ends included."""
 
     first: int
@@ -53,17 +53,17 @@ class Stretch:
 
 
 @dataclass(frozen=True, slots=True)
-class Lane:
+class DiagramLane:
     """A row of the picture."""
 
-    kind: Kind
+    kind: LaneKind
     name: str
     """An expression of the sentence; empty for a lane without an expression."""
     note: str
     """The meaning of a bar in the lane."""
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[LaneInterval, ...]
     need: Expectation | None = None
-    """The required response, for `Kind.NEED`."""
+    """The required response, for `LaneKind.NEED`."""
     trigger: int | None = None
     """The tick of the trigger that makes the demand, if there are several triggers."""
     otherwise: bool = False
@@ -78,7 +78,7 @@ class Lane:
 
 
 @dataclass(frozen=True, slots=True)
-class Trace:
+class DiagramTrace:
     """The drawn trace, with a column for each part of the sentence."""
 
     m: Column
@@ -97,8 +97,8 @@ class Diagram:
     """Whether the run ends with the last tick of the picture."""
     period: int | None
     """Nanoseconds of a tick, if there is a clock."""
-    lanes: tuple[Lane, ...]
-    trace: Trace
+    lanes: tuple[DiagramLane, ...]
+    trace: DiagramTrace
     windows: tuple[ObligationWindow, ...]
     """The demands of the triggers in the picture."""
 
@@ -124,7 +124,7 @@ def diagram(requirement: FormalizedRequirement) -> Diagram:
 # The trace --------------------------------------------------------------------------------------
 
 
-def _trace(drawn: Template) -> Trace:
+def _trace(drawn: Template) -> DiagramTrace:
     """A trace on which every part of the sentence has an effect."""
     lead = 0 if drawn.scope in (None, ScopeKind.BEFORE, ScopeKind.ONLY_AFTER) else _LEAD
     if drawn.scope is ScopeKind.AFTER:
@@ -134,7 +134,7 @@ def _trace(drawn: Template) -> Trace:
     right = late + _reach(drawn) + 1
     ticks = right + 1 if s.ends_with_run(drawn.scope) else right + 1 + _TAIL
     stop = late + _WAIT
-    return Trace(
+    return DiagramTrace(
         m=tuple(_mode(drawn.scope, t, lead, right) for t in range(ticks)),
         p=tuple(begin <= t <= late for t in range(ticks)),
         s=tuple(t == stop for t in range(ticks)),
@@ -185,26 +185,28 @@ def _mode(scope: ScopeKind | None, t: int, left: int, right: int) -> bool:
 def _lanes(
     requirement: FormalizedRequirement,
     drawn: Template,
-    trace: Trace,
+    trace: DiagramTrace,
     obligations: Sequence[ObligationWindow],
     end: int,
-) -> Iterator[Lane]:
+) -> Iterator[DiagramLane]:
     """The lanes from top to bottom: scope, triggers, bound, response."""
     sentence = requirement.written
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
     if scope is not None:
-        yield Lane(Kind.MODE, expression(scope.mode), "true", _true(trace.m))
+        yield DiagramLane(LaneKind.MODE, expression(scope.mode), "true", _true(trace.m))
     enforced = tuple(
-        Stretch(left, right, goes_on=right >= end)
+        LaneInterval(left, right, goes_on=right >= end)
         for left, right in intervals(drawn.scope, trace.m)
     )
-    yield Lane(Kind.SCOPE, "", "enforced", enforced)
+    yield DiagramLane(LaneKind.SCOPE, "", "enforced", enforced)
     if condition is not None:
-        yield Lane(Kind.CONDITION, expression(condition.expression), "true", _true(trace.p))
-    starts = tuple(Stretch(window.trigger, window.trigger) for window in obligations)
-    yield Lane(Kind.TRIGGER, "", "triggers" if condition else "begins", starts)
+        yield DiagramLane(
+            LaneKind.CONDITION, expression(condition.expression), "true", _true(trace.p)
+        )
+    starts = tuple(LaneInterval(window.trigger, window.trigger) for window in obligations)
+    yield DiagramLane(LaneKind.TRIGGER, "", "triggers" if condition else "begins", starts)
     if stop is not None:
-        yield Lane(Kind.STOP, expression(stop), "true", _true(trace.s))
+        yield DiagramLane(LaneKind.STOP, expression(stop), "true", _true(trace.s))
     yield from _needs(requirement, drawn, obligations, end)
 
 
@@ -213,20 +215,20 @@ def _needs(
     drawn: Template,
     obligations: Sequence[ObligationWindow],
     end: int,
-) -> Iterator[Lane]:
+) -> Iterator[DiagramLane]:
     q = expression(requirement.written.response)
     several = len(obligations) > 1
     for window in obligations:
         whose = window.trigger if several else None
         if s.duration(requirement.sentence.timing) is not None:
-            reach = Stretch(window.trigger, window.trigger + drawn.ticks)
+            reach = LaneInterval(window.trigger, window.trigger + drawn.ticks)
             counted = in_ticks(drawn.ticks, requirement.clock)
-            yield Lane(Kind.BOUND, "", f"{counted} from tick {window.trigger}", (reach,))
+            yield DiagramLane(LaneKind.BOUND, "", f"{counted} from tick {window.trigger}", (reach,))
         for number, part in enumerate(window.parts):
-            where = Stretch(part.first, part.last, goes_on=_goes_on(drawn, part.last, end))
+            where = LaneInterval(part.first, part.last, goes_on=_goes_on(drawn, part.last, end))
             need = _need(part.first == part.last, part.need)
             otherwise = window.either and number > 0
-            yield Lane(Kind.NEED, q, need, (where,), part.need, whose, otherwise)
+            yield DiagramLane(LaneKind.NEED, q, need, (where,), part.need, whose, otherwise)
 
 
 def _goes_on(drawn: Template, last: int, end: int) -> bool:
@@ -254,9 +256,9 @@ def _need(single: bool, need: Expectation) -> str:
     }[need]
 
 
-def _true(column: Column) -> tuple[Stretch, ...]:
+def _true(column: Column) -> tuple[LaneInterval, ...]:
     """The stretches at which the column is true."""
-    return tuple(Stretch(left, right) for left, right in intervals(ScopeKind.IN, column))
+    return tuple(LaneInterval(left, right) for left, right in intervals(ScopeKind.IN, column))
 
 
 # Words ------------------------------------------------------------------------------------------
@@ -265,18 +267,18 @@ def _true(column: Column) -> tuple[Stretch, ...]:
 def words(drawn: Diagram) -> str:
     """The diagram as sentences, for readers who cannot see it."""
     end = "The run ends with the last tick" if drawn.ends else "The run goes on"
-    lanes = [_in_words(lane) for lane in drawn.lanes if lane.kind is not Kind.BOUND]
+    lanes = [_in_words(lane) for lane in drawn.lanes if lane.kind is not LaneKind.BOUND]
     return " ".join([f"A run of ticks 0 to {drawn.ticks - 1}.", *lanes, f"{end}."])
 
 
-def _in_words(lane: Lane) -> str:
+def _in_words(lane: DiagramLane) -> str:
     at = " and ".join(_ticks(stretch) for stretch in lane.stretches)
     match lane.kind:
-        case Kind.SCOPE:
+        case LaneKind.SCOPE:
             return f"The sentence is enforced at {at}."
-        case Kind.TRIGGER:
+        case LaneKind.TRIGGER:
             return f"It is triggered at {at}."
-        case Kind.NEED:
+        case LaneKind.NEED:
             whose = "" if lane.trigger is None else f"For the trigger at tick {lane.trigger}, "
             link = "or else " if lane.otherwise else ""
             return f"{whose}{link}`{lane.name}` {lane.note}, at {at}."
@@ -284,7 +286,7 @@ def _in_words(lane: Lane) -> str:
             return f"`{lane.name}` is true at {at}."
 
 
-def _ticks(stretch: Stretch) -> str:
+def _ticks(stretch: LaneInterval) -> str:
     if stretch.goes_on:
         return f"tick {stretch.first} and all later ones"
     if stretch.first == stretch.last:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 
-from compiler.explanation.diagram import Diagram, Kind, Lane, Stretch, words
+from compiler.explanation.diagram import Diagram, DiagramLane, LaneInterval, LaneKind, words
 from compiler.explanation.windows import Expectation
 from compiler.files.templating import render
 from fretish.clock import in_words
@@ -45,7 +45,7 @@ def slots(drawn: Diagram) -> tuple[Slot, ...]:
     return tuple(columns)
 
 
-def _places(columns: Sequence[Slot], stretch: Stretch) -> tuple[int, int] | None:
+def _places(columns: Sequence[Slot], stretch: LaneInterval) -> tuple[int, int] | None:
     """The first and the last column of a stretch; None if it contains no tick."""
     inside = [
         i
@@ -65,7 +65,13 @@ def shortened(text: str, most: int) -> str:
 
 # Characters -------------------------------------------------------------------------------------
 
-_FILLS = {Kind.MODE: "─", Kind.SCOPE: "━", Kind.CONDITION: "─", Kind.STOP: "─", Kind.BOUND: "╌"}
+_FILLS = {
+    LaneKind.MODE: "─",
+    LaneKind.SCOPE: "━",
+    LaneKind.CONDITION: "─",
+    LaneKind.STOP: "─",
+    LaneKind.BOUND: "╌",
+}
 _NEEDS = {Expectation.ALL: "█", Expectation.SOME: "▒", Expectation.NONE: "/", Expectation.MISS: "░"}
 _NAMES = 26
 _EMPTY = "·"
@@ -85,12 +91,12 @@ def text(drawn: Diagram, indent: str = "") -> str:
     return "\n".join(f"{indent}{line}".rstrip() for line in lines)
 
 
-def _named(lane: Lane, most: int) -> str:
+def _named(lane: DiagramLane, most: int) -> str:
     name = shortened(visible(lane.name), most)
     return f"{name}: {lane.remark}" if name else lane.remark
 
 
-def _cells(lane: Lane, columns: Sequence[Slot], width: int) -> str:
+def _cells(lane: DiagramLane, columns: Sequence[Slot], width: int) -> str:
     row = list(_EMPTY.ljust(width) * len(columns))
     more = ""
     for stretch in lane.stretches:
@@ -98,13 +104,13 @@ def _cells(lane: Lane, columns: Sequence[Slot], width: int) -> str:
         if places is None:
             continue
         first, last = places[0] * width, places[1] * width
-        if lane.kind is Kind.TRIGGER:
+        if lane.kind is LaneKind.TRIGGER:
             row[first] = "▲"
             continue
         fill = _NEEDS[lane.need] if lane.need else _FILLS[lane.kind]
         end = last + width - 1 if width > 2 else last + 1
         row[first:end] = fill * (end - first)
-        if lane.kind is Kind.BOUND:
+        if lane.kind is LaneKind.BOUND:
             row[first : last + 1] = ["├", *row[first + 1 : last], "┤"][: last - first + 1]
             row[last + 1 : end] = " " * (end - last - 1)
         if stretch.goes_on:
@@ -125,7 +131,7 @@ _DIGIT = 7
 
 
 @dataclass(frozen=True, slots=True)
-class Bar:
+class DiagramBar:
     """A stretch of a lane, in units of the drawing."""
 
     x: float
@@ -136,7 +142,7 @@ class Bar:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class DiagramRow:
     """A lane in units of the drawing."""
 
     y: int
@@ -144,7 +150,7 @@ class Row:
     full: str
     note: str
     kind: str
-    bars: tuple[Bar, ...]
+    bars: tuple[DiagramBar, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +163,7 @@ class Fold:
 
 
 @dataclass(frozen=True, slots=True)
-class Drawing:
+class DiagramDrawing:
     """A diagram in units of the drawing; the template only places it."""
 
     id: str
@@ -169,7 +175,7 @@ class Drawing:
     right: float
     axis: int
     bar: int
-    rows: tuple[Row, ...]
+    rows: tuple[DiagramRow, ...]
     folds: tuple[Fold, ...]
     edges: tuple[float, ...]
     """The positions at which the scope begins and ends."""
@@ -179,7 +185,7 @@ class Drawing:
     """The length of a tick in words."""
 
 
-def drawing(drawn: Diagram, id: str = "diagram") -> Drawing:
+def drawing(drawn: Diagram, id: str = "diagram") -> DiagramDrawing:
     """The layout of a diagram.
 
     Args:
@@ -189,7 +195,7 @@ def drawing(drawn: Diagram, id: str = "diagram") -> Drawing:
     columns = slots(drawn)
     axis = _TOP + _ROW * len(drawn.lanes)
     step = _step(columns)
-    return Drawing(
+    return DiagramDrawing(
         id=id,
         title=visible(drawn.title),
         text=visible(words(drawn)),
@@ -221,9 +227,9 @@ def _x(place: int, columns: Sequence[Slot]) -> float:
     return round(_LEFT + place * _step(columns), 2)
 
 
-def _row(lane: Lane, number: int, columns: Sequence[Slot]) -> Row:
+def _row(lane: DiagramLane, number: int, columns: Sequence[Slot]) -> DiagramRow:
     full = visible(lane.name)
-    return Row(
+    return DiagramRow(
         y=_TOP + _ROW * number,
         name=shortened(full, _NAME_LETTERS),
         full=full,
@@ -233,19 +239,19 @@ def _row(lane: Lane, number: int, columns: Sequence[Slot]) -> Row:
     )
 
 
-def _bars(lane: Lane, columns: Sequence[Slot]) -> Iterator[Bar]:
+def _bars(lane: DiagramLane, columns: Sequence[Slot]) -> Iterator[DiagramBar]:
     kind = lane.need.name.lower() if lane.need else lane.kind.value
     for stretch in lane.stretches:
         places = _places(columns, stretch)
         if places is not None:
             x, after = _x(places[0], columns), _x(places[1] + 1, columns)
-            if lane.kind is Kind.BOUND:  # from tick to tick, which are n steps apart
+            if lane.kind is LaneKind.BOUND:  # from tick to tick, which are n steps apart
                 x, after = x + _step(columns) / 2, after - _step(columns) / 2
             width = round(after - x, 2)
-            yield Bar(x, width, kind, stretch.goes_on, _title(lane, stretch))
+            yield DiagramBar(x, width, kind, stretch.goes_on, _title(lane, stretch))
 
 
-def _title(lane: Lane, stretch: Stretch) -> str:
+def _title(lane: DiagramLane, stretch: LaneInterval) -> str:
     several = stretch.first != stretch.last
     ticks = f"ticks {stretch.first} to {stretch.last}" if several else f"tick {stretch.first}"
     return f"{_named(lane, _TITLE_LETTERS)} ({ticks}{' and later' if stretch.goes_on else ''})"
@@ -260,7 +266,7 @@ def _folds(columns: Sequence[Slot]) -> Iterator[Fold]:
 
 def _edges(drawn: Diagram, columns: Sequence[Slot]) -> Iterator[float]:
     for lane in drawn.lanes:
-        if lane.kind is not Kind.SCOPE:
+        if lane.kind is not LaneKind.SCOPE:
             continue
         for stretch in lane.stretches:
             places = _places(columns, stretch)

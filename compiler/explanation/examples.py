@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from compiler.explanation.shortest_words import Move, Run, ShortestWords, Waypoint
+from compiler.explanation.shortest_words import AutomatonRun, Move, ShortestWords, Waypoint
 from compiler.explanation.windows import has_deadline, is_satisfied
 from compiler.formalization import reference as counters
 from compiler.formalization.formalized import FormalizedRequirement
@@ -90,7 +90,7 @@ def examples(requirement: FormalizedRequirement, wanted: int = WANTED) -> Exampl
         automaton = explore(counted, letters, MOST_STATES)
     except TooManyStatesError:
         return Examples(atoms, (), (), f"its automaton has more than {MOST_STATES} states")
-    search = _Search(automaton, letters)
+    search = _ExampleSearch(automaton, letters)
     satisfied = tuple(_different_examples(search, search.satisfying(), wanted))
     violated = tuple(_different_examples(search, search.violating(), wanted))
     shown = {
@@ -183,7 +183,7 @@ def _broken(move: Move) -> bool:
     return move.after is None
 
 
-class _Search:
+class _ExampleSearch:
     """Candidates for examples, as words of an automaton."""
 
     def __init__(self, automaton: Automaton, letters: Mapping[Letter, Valuation]) -> None:
@@ -192,7 +192,7 @@ class _Search:
         self.template = automaton.template
         self.satisfiable = automaton.verdicts[0] != "violated"
 
-    def satisfying(self) -> Iterator[Run]:
+    def satisfying(self) -> Iterator[AutomatonRun]:
         """Candidates for satisfying examples, the instructive ones first."""
         closed = self._closed
         ways: tuple[tuple[Waypoint, ...], ...] = (
@@ -217,7 +217,7 @@ class _Search:
         if several is not None:
             yield self.words.followed(several, accepted=True)
 
-    def violating(self) -> Iterator[Run]:
+    def violating(self) -> Iterator[AutomatonRun]:
         """Candidates for violating examples: broken demands, unanswered demands, ends."""
         ways: tuple[tuple[Waypoint, ...], ...] = (
             (_broken,),
@@ -239,7 +239,7 @@ class _Search:
                 yield late
         yield from self._never()
 
-    def _never(self) -> Iterator[Run]:
+    def _never(self) -> Iterator[AutomatonRun]:
         """Runs on which a demand is open for ever, or at the end."""
 
         def unanswered(move: Move) -> bool:
@@ -263,7 +263,7 @@ class _Search:
         """Whether FRET's verdict is `satisfied` if the run ends with this tick."""
         return move.target != BROKEN and self.words.final[move.target]
 
-    def _too_late(self, broken: Run) -> Run | None:
+    def _too_late(self, broken: AutomatonRun) -> AutomatonRun | None:
         """The run with the response one tick after the deadline; None if there is no such run."""
         if not has_deadline(self.template):
             return None
@@ -272,10 +272,10 @@ class _Search:
         for m, p, q, stop in self.words.automaton.letters:
             if m == last.letter[0] and p == last.letter[1] and q is not negated:
                 late = Move(last.before, (m, p, q, stop), None, BROKEN, last.enforced, False)
-                return Run((*broken.moves, late))
+                return AutomatonRun((*broken.moves, late))
         return None
 
-    def example(self, run: Run) -> Example:
+    def example(self, run: AutomatonRun) -> Example:
         """The run as a trace of atoms."""
         end = run.moves[-1]
         satisfied = end.target != BROKEN and self.words.final[end.target]
@@ -289,7 +289,9 @@ class _Search:
         )
 
 
-def _different_examples(search: _Search, runs: Iterator[Run], wanted: int) -> Iterator[Example]:
+def _different_examples(
+    search: _ExampleSearch, runs: Iterator[AutomatonRun], wanted: int
+) -> Iterator[Example]:
     """The first runs that behave differently, each checked by the definition."""
     seen: set[tuple[object, ...]] = set()
     spare: Example | None = None
@@ -308,7 +310,7 @@ def _different_examples(search: _Search, runs: Iterator[Run], wanted: int) -> It
         yield spare
 
 
-def _check(search: _Search, run: Run, example: Example) -> None:
+def _check(search: _ExampleSearch, run: AutomatonRun, example: Example) -> None:
     """Check that automaton and definition agree on the trace and on each round after it."""
     word = [move.letter for move in run.moves]
     for _ in range(3 if example.loop else 1):

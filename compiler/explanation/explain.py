@@ -8,7 +8,7 @@ from itertools import groupby
 from typing import Any
 
 from compiler.explanation import drawing
-from compiler.explanation.diagram import Diagram, Lane, diagram, words
+from compiler.explanation.diagram import Diagram, DiagramLane, diagram, words
 from compiler.explanation.examples import Example, Examples, examples
 from compiler.explanation.reasons import why
 from compiler.formalization import record
@@ -26,7 +26,7 @@ SCHEMA = "fretc-explanation-1"
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class TickRow:
     """Ticks with the same values, one after the other."""
 
     first: int
@@ -42,7 +42,7 @@ class ExplainedTrace:
     """A trace with its verdict and reason, in rows."""
 
     satisfied: bool
-    rows: tuple[Row, ...]
+    rows: tuple[TickRow, ...]
     decided: int | None
     """The tick at which the verdict is certain; None: only the end of the run makes it so."""
     reason: str
@@ -148,7 +148,7 @@ _FOLDED = 4
 """Number of equal ticks from which they are shown as one row."""
 
 
-def _rows(example: Example) -> Iterator[Row]:
+def _rows(example: Example) -> Iterator[TickRow]:
     """The ticks as rows; equal ticks share a row, but the deciding tick has its own."""
     start = len(example.prefix)
     ticks = [
@@ -160,9 +160,9 @@ def _rows(example: Example) -> Iterator[Row]:
         count = len(list(group))
         if count < _FOLDED:
             for tick in range(first, first + count):
-                yield Row(tick, tick, values, repeats, decides)
+                yield TickRow(tick, tick, values, repeats, decides)
         else:
-            yield Row(first, first + count - 1, values, repeats, decides)
+            yield TickRow(first, first + count - 1, values, repeats, decides)
         first += count
 
 
@@ -208,7 +208,7 @@ def _table(explained: Explanation, shown: ExplainedTrace) -> str:
     return "\n".join([f"  {verdict}: {visible(shown.reason)}", *lines, f"    {end}", ""])
 
 
-def _label(row: Row) -> str:
+def _label(row: TickRow) -> str:
     return str(row.first) if row.first == row.last else f"{row.first}..{row.last}"
 
 
@@ -232,7 +232,7 @@ def as_record(explained: Explanation) -> dict[str, Any]:
     }
 
 
-def _lane(lane: Lane) -> dict[str, Any]:
+def _lane(lane: DiagramLane) -> dict[str, Any]:
     stretches = [
         {"first": stretch.first, "last": stretch.last, "goes_on": stretch.goes_on}
         for stretch in lane.stretches

@@ -14,7 +14,7 @@ from compiler.formalization.reference import (
     BROKEN,
     Automaton,
     Letter,
-    State,
+    ReferenceState,
     accepts,
     reachable,
     reversed_edges,
@@ -25,9 +25,9 @@ from fretish import syntax as s
 class Move(NamedTuple):
     """One tick of a run."""
 
-    before: State
+    before: ReferenceState
     letter: Letter
-    after: State | None
+    after: ReferenceState | None
     target: int
     enforced: bool
     triggered: bool
@@ -45,7 +45,7 @@ Waypoint = Callable[[Move], bool]
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class AutomatonRun:
     """A word with its moves in the automaton."""
 
     moves: tuple[Move, ...]
@@ -81,7 +81,7 @@ class ShortestWords:
         way: Sequence[Waypoint],
         ending: Waypoint,
         among: Waypoint = lambda move: True,
-    ) -> Run | None:
+    ) -> AutomatonRun | None:
         """The first shortest run that passes all waypoints in order, each at a tick.
 
         Two waypoints may be passed at the same tick. The run ends with the first tick from the last
@@ -103,7 +103,7 @@ class ShortestWords:
                 ):
                     stage += 1
                 if stage == len(way) and ending(move):
-                    return Run((*_path(origins, here), move))
+                    return AutomatonRun((*_path(origins, here), move))
                 after = (move.target, stage)
                 if move.target != BROKEN and after not in origins:
                     origins[after] = (here, move)
@@ -118,7 +118,7 @@ class ShortestWords:
             after = None if target == BROKEN else automaton.states[target]
             yield Move(state, letter, after, target, happens.enforced, happens.triggered)
 
-    def followed(self, run: Run, *, accepted: bool) -> Run:
+    def followed(self, run: AutomatonRun, *, accepted: bool) -> AutomatonRun:
         """The run with a tick appended that can repeat for ever without changing the verdict."""
         start = run.moves[-1].target
         if self.decided(run, satisfied=accepted) is not None:
@@ -129,7 +129,7 @@ class ShortestWords:
             second = self._after(first)
             stays = second is not None and first.target == second.target
             if stays and self.final[first.target] is accepted:
-                return Run(run.moves, (first,))
+                return AutomatonRun(run.moves, (first,))
         return run
 
     def _after(self, move: Move) -> Move | None:
@@ -143,7 +143,7 @@ class ShortestWords:
         """Whether only the end of an interval can violate the sentence."""
         return s.SHAPES[self.template.timing].extent.needs_end
 
-    def decided(self, run: Run, *, satisfied: bool) -> int | None:
+    def decided(self, run: AutomatonRun, *, satisfied: bool) -> int | None:
         """The first tick after which no continuation changes the verdict; None: there is none.
 
         For a satisfied run, no end of the run may change the verdict either: `finally` demands

@@ -17,13 +17,13 @@ from dataclasses import dataclass, replace
 from typing import assert_never
 
 from compiler.formalization.letters import MOST_ATOMS, all_letters, temporal_predicate
-from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait
+from compiler.formalization.obligation import TRAITS, Demand, Obligation, ObligationKind, Trait
 from compiler.formalization.past import MonitorSpec, ScopeFormulas, scope_formulas
 from compiler.formalization.reference import (
     BROKEN,
     Automaton,
     Phase,
-    State,
+    ReferenceState,
     TooManyStatesError,
     explore,
     template,
@@ -99,7 +99,7 @@ class _Observable:
     """A property of states, as a function of the automaton's state and as a formula of the past."""
 
     formula: f.Formula
-    holds: Callable[[State], bool]
+    holds: Callable[[ReferenceState], bool]
 
 
 def _observables(obligation: Obligation, automaton: Automaton) -> Iterable[_Observable]:
@@ -122,30 +122,30 @@ def _counted(demand: Demand, stage: ScopeFormulas, short: int) -> Iterable[_Obse
     q, n = demand.response, demand.ticks
     waits = stage.open(f.not_(q))
     match demand.kind:
-        case Kind.IMMEDIATELY:
+        case ObligationKind.IMMEDIATELY:
             return
-        case Kind.NEXT:
+        case ObligationKind.NEXT:
             yield _Observable(stage.trigger, lambda state: state.counted > 0)
-        case Kind.FINALLY:
+        case ObligationKind.FINALLY:
             yield _Observable(stage.open(f.TRUE), lambda state: state.counted != 0)
             missing = f.and_(stage.open(f.TRUE), f.not_(q))
             yield _Observable(missing, lambda state: state.counted > 0)
-        case Kind.ALWAYS:
+        case ObligationKind.ALWAYS:
             yield _Observable(stage.open(f.TRUE), lambda state: state.counted > 0)
-        case Kind.UNTIL:
+        case ObligationKind.UNTIL:
             yield _Observable(stage.open(f.not_(demand.stop)), lambda state: state.counted > 0)
-        case Kind.EVENTUALLY | Kind.BEFORE:
+        case ObligationKind.EVENTUALLY | ObligationKind.BEFORE:
             yield _Observable(waits, lambda state: state.counted > 0)
-        case Kind.WITHIN:
+        case ObligationKind.WITHIN:
             yield from _ages(n, short, lambda age: _open_for(q, age, stage))
-        case Kind.AFTER:
+        case ObligationKind.AFTER:
             yield from _ages(n + 1, short + 1, lambda age: _open_for(q, age, stage))
             clash = f.and_(stage.trigger, f.previous(waits))
             kept = f.and_(f.not_(q), stage.inside)
             yield _Observable(f.since(kept, f.and_(clash, kept)), lambda state: state.counted < 0)
-        case Kind.FOR:
+        case ObligationKind.FOR:
             yield from _ages(n, short, lambda age: stage.open(f.TRUE, f.Interval(0, n - 1 - age)))
-        case Kind.NOT_AFTER:
+        case ObligationKind.NOT_AFTER:
             recent = stage.open(f.not_(q), f.Interval(0, n))
             yield _Observable(recent, lambda state: state.counted > 0)
         case _:
@@ -167,7 +167,7 @@ def _ages(n: int, short: int, older: Callable[[int], f.Formula]) -> Iterable[_Ob
         else:
             continue
 
-        def above(state: State, age: int = age) -> bool:
+        def above(state: ReferenceState, age: int = age) -> bool:
             return abs(state.counted) > age
 
         yield _Observable(older(real), above)

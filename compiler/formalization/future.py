@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import assert_never
 
-from compiler.formalization.obligation import Demand, Kind, Obligation
+from compiler.formalization.obligation import Demand, Obligation, ObligationKind
 from compiler.logic.formula import (
     FALSE,
     LAST,
@@ -137,27 +137,27 @@ def demanded_at(demand: Demand, end: Formula) -> Formula:
     """The demand at a trigger at the present tick; `end` marks the last tick of the interval."""
     q, s, n = demand.response, demand.stop, demand.ticks
     match demand.kind:
-        case Kind.IMMEDIATELY:
+        case ObligationKind.IMMEDIATELY:
             return q
-        case Kind.NEXT:
+        case ObligationKind.NEXT:
             return or_(end, next_(q))
-        case Kind.FINALLY:
+        case ObligationKind.FINALLY:
             return release(end, implies(end, q))
-        case Kind.EVENTUALLY:
+        case ObligationKind.EVENTUALLY:
             return until(not_(end), q)
-        case Kind.ALWAYS:
+        case ObligationKind.ALWAYS:
             return release(end, q)
-        case Kind.WITHIN:
+        case ObligationKind.WITHIN:
             return _within(q, n, end)
-        case Kind.FOR:
+        case ObligationKind.FOR:
             return _for(q, n, end)
-        case Kind.AFTER:
+        case ObligationKind.AFTER:
             return and_(_for(not_(q), n, end), _within(q, n + 1, end))
-        case Kind.NOT_AFTER:
+        case ObligationKind.NOT_AFTER:
             return or_(_within(q, n, end), _for(not_(q), n + 1, end))
-        case Kind.UNTIL:
+        case ObligationKind.UNTIL:
             return release(or_(s, end), or_(s, q))
-        case Kind.BEFORE:
+        case ObligationKind.BEFORE:
             return release(or_(q, end), not_(s))
         case _:
             assert_never(demand.kind)

@@ -21,7 +21,7 @@ from fretish import syntax as s
 from fretish.printer import identifier as quoted
 
 
-class Kind(Enum):
+class ObligationKind(Enum):
     """The timings, after `never` has become `always not` and a missing one `eventually`."""
 
     IMMEDIATELY = auto()
@@ -65,18 +65,22 @@ class Trait(Flag):
     """It fails where its interval ends too soon."""
 
 
-TRAITS: Mapping[Kind, Trait] = {
-    Kind.IMMEDIATELY: Trait(0),
-    Kind.NEXT: Trait.STEPS | Trait.RENEWED,
-    Kind.FINALLY: Trait.LAST | Trait.UNMET,
-    Kind.EVENTUALLY: Trait.WAITS | Trait.UNMET,
-    Kind.ALWAYS: Trait.FORBIDS,
-    Kind.WITHIN: Trait.STEPS | Trait.COUNTS | Trait.WAITS,
-    Kind.FOR: Trait.STEPS | Trait.COUNTS | Trait.DOWN | Trait.RENEWED,
-    Kind.AFTER: Trait.STEPS | Trait.COUNTS | Trait.WAITS | Trait.OPPOSITES,
-    Kind.NOT_AFTER: Trait.STEPS | Trait.COUNTS | Trait.REGISTERS | Trait.RENEWED | Trait.OPPOSITES,
-    Kind.UNTIL: Trait.STOPS | Trait.FORBIDS,
-    Kind.BEFORE: Trait.STOPS | Trait.FORBIDS,
+TRAITS: Mapping[ObligationKind, Trait] = {
+    ObligationKind.IMMEDIATELY: Trait(0),
+    ObligationKind.NEXT: Trait.STEPS | Trait.RENEWED,
+    ObligationKind.FINALLY: Trait.LAST | Trait.UNMET,
+    ObligationKind.EVENTUALLY: Trait.WAITS | Trait.UNMET,
+    ObligationKind.ALWAYS: Trait.FORBIDS,
+    ObligationKind.WITHIN: Trait.STEPS | Trait.COUNTS | Trait.WAITS,
+    ObligationKind.FOR: Trait.STEPS | Trait.COUNTS | Trait.DOWN | Trait.RENEWED,
+    ObligationKind.AFTER: Trait.STEPS | Trait.COUNTS | Trait.WAITS | Trait.OPPOSITES,
+    ObligationKind.NOT_AFTER: Trait.STEPS
+    | Trait.COUNTS
+    | Trait.REGISTERS
+    | Trait.RENEWED
+    | Trait.OPPOSITES,
+    ObligationKind.UNTIL: Trait.STOPS | Trait.FORBIDS,
+    ObligationKind.BEFORE: Trait.STOPS | Trait.FORBIDS,
 }
 
 
@@ -84,7 +88,7 @@ TRAITS: Mapping[Kind, Trait] = {
 class Demand:
     """At each trigger: `response`, as `kind` says, counting `ticks` or watching for `stop`."""
 
-    kind: Kind
+    kind: ObligationKind
     response: f.Formula
     ticks: int = 0
     stop: f.Formula = f.FALSE
@@ -117,7 +121,7 @@ proposition."""
 Read = Callable[[e.Expression], f.Formula]
 
 
-class Vocabulary(Protocol):
+class TemporalPredicates(Protocol):
     """The meaning of temporal predicates, in the past or in the future."""
 
     def alone(self) -> Expand:
@@ -140,7 +144,7 @@ class Uninterpreted:
 
 
 def obligation(
-    sentence: s.Sentence, ticks: int, vocabulary: Vocabulary | None = None
+    sentence: s.Sentence, ticks: int, vocabulary: TemporalPredicates | None = None
 ) -> Obligation:
     """The obligation of a sentence.
 
@@ -168,43 +172,43 @@ def _demand(timing: s.Timing, read: Read, satisfied: e.Expression, ticks: int) -
     response = read(satisfied)
     match timing:
         case s.Immediately():
-            return Demand(Kind.IMMEDIATELY, response)
+            return Demand(ObligationKind.IMMEDIATELY, response)
         case s.Next():
-            return Demand(Kind.NEXT, response)
+            return Demand(ObligationKind.NEXT, response)
         case s.Finally():
-            return Demand(Kind.FINALLY, response)
+            return Demand(ObligationKind.FINALLY, response)
         case s.Eventually():
-            return Demand(Kind.EVENTUALLY, response)
+            return Demand(ObligationKind.EVENTUALLY, response)
         case s.Always():
-            return Demand(Kind.ALWAYS, response)
+            return Demand(ObligationKind.ALWAYS, response)
         case s.Never():
-            return Demand(Kind.ALWAYS, f.not_(response))
+            return Demand(ObligationKind.ALWAYS, f.not_(response))
         case s.Within():
-            return Demand(Kind.WITHIN, response, ticks)
+            return Demand(ObligationKind.WITHIN, response, ticks)
         case s.For():
-            return Demand(Kind.FOR, response, ticks)
+            return Demand(ObligationKind.FOR, response, ticks)
         case s.After():
-            return Demand(Kind.AFTER, response, ticks)
+            return Demand(ObligationKind.AFTER, response, ticks)
         case s.Until(stop):
-            return Demand(Kind.UNTIL, response, stop=read(stop))
+            return Demand(ObligationKind.UNTIL, response, stop=read(stop))
         case s.Before(stop):
-            return Demand(Kind.BEFORE, response, stop=read(stop))
+            return Demand(ObligationKind.BEFORE, response, stop=read(stop))
         case _:
             assert_never(timing)
 
 
-_DUALS: Mapping[Kind, Kind] = {
-    Kind.IMMEDIATELY: Kind.IMMEDIATELY,
-    Kind.NEXT: Kind.NEXT,
-    Kind.FINALLY: Kind.FINALLY,
-    Kind.EVENTUALLY: Kind.ALWAYS,
-    Kind.ALWAYS: Kind.EVENTUALLY,
-    Kind.WITHIN: Kind.FOR,
-    Kind.FOR: Kind.WITHIN,
-    Kind.AFTER: Kind.NOT_AFTER,
-    Kind.NOT_AFTER: Kind.AFTER,
-    Kind.UNTIL: Kind.BEFORE,
-    Kind.BEFORE: Kind.UNTIL,
+_DUALS: Mapping[ObligationKind, ObligationKind] = {
+    ObligationKind.IMMEDIATELY: ObligationKind.IMMEDIATELY,
+    ObligationKind.NEXT: ObligationKind.NEXT,
+    ObligationKind.FINALLY: ObligationKind.FINALLY,
+    ObligationKind.EVENTUALLY: ObligationKind.ALWAYS,
+    ObligationKind.ALWAYS: ObligationKind.EVENTUALLY,
+    ObligationKind.WITHIN: ObligationKind.FOR,
+    ObligationKind.FOR: ObligationKind.WITHIN,
+    ObligationKind.AFTER: ObligationKind.NOT_AFTER,
+    ObligationKind.NOT_AFTER: ObligationKind.AFTER,
+    ObligationKind.UNTIL: ObligationKind.BEFORE,
+    ObligationKind.BEFORE: ObligationKind.UNTIL,
 }
 
 

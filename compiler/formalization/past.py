@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import assert_never
 
-from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait
+from compiler.formalization.obligation import TRAITS, Demand, Obligation, ObligationKind, Trait
 from compiler.logic.formula import (
     EVER,
     FALSE,
@@ -214,19 +214,25 @@ def _broken(demand: Demand, stage: ScopeFormulas) -> Formula:
     """A demand is broken here; a missed deadline stays broken until the answer comes."""
     q, n = demand.response, demand.ticks
     match demand.kind:
-        case Kind.WITHIN:
+        case ObligationKind.WITHIN:
             return _overdue(q, n, stage)
-        case Kind.FOR:
+        case ObligationKind.FOR:
             return and_(stage.open(TRUE, Interval(0, n)), not_(q))
-        case Kind.AFTER:
+        case ObligationKind.AFTER:
             early = and_(stage.open(TRUE, Interval(0, n)), q)
             return or_(early, _overdue(q, n + 1, stage))
-        case Kind.NOT_AFTER:
+        case ObligationKind.NOT_AFTER:
             silent = previous(stage.open(not_(q), Interval(n, n)))
             return and_(stage.inside, silent, q)
-        case Kind.IMMEDIATELY | Kind.NEXT | Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS:
+        case (
+            ObligationKind.IMMEDIATELY
+            | ObligationKind.NEXT
+            | ObligationKind.FINALLY
+            | ObligationKind.EVENTUALLY
+            | ObligationKind.ALWAYS
+        ):
             return _broken_plainly(demand, stage)
-        case Kind.UNTIL | Kind.BEFORE:
+        case ObligationKind.UNTIL | ObligationKind.BEFORE:
             return _broken_plainly(demand, stage)
         case _:
             assert_never(demand.kind)
@@ -241,27 +247,27 @@ def _broken_plainly(demand: Demand, stage: ScopeFormulas) -> Formula:
     """As `_broken`, with the operators of FRET: a deadline is missed at one tick."""
     q, s, n = demand.response, demand.stop, demand.ticks
     match demand.kind:
-        case Kind.IMMEDIATELY:
+        case ObligationKind.IMMEDIATELY:
             return and_(stage.trigger, not_(q))
-        case Kind.NEXT:
+        case ObligationKind.NEXT:
             return and_(stage.inside, previous(stage.trigger), not_(q))
-        case Kind.FINALLY | Kind.EVENTUALLY:
+        case ObligationKind.FINALLY | ObligationKind.EVENTUALLY:
             return FALSE
-        case Kind.ALWAYS:
+        case ObligationKind.ALWAYS:
             return and_(stage.open(TRUE), not_(q))
-        case Kind.WITHIN:
+        case ObligationKind.WITHIN:
             return _missed(q, n, stage)
-        case Kind.FOR:
+        case ObligationKind.FOR:
             return and_(_recent(n, stage), not_(q))
-        case Kind.AFTER:
+        case ObligationKind.AFTER:
             return or_(and_(_recent(n, stage), q), _missed(q, n + 1, stage))
-        case Kind.NOT_AFTER:
+        case ObligationKind.NOT_AFTER:
             asked = once(and_(stage.trigger, not_(q)), Interval(n + 1, n + 1))
             answered = once(q, Interval(1, n)) if n else FALSE
             return and_(stage.inside, asked, not_(or_(_began(n, stage), answered)), q)
-        case Kind.UNTIL:
+        case ObligationKind.UNTIL:
             return and_(stage.open(not_(s)), not_(q))
-        case Kind.BEFORE:
+        case ObligationKind.BEFORE:
             unanswered = and_(stage.inside, previous(stage.open(not_(q))))
             return and_(s, or_(stage.trigger, unanswered))
         case _:
@@ -296,13 +302,20 @@ def _broken_at_end(demand: Demand, stage: ScopeFormulas) -> Formula:
 def _fails(demand: Demand, stage: ScopeFormulas) -> Formula:
     """The interval may not end here."""
     match demand.kind:
-        case Kind.FINALLY:
+        case ObligationKind.FINALLY:
             return and_(stage.open(TRUE), not_(demand.response))
-        case Kind.EVENTUALLY:
+        case ObligationKind.EVENTUALLY:
             return stage.open(not_(demand.response))
-        case Kind.IMMEDIATELY | Kind.NEXT | Kind.ALWAYS | Kind.WITHIN | Kind.FOR | Kind.AFTER:
+        case (
+            ObligationKind.IMMEDIATELY
+            | ObligationKind.NEXT
+            | ObligationKind.ALWAYS
+            | ObligationKind.WITHIN
+            | ObligationKind.FOR
+            | ObligationKind.AFTER
+        ):
             return FALSE
-        case Kind.NOT_AFTER | Kind.UNTIL | Kind.BEFORE:
+        case ObligationKind.NOT_AFTER | ObligationKind.UNTIL | ObligationKind.BEFORE:
             return FALSE
         case _:
             assert_never(demand.kind)
@@ -316,19 +329,24 @@ def _owed(demand: Demand, stage: ScopeFormulas) -> Formula:
     """
     q, n = demand.response, demand.ticks
     match demand.kind:
-        case Kind.NEXT:
+        case ObligationKind.NEXT:
             return stage.trigger
-        case Kind.FINALLY:
+        case ObligationKind.FINALLY:
             return stage.open(TRUE)
-        case Kind.EVENTUALLY:
+        case ObligationKind.EVENTUALLY:
             return stage.open(not_(q))
-        case Kind.WITHIN | Kind.AFTER:
+        case ObligationKind.WITHIN | ObligationKind.AFTER:
             return stage.open(not_(q))  # one that is overdue has been broken before
-        case Kind.FOR:
+        case ObligationKind.FOR:
             return stage.open(TRUE, Interval(0, n - 1)) if n else FALSE
-        case Kind.NOT_AFTER:
+        case ObligationKind.NOT_AFTER:
             return stage.open(not_(q), Interval(0, n))
-        case Kind.IMMEDIATELY | Kind.ALWAYS | Kind.UNTIL | Kind.BEFORE:
+        case (
+            ObligationKind.IMMEDIATELY
+            | ObligationKind.ALWAYS
+            | ObligationKind.UNTIL
+            | ObligationKind.BEFORE
+        ):
             return FALSE
         case _:
             assert_never(demand.kind)
@@ -342,12 +360,24 @@ def _doom(demand: Demand, stage: ScopeFormulas) -> Formula:
     if not (stage.endless and stage.recurs):
         return FALSE
     match demand.kind:
-        case Kind.AFTER:
+        case ObligationKind.AFTER:
             # The response may not come up to n ticks after this trigger, and must come before.
             return and_(stage.trigger, previous(stage.open(not_(demand.response))))
-        case Kind.IMMEDIATELY | Kind.NEXT | Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS:
+        case (
+            ObligationKind.IMMEDIATELY
+            | ObligationKind.NEXT
+            | ObligationKind.FINALLY
+            | ObligationKind.EVENTUALLY
+            | ObligationKind.ALWAYS
+        ):
             return FALSE
-        case Kind.WITHIN | Kind.FOR | Kind.NOT_AFTER | Kind.UNTIL | Kind.BEFORE:
+        case (
+            ObligationKind.WITHIN
+            | ObligationKind.FOR
+            | ObligationKind.NOT_AFTER
+            | ObligationKind.UNTIL
+            | ObligationKind.BEFORE
+        ):
             return FALSE
         case _:
             assert_never(demand.kind)
@@ -364,21 +394,21 @@ def _met(demand: Demand, stage: ScopeFormulas) -> Formula:
     """The one demand, of the first tick of the interval, has been met or has passed."""
     q, n = demand.response, demand.ticks
     match demand.kind:
-        case Kind.IMMEDIATELY:
+        case ObligationKind.IMMEDIATELY:
             return once(stage.left)
-        case Kind.NEXT:
+        case ObligationKind.NEXT:
             return once(stage.left, Interval(1, None))
-        case Kind.FOR:
+        case ObligationKind.FOR:
             return once(stage.left, Interval(n, None))
-        case Kind.EVENTUALLY | Kind.WITHIN | Kind.BEFORE:
+        case ObligationKind.EVENTUALLY | ObligationKind.WITHIN | ObligationKind.BEFORE:
             return once(and_(stage.inside, q))
-        case Kind.UNTIL:
+        case ObligationKind.UNTIL:
             return once(and_(stage.inside, demand.stop))
-        case Kind.AFTER:
+        case ObligationKind.AFTER:
             return once(stage.left, Interval(n + 1, None))
-        case Kind.NOT_AFTER:
+        case ObligationKind.NOT_AFTER:
             return or_(once(and_(stage.inside, q)), once(stage.left, Interval(n + 1, None)))
-        case Kind.FINALLY | Kind.ALWAYS:
+        case ObligationKind.FINALLY | ObligationKind.ALWAYS:
             return FALSE
         case _:
             assert_never(demand.kind)
@@ -386,15 +416,21 @@ def _met(demand: Demand, stage: ScopeFormulas) -> Formula:
 
 def _horizon(demand: Demand) -> int | None:
     match demand.kind:
-        case Kind.IMMEDIATELY:
+        case ObligationKind.IMMEDIATELY:
             return 0
-        case Kind.NEXT:
+        case ObligationKind.NEXT:
             return 1
-        case Kind.WITHIN | Kind.FOR:
+        case ObligationKind.WITHIN | ObligationKind.FOR:
             return demand.ticks
-        case Kind.AFTER | Kind.NOT_AFTER:
+        case ObligationKind.AFTER | ObligationKind.NOT_AFTER:
             return demand.ticks + 1
-        case Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS | Kind.UNTIL | Kind.BEFORE:
+        case (
+            ObligationKind.FINALLY
+            | ObligationKind.EVENTUALLY
+            | ObligationKind.ALWAYS
+            | ObligationKind.UNTIL
+            | ObligationKind.BEFORE
+        ):
             return None
         case _:
             assert_never(demand.kind)

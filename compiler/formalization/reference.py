@@ -236,7 +236,7 @@ def _demand(template: Template) -> tuple[Counter, bool]:
 # The automaton --------------------------------------------------------------------------------
 
 
-class State(NamedTuple):
+class ReferenceState(NamedTuple):
     """The state after a tick; small and hashable."""
 
     phase: Phase
@@ -247,12 +247,14 @@ class State(NamedTuple):
     """The counter of the timing; 0 outside of intervals."""
 
 
-def initial(template: Template) -> State:
+def initial(template: Template) -> ReferenceState:
     """The state before the first tick."""
-    return State(Phase.OUTSIDE, held=False, counted=0)
+    return ReferenceState(Phase.OUTSIDE, held=False, counted=0)
 
 
-def step(template: Template, state: State, m: bool, p: bool, q: bool, s: bool) -> State | None:
+def step(
+    template: Template, state: ReferenceState, m: bool, p: bool, q: bool, s: bool
+) -> ReferenceState | None:
     """The state after one more tick; None if a demand is broken, which nothing can repair.
 
     Args:
@@ -265,14 +267,16 @@ def step(template: Template, state: State, m: bool, p: bool, q: bool, s: bool) -
     """
     phase = _entered(template.scope, state.phase, m)
     if phase not in _ENFORCED:
-        return State(phase, held=False, counted=0) if accepts(template, state) else None
+        return ReferenceState(phase, held=False, counted=0) if accepts(template, state) else None
     first = state.phase not in _ENFORCED
     counter, positive = _demand(template)
     triggered = _triggers(template.condition, p, first=first, held=state.held)
     counted = counter(state.counted, template.ticks, triggered, q is positive, s)
     if counted is None:
         return None
-    return State(phase, held=p and template.condition is ConditionKind.TRIGGER, counted=counted)
+    return ReferenceState(
+        phase, held=p and template.condition is ConditionKind.TRIGGER, counted=counted
+    )
 
 
 def _triggers(condition: ConditionKind | None, p: bool, *, first: bool, held: bool) -> bool:
@@ -301,7 +305,7 @@ class TickRole(NamedTuple):
     """A demand begins at it."""
 
 
-def tick_role(template: Template, state: State, m: bool, p: bool) -> TickRole:
+def tick_role(template: Template, state: ReferenceState, m: bool, p: bool) -> TickRole:
     """The properties of a tick with mode `m` and condition `p`, after `state`."""
     if _entered(template.scope, state.phase, m) not in _ENFORCED:
         return TickRole(enforced=False, triggered=False)
@@ -309,12 +313,12 @@ def tick_role(template: Template, state: State, m: bool, p: bool) -> TickRole:
     return TickRole(True, _triggers(template.condition, p, first=first, held=state.held))
 
 
-def accepts(template: Template, state: State) -> bool:
+def accepts(template: Template, state: ReferenceState) -> bool:
     """FRET's verdict on a finite trace that ends here: an open interval ends with it."""
     return state.counted <= 0 or _demand(template)[0] not in _OWED_AT_THE_END
 
 
-def accepting(template: Template, state: State) -> bool:
+def accepting(template: Template, state: ReferenceState) -> bool:
     """Büchi acceptance: an unbroken infinite trace satisfies if it visits such states for ever.
 
     An endless interval has no last tick, so `finally` demands nothing there.
@@ -342,7 +346,7 @@ class Automaton:
     template: Template
     letters: tuple[Letter, ...]
     """The letters that can occur."""
-    states: tuple[State, ...]
+    states: tuple[ReferenceState, ...]
     """The initial state comes first."""
     moves: tuple[tuple[int, ...], ...]
     """For each state and each letter: the index of the next state, or `BROKEN`."""

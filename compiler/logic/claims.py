@@ -1,7 +1,8 @@
 """The proofs of `fretc verify`: one for each claim, whatever the engine.
 
-An engine answers a claim with an `Outcome`. The `Proof` adds the claim in words, the assumptions
-that the outcome holds under, the engine, and the SHA-256 of each text that was examined.
+An engine answers a claim with a `ClaimOutcome`. The `Proof` adds the claim in words, the
+assumptions that the outcome holds under, the engine, and the SHA-256 of each text that was
+examined.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ METHODS = (*ALL, *PROVERS, *map(str, Layer))
 """Methods of `verify = [...]` that `fretc verify` can give a result for."""
 
 
-class Trace(Record, frozen=True):
+class ClaimTrace(Record, frozen=True):
     """A run as a table: a row for each tick."""
 
     names: Annotated[
@@ -78,7 +79,7 @@ class Trace(Record, frozen=True):
             raise ValueError("Expected the number of a row as the cycle")
 
 
-class Result(StrEnum):
+class ClaimResult(StrEnum):
     """The result of a claim; the values are the words of files and of the terminal."""
 
     PROVED = "proved"
@@ -94,42 +95,42 @@ class Result(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class ClaimOutcome:
     """An engine's answer to a claim."""
 
-    result: Result
+    result: ClaimResult
     detail: str
     """How much was examined; for a vacuous or unchecked claim, the reason."""
-    trace: Trace | None = None
+    trace: ClaimTrace | None = None
     """The run that refutes the claim; None if the engine gives none."""
 
     def __post_init__(self) -> None:
-        assert self.trace is None or self.result is Result.COUNTEREXAMPLE
+        assert self.trace is None or self.result is ClaimResult.COUNTEREXAMPLE
 
 
-def proved(detail: str) -> Outcome:
+def proved(detail: str) -> ClaimOutcome:
     """The outcome of a claim that holds; the detail says how much was examined."""
-    return Outcome(Result.PROVED, detail)
+    return ClaimOutcome(ClaimResult.PROVED, detail)
 
 
-def refuted(detail: str, trace: Trace | None = None) -> Outcome:
+def refuted(detail: str, trace: ClaimTrace | None = None) -> ClaimOutcome:
     """The outcome of a claim that is wrong, with the run that shows it."""
-    return Outcome(Result.COUNTEREXAMPLE, detail, trace)
+    return ClaimOutcome(ClaimResult.COUNTEREXAMPLE, detail, trace)
 
 
-def vacuous(reason: str) -> Outcome:
+def vacuous(reason: str) -> ClaimOutcome:
     """The outcome of a claim that holds trivially, with the reason."""
-    return Outcome(Result.VACUOUS, reason)
+    return ClaimOutcome(ClaimResult.VACUOUS, reason)
 
 
-def not_checked(reason: str) -> Outcome:
+def not_checked(reason: str) -> ClaimOutcome:
     """The outcome of a claim without a result, with the reason."""
-    return Outcome(Result.NOT_CHECKED, reason)
+    return ClaimOutcome(ClaimResult.NOT_CHECKED, reason)
 
 
-def not_applicable(reason: str) -> Outcome:
+def not_applicable(reason: str) -> ClaimOutcome:
     """The outcome of a claim that cannot be made about this requirement, with the reason."""
-    return Outcome(Result.NOT_APPLICABLE, reason)
+    return ClaimOutcome(ClaimResult.NOT_APPLICABLE, reason)
 
 
 class Proof(Record, frozen=True):
@@ -140,7 +141,7 @@ class Proof(Record, frozen=True):
     ]
     layer: Layer
     claim: Annotated[Name, about("one sentence without a full stop")]
-    result: Result
+    result: ClaimResult
     detail: Annotated[str, about("how much was examined, or why nothing is known")]
     assumptions: Annotated[
         tuple[str, ...], about("what the result holds under, with where it is declared")
@@ -150,19 +151,19 @@ class Proof(Record, frozen=True):
         dict[str, Sha256],
         about("SHA-256 of each text that was examined, by the name of its file"),
     ]
-    trace: Trace | UnsetType = UNSET
+    trace: ClaimTrace | UnsetType = UNSET
 
     @property
-    def run(self) -> Trace | None:
+    def run(self) -> ClaimTrace | None:
         """The run that refutes the claim, if there is one."""
-        return self.trace if isinstance(self.trace, Trace) else None
+        return self.trace if isinstance(self.trace, ClaimTrace) else None
 
 
 def proof(
     requirement: str,
     layer: Layer,
     claim: str,
-    outcome: Outcome,
+    outcome: ClaimOutcome,
     engine: str,
     assumptions: Sequence[str] = (),
     artefacts: Mapping[str, str] | None = None,
@@ -191,7 +192,7 @@ def proof(
     )
 
 
-class Document(Record, frozen=True):
+class VerificationDocument(Record, frozen=True):
     """The content of `build/verification.json`; equal texts give equal files."""
 
     schema: Literal["fretc-verification-1"]
@@ -202,7 +203,7 @@ class Document(Record, frozen=True):
 def schema() -> dict[str, Any]:
     """The JSON Schema of the file."""
     return json_schema(
-        Document,
+        VerificationDocument,
         SCHEMA,
         "What has been proved, refuted or left open, as `fretc verify` writes it",
         "One object for each claim; nothing in it depends on when or where it was made.",

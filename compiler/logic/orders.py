@@ -21,7 +21,7 @@ from compiler.logic.ordering import ranges
 from compiler.logic.ordering.relations import (
     MIRRORED,
     ZERO,
-    Constant,
+    NumberTerm,
     Point,
     Relation,
     Term,
@@ -121,7 +121,7 @@ def _of_group(
     """The exclusions of related comparisons, found with a share of the step limit."""
     if ranges.is_of_one_term(relations):
         return ranges.exclusions(relations, words, share)
-    search = _Search(relations, words, int(MOST_STEPS * share))
+    search = _ValuationSearch(relations, words, int(MOST_STEPS * share))
     minimal = search.run()
     if not search.is_cut:
         return minimal
@@ -143,7 +143,7 @@ def _by_term(relations: Mapping[str, Relation]) -> Iterator[Mapping[str, Relatio
     """The comparisons of each term with constants or enumeration values, decided alone."""
     groups: dict[Point, dict[str, Relation]] = {}
     for name, relation in relations.items():
-        if isinstance(relation.right, Constant) or is_word(relation.right):
+        if isinstance(relation.right, NumberTerm) or is_word(relation.right):
             groups.setdefault(relation.left, {})[name] = relation
     return (group for group in groups.values() if ranges.is_of_one_term(group))
 
@@ -209,7 +209,7 @@ def _places(bits: int) -> Iterator[int]:
         bits &= bits - 1
 
 
-class _Search:
+class _ValuationSearch:
     """The search through possible valuations of a group, one comparison after the other."""
 
     def __init__(
@@ -312,9 +312,9 @@ class _Search:
 
     def _add_constants(self, order: _Order) -> None:
         """Add the order of the constants, from the last one down, with its consequences."""
-        row = [point for point in self._places if isinstance(point, Constant)]
+        row = [point for point in self._places if isinstance(point, NumberTerm)]
         row.sort(key=lambda constant: constant.value, reverse=True)
-        above: list[tuple[Constant, Fraction, int]] = []
+        above: list[tuple[NumberTerm, Fraction, int]] = []
         for less in row:
             i, (_, end) = self._places[less], less.ends
             for more, start, j in above:
@@ -352,5 +352,5 @@ def _consequences(
 ) -> Iterator[tuple[Point, e.ComparisonOperator, Point]]:
     """The relation and its consequences, such as `-x > -2` for `x < 2`."""
     yield left, op, right
-    if isinstance(left, Term) and isinstance(right, Constant):
-        yield negative(left), MIRRORED[op], Constant(-right.value, right.beside)
+    if isinstance(left, Term) and isinstance(right, NumberTerm):
+        yield negative(left), MIRRORED[op], NumberTerm(-right.value, right.beside)

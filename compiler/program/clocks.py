@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import assert_never
 
-from compiler.program.instructions import Advance, Assign, Choose, Count, Instruction
-from compiler.program.program import Block, Counter, Program, Requirement
+from compiler.program.instructions import Advance, Assign, Choose, Instruction, SetCounter
+from compiler.program.program import Block, Counter, Program, RequirementProgram
 from compiler.program.values import Age, And, Comparison, Value, Variable
 
 
@@ -50,7 +50,7 @@ def lengthened(program: Program, clocks: Mapping[str, str]) -> Program:
     return replace(program, cells=cells, blocks=blocks)
 
 
-def _clock(requirement: Requirement, blocks: Mapping[str, Block]) -> str | None:
+def _clock(requirement: RequirementProgram, blocks: Mapping[str, Block]) -> str | None:
     owed = requirement.signals.owed
     if requirement.horizon is None or requirement.renewed or not isinstance(owed, Variable):
         return None
@@ -65,7 +65,7 @@ def _starts_once(block: Block) -> bool:
     """Whether the counter grows until it is -1, and then restarts from 0."""
     there = Age(block.name, Comparison.AT_LEAST, 0)
     match block.instructions:
-        case (Choose(((kept, Advance()), (witness, Count(_, 0))), Count(_, -1)),):
+        case (Choose(((kept, Advance()), (witness, SetCounter(_, 0))), SetCounter(_, -1)),):
             return _conjuncts(kept) <= _conjuncts(witness) | {there}
         case _:
             return False
@@ -89,11 +89,11 @@ def _longer(block: Block, most: int) -> Block:
     return replace(block, instructions=tuple(instructions))
 
 
-def _grown(instruction: Count | Advance, most: int) -> Count | Advance:
+def _grown(instruction: SetCounter | Advance, most: int) -> SetCounter | Advance:
     match instruction:
         case Advance(counter, before):
             return Advance(counter, max(before, most))
-        case Count():
+        case SetCounter():
             return instruction
         case _:
             assert_never(instruction)

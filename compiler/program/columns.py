@@ -21,7 +21,7 @@ class PreviousColumn:
 
 
 @dataclass(frozen=True, slots=True)
-class Since:
+class SinceColumn:
     """`guard S[lo,hi] witness` in ticks; `dual`: the negation of that of the negated values."""
 
     guard: Value | None
@@ -34,4 +34,4 @@ class Since:
     """The name of the column without bounds, if that is computed before."""
 
 
-Column = Value | AtFirst | PreviousColumn | Since
+Column = Value | AtFirst | PreviousColumn | SinceColumn

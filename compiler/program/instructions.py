@@ -25,7 +25,7 @@ class Shift:
 
 
 @dataclass(frozen=True, slots=True)
-class Count:
+class SetCounter:
     """The counter gets this number."""
 
     counter: str
@@ -58,8 +58,8 @@ class Slide:
 class Choose:
     """The instruction of the first condition that is true; `otherwise`, if none is."""
 
-    branches: tuple[tuple[Value, Count | Advance], ...]
-    otherwise: Count | Advance
+    branches: tuple[tuple[Value, SetCounter | Advance], ...]
+    otherwise: SetCounter | Advance
 
 
-Instruction = Assign | Shift | Count | Advance | Slide | Choose
+Instruction = Assign | Shift | SetCounter | Advance | Slide | Choose

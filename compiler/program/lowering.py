@@ -14,8 +14,24 @@ from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.program import columns
 from compiler.program.columns import AtFirst, Column, PreviousColumn
-from compiler.program.instructions import Advance, Assign, Choose, Count, Instruction, Shift, Slide
-from compiler.program.program import Block, Cell, Counter, Flag, Program, Requirement, Window
+from compiler.program.instructions import (
+    Advance,
+    Assign,
+    Choose,
+    Instruction,
+    SetCounter,
+    Shift,
+    Slide,
+)
+from compiler.program.program import (
+    Block,
+    Cell,
+    Counter,
+    Program,
+    RequirementProgram,
+    StoredFlag,
+    WindowMemory,
+)
 from compiler.program.values import (
     FALSE,
     TRUE,
@@ -41,9 +57,9 @@ def program(watches: Mapping[str, MonitorSpec], taken: Collection[str] = ()) -> 
         watches: requirement id → monitor specification, with past-time formulas only.
         taken: reserved names for cells and variables.
     """
-    writer = _Writer(frozenset(taken))
+    writer = _FormulaLowering(frozenset(taken))
     requirements = tuple(
-        Requirement(id, Signals(*map(writer.value, w.signals)), w.horizon, w.renewed)
+        RequirementProgram(id, Signals(*map(writer.value, w.signals)), w.horizon, w.renewed)
         for id, w in watches.items()
     )
     return Program(
@@ -55,7 +71,7 @@ def program(watches: Mapping[str, MonitorSpec], taken: Collection[str] = ()) -> 
 
 
 @dataclass(frozen=True, slots=True)
-class _Part:
+class _BlockCells:
     """A block and its cells, built after all users of its counter are known."""
 
     block: Callable[[], Block]
@@ -81,7 +97,7 @@ class _Counter:
 
     def block(self) -> Block:
         """The block that moves the counter at a tick."""
-        none, born = Count(self.name, self._none), Count(self.name, 0)
+        none, born = SetCounter(self.name, self._none), SetCounter(self.name, 0)
         if self.youngest:
             grown = Advance(self.name, self._none)
             choice = _choice((self.witness, born), (self.guard, grown), none)
@@ -97,10 +113,10 @@ class _Counter:
         return self.most + 1 if self.youngest else -1
 
 
-_Branch = tuple[Value, Count | Advance]
+_Branch = tuple[Value, SetCounter | Advance]
 
 
-def _choice(first: _Branch, second: _Branch, last: Count | Advance) -> Choose:
+def _choice(first: _Branch, second: _Branch, last: SetCounter | Advance) -> Choose:
     """A choice of three branches, or of two if the second condition is constant."""
     condition, then = second
     if condition in (TRUE, FALSE):
@@ -124,19 +140,21 @@ class _Sides:
             return self.guard, self.witness
         return not_(self.guard), not_(self.witness)
 
-    def column(self, ago: f.Interval = f.EVER, unbounded: str | None = None) -> columns.Since:
+    def column(self, ago: f.Interval = f.EVER, unbounded: str | None = None) -> columns.SinceColumn:
         """The column over whole traces."""
         guard = None if self.left == f.TRUE else self.guard
-        return columns.Since(guard, self.witness, ago.lo, ago.hi, not self.positive, unbounded)
+        return columns.SinceColumn(
+            guard, self.witness, ago.lo, ago.hi, not self.positive, unbounded
+        )
 
 
 @dataclass(slots=True)
-class _Writer:
+class _FormulaLowering:
     """A writer that visits formulas bottom-up, and makes one part for each temporal operator."""
 
     taken: frozenset[str]
     literals: dict[Literal, None] = field(default_factory=dict)
-    parts: list[_Part] = field(default_factory=list)
+    parts: list[_BlockCells] = field(default_factory=list)
     _values: dict[tuple[f.Formula, bool], Value] = field(default_factory=dict)
     _counters: dict[tuple[bool, f.Formula, f.Formula, bool], _Counter] = field(default_factory=dict)
     _unbounded: dict[tuple[f.Formula, f.Formula, bool], str] = field(default_factory=dict)
@@ -206,7 +224,7 @@ class _Writer:
             "(Z FALSE): no tick came before",
             Shift("first", "kept_first", FALSE),
             AtFirst(),
-            Flag("kept_first", True, "whether the next tick is the first"),
+            StoredFlag("kept_first", True, "whether the next tick is the first"),
         )
 
     def _differing(
@@ -225,7 +243,7 @@ class _Writer:
     def _before(self, value: Value, weak: bool, formula: f.Formula, positive: bool) -> Value:
         """The value of the tick before; at tick 0 it is `weak`."""
         name, comment = self._name("before"), self._comment(formula, positive)
-        kept = Flag(f"kept_{name}", weak, comment)
+        kept = StoredFlag(f"kept_{name}", weak, comment)
         return self._add(
             name, comment, Shift(name, kept.name, value), PreviousColumn(value, weak), kept
         )
@@ -265,7 +283,7 @@ class _Writer:
             value = or_([witness, and_([guard, before])])
         else:
             value = and_([witness, or_([guard, before])])
-        cell = Flag(name, not sides.positive, comment)
+        cell = StoredFlag(name, not sides.positive, comment)
         return self._add(name, comment, Assign(name, value), sides.column(), cell)
 
     def _by_count(self, sides: _Sides, ago: f.Interval, comment: str) -> Value:
@@ -301,13 +319,13 @@ class _Writer:
             comment = f"ticks since the {kind} witness of {witness}"
             counter = _Counter(self._name(kind), *sides.conditions(), comment, youngest)
             self._counters[key] = counter
-            self.parts.append(_Part(counter.block, counter.cells))
+            self.parts.append(_BlockCells(counter.block, counter.cells))
         return self._counters[key]
 
     def _window(self, sides: _Sides, lo: int, hi: int, comment: str) -> Value:
         """A since with both bounds, which keeps the witnesses within the window."""
         name = self._name("since")
-        cell = Window(f"kept_{name}", lo, hi, comment)
+        cell = WindowMemory(f"kept_{name}", lo, hi, comment)
         slide = Slide(name, cell.name, *sides.conditions(), not sides.positive)
         return self._add(name, comment, slide, sides.column(f.Interval(lo, hi)), cell)
 
@@ -315,5 +333,5 @@ class _Writer:
         self, name: str, comment: str, does: Instruction | None, column: Column, *cells: Cell
     ) -> Value:
         block = Block(name, comment, (does,) if does is not None else (), column)
-        self.parts.append(_Part(lambda: block, lambda: cells))
+        self.parts.append(_BlockCells(lambda: block, lambda: cells))
         return Variable(name)

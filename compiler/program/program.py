@@ -23,7 +23,7 @@ SOURCES: Mapping[str, str] = dict(zip(MARKS, ("breach", "doom", "trigger", "owed
 
 
 @dataclass(frozen=True, slots=True)
-class Flag:
+class StoredFlag:
     """A truth value that lives from tick to tick."""
 
     name: str
@@ -43,7 +43,7 @@ class Counter:
 
 
 @dataclass(frozen=True, slots=True)
-class Window:
+class WindowMemory:
     """The memory of `guard S[lo,hi] witness` about earlier ticks."""
 
     name: str
@@ -52,7 +52,7 @@ class Window:
     comment: str
 
 
-Cell = Flag | Counter | Window
+Cell = StoredFlag | Counter | WindowMemory
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ class Block:
 
 
 @dataclass(frozen=True, slots=True)
-class Requirement:
+class RequirementProgram:
     """The signals of one requirement at this tick, after all blocks."""
 
     id: str
@@ -92,4 +92,4 @@ class Program:
     literals: tuple[Literal, ...]
     cells: tuple[Cell, ...]
     blocks: tuple[Block, ...]
-    requirements: tuple[Requirement, ...]
+    requirements: tuple[RequirementProgram, ...]

@@ -16,12 +16,19 @@ from compiler.program.instructions import (
     Advance,
     Assign,
     Choose,
-    Count,
     Instruction,
+    SetCounter,
     Shift,
     Slide,
 )
-from compiler.program.program import Block, Counter, Flag, Program, Requirement, Window
+from compiler.program.program import (
+    Block,
+    Counter,
+    Program,
+    RequirementProgram,
+    StoredFlag,
+    WindowMemory,
+)
 from compiler.program.values import (
     FALSE,
     TRUE,
@@ -54,8 +61,8 @@ class Delay:
     value: Value
 
 
-Cell = Flag | Counter | Ring
-Step = Assign | Shift | Count | Advance | Delay | Choose
+Cell = StoredFlag | Counter | Ring
+Step = Assign | Shift | SetCounter | Advance | Delay | Choose
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +82,7 @@ class Deadline:
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class RequirementValues:
     """The values to read of a requirement after a tick."""
 
     id: str
@@ -86,16 +93,16 @@ class Reading:
 
 
 @dataclass(frozen=True, slots=True)
-class Rail:
+class StoredProgram:
     """A program whose cells are flags, counters and rings."""
 
     literals: tuple[Literal, ...]
     cells: tuple[Cell, ...]
     stages: tuple[StatementGroup, ...]
-    readings: tuple[Reading, ...]
+    readings: tuple[RequirementValues, ...]
 
 
-def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
+def rail(program: Program, prefixes: Mapping[str, str]) -> StoredProgram:
     """The program reduced to what signals need, with rings for windows and cells for marks.
 
     Args:
@@ -106,11 +113,11 @@ def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
     program = lengthened(program, clock_of)
     blocks = _needed(program)
     names = {name for block in blocks for name in _cells(block)}
-    windows = {cell.name: cell for cell in program.cells if isinstance(cell, Window)}
+    windows = {cell.name: cell for cell in program.cells if isinstance(cell, WindowMemory)}
     cells: list[Cell] = [
-        cell for cell in program.cells if cell.name in names and not isinstance(cell, Window)
+        cell for cell in program.cells if cell.name in names and not isinstance(cell, WindowMemory)
     ]
-    stages, readings = list[StatementGroup](), list[Reading]()
+    stages, readings = list[StatementGroup](), list[RequirementValues]()
     for block in blocks:
         steps = list[Step]()
         for instruction in block.instructions:
@@ -125,7 +132,7 @@ def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
         cells.extend(marks)
         stages.extend([stage] if stage.steps else [])
         readings.append(reading)
-    return Rail(_literals(program, blocks), tuple(cells), tuple(stages), tuple(readings))
+    return StoredProgram(_literals(program, blocks), tuple(cells), tuple(stages), tuple(readings))
 
 
 def _literals(program: Program, blocks: Iterable[Block]) -> tuple[Literal, ...]:
@@ -173,7 +180,7 @@ def _read(instruction: Instruction) -> Iterable[Value]:
             return (guard, witness)
         case Choose(branches):
             return (condition for condition, _ in branches)
-        case Count() | Advance():
+        case SetCounter() | Advance():
             return ()
 
 
@@ -186,7 +193,7 @@ def _cells(block: Block) -> Iterator[str]:
 
 
 def _without_windows(
-    instruction: Instruction, windows: Mapping[str, Window]
+    instruction: Instruction, windows: Mapping[str, WindowMemory]
 ) -> tuple[tuple[Cell, ...], tuple[Step, ...]]:
     """The instruction with windows replaced, and the cells needed for that."""
     if isinstance(instruction, Slide):
@@ -194,7 +201,7 @@ def _without_windows(
     return (), (instruction,)
 
 
-def _ring_and_step(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, ...]]:
+def _ring_and_step(slide: Slide, window: WindowMemory) -> tuple[tuple[Cell, ...], tuple[Step, ...]]:
     """A window as a ring and counters, and its step."""
     name, lo, none = slide.name, window.lo, window.hi - window.lo + 1
     past, guarded = Variable(f"past_{name}"), slide.guard != TRUE
@@ -203,22 +210,22 @@ def _ring_and_step(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tupl
     age = Counter(f"age_{name}", none, 0, none, note)
     clear = Counter(f"clear_{name}", 0, 0, lo, "ticks in a row with the guard")
     old = and_([past, Age(clear.name, Comparison.AT_LEAST, lo)]) if guarded else past
-    grown, lost = Advance(age.name, none), Count(age.name, none)
-    older = Choose(((old, Count(age.name, 0)), (slide.guard, grown)), lost)
-    row = Choose(((slide.guard, Advance(clear.name, lo)),), Count(clear.name, 0))
+    grown, lost = Advance(age.name, none), SetCounter(age.name, none)
+    older = Choose(((old, SetCounter(age.name, 0)), (slide.guard, grown)), lost)
+    row = Choose(((slide.guard, Advance(clear.name, lo)),), SetCounter(clear.name, 0))
     comparison = Comparison.MORE if slide.negated else Comparison.AT_MOST
     steps: tuple[Step, ...] = (
         *((row,) if guarded else ()),
         Delay(past.name, ring.name, slide.witness),
-        older if guarded else Choose(((old, Count(age.name, 0)),), grown),
+        older if guarded else Choose(((old, SetCounter(age.name, 0)),), grown),
         Assign(name, Age(age.name, comparison, none - 1)),
     )
     return (ring, *((clear,) if guarded else ()), age), steps
 
 
 def _mark_cells(
-    requirement: Requirement, prefix: str, clock: str | None
-) -> tuple[list[Cell], StatementGroup, Reading]:
+    requirement: RequirementProgram, prefix: str, clock: str | None
+) -> tuple[list[Cell], StatementGroup, RequirementValues]:
     """The marks of a requirement as cells, with the statements that update them and its reading.
 
     `clock`: the counter that is as old as the open demand, if there is one.
@@ -226,7 +233,7 @@ def _mark_cells(
     signals, cells, steps = requirement.signals, list[Cell](), list[Step]()
     latches: dict[str, Value] = {}
     for name, signal in (("broken", signals.breach), ("doomed", signals.doom)):
-        flag = Flag(f"{prefix}_{name}", False, f"{requirement.id} was {name} up to here")
+        flag = StoredFlag(f"{prefix}_{name}", False, f"{requirement.id} was {name} up to here")
         latches[name] = Variable(flag.name) if signal != FALSE else FALSE
         if signal != FALSE:
             cells.append(flag)
@@ -236,13 +243,13 @@ def _mark_cells(
         deadline = Deadline(clock, requirement.horizon)
     elif requirement.horizon is not None and signals.owed != FALSE:
         deadline = Deadline(f"{prefix}_age", requirement.horizon)
-        most, none = requirement.horizon + 1, Count(deadline.counter, -1)
+        most, none = requirement.horizon + 1, SetCounter(deadline.counter, -1)
         note = f"ticks since the trigger of the open demand of {requirement.id}; -1: none"
         cells.append(Counter(deadline.counter, -1, -1, most, note))
         grown = Advance(deadline.counter, most)
         if requirement.renewed:
             open_ = Age(deadline.counter, Comparison.AT_LEAST, 0)
-            born = Count(deadline.counter, 0)
+            born = SetCounter(deadline.counter, 0)
             steps.append(Choose(((signals.trigger, born), (open_, grown)), none))
         else:
             steps.append(Choose(((signals.owed, grown),), none))
@@ -256,4 +263,4 @@ def _mark_cells(
         "answer": signals.answer,
     }
     stage = StatementGroup(f"{requirement.id}: what is remembered", tuple(steps))
-    return cells, stage, Reading(requirement.id, prefix, truths, deadline)
+    return cells, stage, RequirementValues(requirement.id, prefix, truths, deadline)

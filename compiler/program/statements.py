@@ -12,8 +12,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self, assert_never
 
-from compiler.program.instructions import Advance, Assign, Choose, Count, Shift
-from compiler.program.rails import Cell, Deadline, Delay, Rail, Ring, Step
+from compiler.program.instructions import Advance, Assign, Choose, SetCounter, Shift
+from compiler.program.rails import Cell, Deadline, Delay, Ring, Step, StoredProgram
 from compiler.program.values import Age, And, Constant, Literal, Not, Or, Value, Variable
 
 
@@ -30,14 +30,14 @@ class Statements(ABC):
     IF: ClassVar[tuple[str, str]]
     """The text before and after a condition."""
 
-    rail: Rail
+    rail: StoredProgram
     names: Mapping[str, str]
     """An identifier for each proposition."""
     cells: Mapping[str, Cell]
     """The cells by their names."""
 
     @classmethod
-    def of(cls, rail: Rail, names: Mapping[str, str]) -> Self:
+    def of(cls, rail: StoredProgram, names: Mapping[str, str]) -> Self:
         """The statements of a program, with an identifier for each proposition."""
         return cls(rail, names, {cell.name: cell for cell in rail.cells})
 
@@ -129,7 +129,7 @@ class Statements(ABC):
             case Shift(name, cell, value):
                 yield self._assigned(name, f"{self.CELLS}{cell}")
                 yield f"{self.CELLS}{cell} = {self.value(value)};"
-            case Count(counter, number):
+            case SetCounter(counter, number):
                 yield f"{self.CELLS}{counter} = {number};"
             case Advance(counter, most):
                 place = f"{self.CELLS}{counter}"

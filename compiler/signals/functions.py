@@ -1,7 +1,7 @@
 """The functions beside a monitor, from samples to its inputs, for any language.
 
 Names, their order, which values the caller computes, and the comments are decided here. A target
-puts them into its template, and a `Language` writes the expressions.
+puts them into its template, and a `NumberSyntax` writes the expressions.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from compiler.files.build_id import __version__
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.identifiers import legal_names
-from compiler.signals.policies import Instant, Meaning, Policy, instant
-from compiler.signals.printing import Language, Printer
+from compiler.signals.policies import InstantFunctions, PropositionFunctions, SamplePolicy, instant
+from compiler.signals.printing import NumberSyntax, Printer
 from fretish.bindings.declarations import Aggregate, Reading, Reduce
 
 
@@ -43,7 +43,7 @@ class SignalFunction:
 
 
 @dataclass(frozen=True, slots=True)
-class Duration:
+class HeldCondition:
     """A condition that has to hold for a duration; an input at an instant."""
 
     name: str
@@ -70,7 +70,7 @@ class Functions:
     notes: tuple[str, ...]
     """Comments at the top of the file: its purpose, and what it leaves out."""
     signals: tuple[SignalFunction, ...]
-    held: tuple[Duration, ...]
+    held: tuple[HeldCondition, ...]
     propositions: tuple[PropositionFunction, ...]
 
 
@@ -82,7 +82,7 @@ def file_name(monitor: str) -> str:
 def functions(
     requirements: Sequence[FormalizedRequirement],
     names: Mapping[str, str],
-    language: Language,
+    language: NumberSyntax,
     reserved: Container[str] = (),
 ) -> Functions | None:
     """The functions for a monitor; None if there are no bindings.
@@ -109,7 +109,7 @@ def functions(
             _signal(policy, signals[policy.signal.name], language) for policy in at_instant.policies
         ),
         tuple(
-            Duration(
+            HeldCondition(
                 name,
                 f"{meaning.name}: its part number {part}, for {duration} ns",
                 printers[meaning.name].truth(truth),
@@ -126,7 +126,9 @@ def functions(
     )
 
 
-def _notes(requirements: Sequence[FormalizedRequirement], at_instant: Instant) -> tuple[str, ...]:
+def _notes(
+    requirements: Sequence[FormalizedRequirement], at_instant: InstantFunctions
+) -> tuple[str, ...]:
     title = ", ".join(requirement.id for requirement in requirements)
     return (
         f"What samples say of the propositions of {title}, as `fretc audit` reads them.",
@@ -140,7 +142,7 @@ def _notes(requirements: Sequence[FormalizedRequirement], at_instant: Instant) -
 
 
 def _durations(
-    at_instant: Instant, names: Mapping[str, str], reserved: Container[str]
+    at_instant: InstantFunctions, names: Mapping[str, str], reserved: Container[str]
 ) -> Mapping[str, tuple[str, ...]]:
     """The inputs of each proposition for conditions that have held for a duration."""
     wanted = {
@@ -154,7 +156,7 @@ def _durations(
     }
 
 
-def _signal(policy: Policy, name: str, language: Language) -> SignalFunction:
+def _signal(policy: SamplePolicy, name: str, language: NumberSyntax) -> SignalFunction:
     signal, invalid = policy.signal, policy.signal.invalid
     form = "word" if signal.values else "array" if policy.is_array else "number"
     fields = legal_names(policy.fields, ())
@@ -175,7 +177,7 @@ def _signal(policy: Policy, name: str, language: Language) -> SignalFunction:
     )
 
 
-def _text(policy: Policy) -> str:
+def _text(policy: SamplePolicy) -> str:
     signal = policy.signal
     if policy.is_given:
         return f"The number of {signal.name} is computed by the caller: {signal.reduce}."
@@ -187,7 +189,7 @@ def _text(policy: Policy) -> str:
     return "The number of a message's field."
 
 
-def _proposition(meaning: Meaning, name: str, printer: Printer) -> PropositionFunction:
+def _proposition(meaning: PropositionFunctions, name: str, printer: Printer) -> PropositionFunction:
     return PropositionFunction(
         meaning.name, name, printer.truth(meaning.truth), meaning.aggregate, meaning.on_unknown
     )

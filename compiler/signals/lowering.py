@@ -19,15 +19,15 @@ from fretish.units import ONE, Unit
 
 
 @dataclass(frozen=True, slots=True)
-class _Measure:
+class _ScaledNumber:
     """A number that is not constant, with its scale to base units. None: always unknown."""
 
     number: n.Number | None
     scale: Fraction = Fraction(1)
 
 
-_Term = _Measure | Fraction
-_UNKNOWN = _Measure(None)
+_Term = _ScaledNumber | Fraction
+_UNKNOWN = _ScaledNumber(None)
 _FUNCTIONS: Mapping[str, Literal["plus", "minus", "times", "over", "modulo"]] = {
     "+": "plus",
     "-": "minus",
@@ -64,7 +64,7 @@ class Lowering:
             case e.Truth(value):
                 return n.Known(value)
             case e.Name(id):
-                return n.Flag(id)
+                return n.BooleanSignal(id)
             case e.Comparison(op, e.Name(id), e.Word(text)):
                 return n.Comparison(op, n.SignalValue(id), self._place(id, text))
             case e.Comparison(op, e.Word(text), e.Name(id)):
@@ -109,7 +109,7 @@ class Lowering:
             case e.Quantity(digits, name):
                 return quantity(digits, name, self.unit)
             case e.Name(id):
-                return _Measure(n.SignalValue(id), self.scales.get(id, Fraction(1)))
+                return _ScaledNumber(n.SignalValue(id), self.scales.get(id, Fraction(1)))
             case e.Negation(arg):
                 term = self._term(arg)
                 return -term if isinstance(term, Fraction) else _applied("negative", term)
@@ -126,7 +126,9 @@ class Lowering:
                 raise AssertionError("the reader of bindings refuses it as a number")
 
 
-def _together(left: _Measure, right: _Term) -> tuple[n.Number | None, n.Number | None, Fraction]:
+def _together(
+    left: _ScaledNumber, right: _Term
+) -> tuple[n.Number | None, n.Number | None, Fraction]:
     """Both numbers in one unit, and the scale of the unit."""
     if isinstance(right, Fraction):
         return left.number, n.Constant(right / left.scale), left.scale
@@ -135,14 +137,14 @@ def _together(left: _Measure, right: _Term) -> tuple[n.Number | None, n.Number |
     return _in_base(left), _in_base(right), Fraction(1)
 
 
-def _in_base(term: _Measure) -> n.Number | None:
+def _in_base(term: _ScaledNumber) -> n.Number | None:
     return None if term.number is None else n.ToBaseUnit(term.number, term.scale)
 
 
-def _applied(function: Literal["negative", "absolute"], term: _Measure) -> _Measure:
+def _applied(function: Literal["negative", "absolute"], term: _ScaledNumber) -> _ScaledNumber:
     if term.number is None:
         return _UNKNOWN
-    return _Measure(n.UnaryCall(function, term.number), term.scale)
+    return _ScaledNumber(n.UnaryCall(function, term.number), term.scale)
 
 
 def _arithmetic(op: e.ArithmeticOperator, left: _Term, right: _Term) -> _Term:
@@ -153,17 +155,17 @@ def _arithmetic(op: e.ArithmeticOperator, left: _Term, right: _Term) -> _Term:
         a, b = _factor(left), _factor(right)
         x, y, scale = a.number, b.number, a.scale * b.scale if op == "*" else a.scale / b.scale
     elif isinstance(left, Fraction):
-        assert isinstance(right, _Measure)
+        assert isinstance(right, _ScaledNumber)
         y, x, scale = _together(right, left)
     else:
         x, y, scale = _together(left, right)
     if x is None or y is None:
         return _UNKNOWN
-    return _Measure(n.Computed(_FUNCTIONS[op], x, y), scale)
+    return _ScaledNumber(n.Computed(_FUNCTIONS[op], x, y), scale)
 
 
-def _factor(term: _Term) -> _Measure:
-    return _Measure(n.Constant(term)) if isinstance(term, Fraction) else term
+def _factor(term: _Term) -> _ScaledNumber:
+    return _ScaledNumber(n.Constant(term)) if isinstance(term, Fraction) else term
 
 
 def _power(base: _Term, exponent: _Term) -> _Term:
@@ -174,7 +176,7 @@ def _power(base: _Term, exponent: _Term) -> _Term:
     if base.number is None:
         return _UNKNOWN
     times = whole_exponent(exponent)
-    return _Measure(n.Power(base.number, times), base.scale**times)
+    return _ScaledNumber(n.Power(base.number, times), base.scale**times)
 
 
 def _end(name: Literal["min", "max"], args: Sequence[_Term]) -> _Term:
@@ -189,5 +191,5 @@ def _end(name: Literal["min", "max"], args: Sequence[_Term]) -> _Term:
         x, y, scale = _together(extreme, term)
         if x is None or y is None:
             return _UNKNOWN
-        extreme = _Measure(n.MinMax("lesser" if name == "min" else "greater", x, y), scale)
+        extreme = _ScaledNumber(n.MinMax("lesser" if name == "min" else "greater", x, y), scale)
     return extreme

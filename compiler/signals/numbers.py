@@ -86,7 +86,7 @@ class Known:
 
 
 @dataclass(frozen=True, slots=True)
-class Flag:
+class BooleanSignal:
     """A signal as a truth value: 1 is true, 0 is false, any other number is unknown."""
 
     name: str
@@ -137,4 +137,4 @@ class Iff:
     right: Truth
 
 
-Truth = Known | Flag | Comparison | HeldFor | Not | All | Some | Iff
+Truth = Known | BooleanSignal | Comparison | HeldFor | Not | All | Some | Iff

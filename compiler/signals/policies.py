@@ -4,17 +4,18 @@ The entry point is `instant`: for some requirements it has the policies of all s
 propositions read, and the truth values of these propositions. Printers turn both into functions of
 a language:
 
-- a message's field → `Policy` (elements that are no measurement, `valid`, least or greatest) → a
-  number of the sample, or unknown;
-- a sample counts until it is older than `Policy.signal.max_age`; then, and before the first one, it
-  is unknown;
-- the numbers of all signals → `Meaning.truth` at an instant;
-- the truths of all instants of a tick → `Meaning.aggregate`, then `Meaning.on_unknown`.
+- a message's field → `SamplePolicy` (elements that are no measurement, `valid`, least or greatest)
+  → a number of the sample, or unknown;
+- a sample counts until it is older than `SamplePolicy.signal.max_age`; then, and before the first
+  one, it is unknown;
+- the numbers of all signals → `PropositionFunctions.truth` at an instant;
+- the truths of all instants of a tick → `PropositionFunctions.aggregate`, then
+  `PropositionFunctions.on_unknown`.
 
 A value that depends on several instants is an input: `... for 200 ms` is `HeldFor`. A proposition
 that looks back by ticks (`pre`) is not a function of an instant, and is listed in
-`Instant.left_out`. A mean and a clearance are not exact in other languages: their signals are given
-as one number (`is_given`).
+`InstantFunctions.left_out`. A mean and a clearance are not exact in other languages: their signals
+are given as one number (`is_given`).
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from fretish.bindings.expressions import ticks_back
 
 
 @dataclass(frozen=True, slots=True)
-class Policy:
+class SamplePolicy:
     """How the field of one message becomes the number of a sample.
 
     An element is NaN, +inf, -inf, a finite but invalid number, or a measurement; `signal.invalid`
@@ -56,7 +57,7 @@ class Policy:
 
 
 @dataclass(frozen=True, slots=True)
-class Meaning:
+class PropositionFunctions:
     """A proposition at an instant, over the numbers of its signals."""
 
     name: str
@@ -68,16 +69,16 @@ class Meaning:
 
 
 @dataclass(frozen=True, slots=True)
-class Instant:
+class InstantFunctions:
     """The signals and propositions of one instant."""
 
-    policies: tuple[Policy, ...]
-    meanings: tuple[Meaning, ...]
+    policies: tuple[SamplePolicy, ...]
+    meanings: tuple[PropositionFunctions, ...]
     left_out: tuple[str, ...]
     """Bound propositions that look back by ticks: the caller gives their truth value."""
 
 
-def instant(requirements: Sequence[FormalizedRequirement]) -> Instant | None:
+def instant(requirements: Sequence[FormalizedRequirement]) -> InstantFunctions | None:
     """The instant of all propositions of the requirements; None if there are no bindings."""
     bound = _bound(requirements)
     pure = [proposition for proposition in bound if not ticks_back(proposition.expression)]
@@ -96,7 +97,7 @@ def instant(requirements: Sequence[FormalizedRequirement]) -> Instant | None:
     left_out = tuple(
         proposition.name for proposition in bound if ticks_back(proposition.expression)
     )
-    return Instant(policies, meanings, left_out)
+    return InstantFunctions(policies, meanings, left_out)
 
 
 def _bound(requirements: Sequence[FormalizedRequirement]) -> list[Proposition]:
@@ -109,22 +110,22 @@ def _bound(requirements: Sequence[FormalizedRequirement]) -> list[Proposition]:
     return [*propositions.values()]
 
 
-def policy(signal: Signal) -> Policy:
+def policy(signal: Signal) -> SamplePolicy:
     """The policy of a signal."""
     if signal.valid is None:
-        return Policy(signal)
+        return SamplePolicy(signal)
     fields = dict.fromkeys(name.id for name in e.names(signal.valid) if name.id != "x")
-    return Policy(signal, Lowering(unit=signal.unit).truth(signal.valid), tuple(fields))
+    return SamplePolicy(signal, Lowering(unit=signal.unit).truth(signal.valid), tuple(fields))
 
 
-def meaning(proposition: Proposition, signals: Iterable[Signal]) -> Meaning:
+def meaning(proposition: Proposition, signals: Iterable[Signal]) -> PropositionFunctions:
     """The meaning of a proposition without `pre`, over declared signals."""
     scales, words = {}, {}
     for signal in signals:
         scales[signal.name], words[signal.name] = signal.scale, signal.values
     lowering = Lowering(scales, words)
     truth = lowering.truth(proposition.expression)
-    return Meaning(
+    return PropositionFunctions(
         proposition.name,
         truth,
         tuple(lowering.held),

@@ -49,7 +49,7 @@ def encode_constant(value: Fraction, sign: str = "") -> ConstantEncodings:
     return ConstantEncodings(float(constant.single), is_single, double, wide, magnitude)
 
 
-class Language(NamedTuple):
+class NumberSyntax(NamedTuple):
     """A language's syntax of numbers and truth values."""
 
     prefix: str
@@ -72,7 +72,7 @@ class Language(NamedTuple):
 class Printer:
     """Prints expressions over given names of signals and durations."""
 
-    language: Language
+    language: NumberSyntax
     given: Mapping[str, str]
     held: tuple[str, ...] = ()
 
@@ -81,7 +81,7 @@ class Printer:
         match tree:
             case n.Known(value):
                 return self.language.truths[value]
-            case n.Flag(name):
+            case n.BooleanSignal(name):
                 return self._call("flag", self.given[name])
             case n.Comparison(sign, left, n.Constant(value)):
                 return self.language.compared(self.number(left), sign, value)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import assert_never
 
-from compiler.formalization.obligation import Kind
+from compiler.formalization.obligation import ObligationKind
 from compiler.logic import formula as f
 from compiler.situations.tick_predicates import TickPredicates
 
@@ -21,29 +21,29 @@ def of_demand(predicates: TickPredicates) -> Rows:
     return _rows(predicates.demand.kind)(predicates)
 
 
-def _rows(kind: Kind) -> Callable[[TickPredicates], Rows]:
+def _rows(kind: ObligationKind) -> Callable[[TickPredicates], Rows]:
     match kind:
-        case Kind.IMMEDIATELY:
+        case ObligationKind.IMMEDIATELY:
             return _immediately
-        case Kind.NEXT:
+        case ObligationKind.NEXT:
             return _next
-        case Kind.FINALLY:
+        case ObligationKind.FINALLY:
             return _finally
-        case Kind.EVENTUALLY:
+        case ObligationKind.EVENTUALLY:
             return _eventually
-        case Kind.ALWAYS:
+        case ObligationKind.ALWAYS:
             return _always
-        case Kind.WITHIN:
+        case ObligationKind.WITHIN:
             return _within
-        case Kind.FOR:
+        case ObligationKind.FOR:
             return _for
-        case Kind.AFTER:
+        case ObligationKind.AFTER:
             return _after
-        case Kind.NOT_AFTER:
+        case ObligationKind.NOT_AFTER:
             return _not_after
-        case Kind.UNTIL:
+        case ObligationKind.UNTIL:
             return _until
-        case Kind.BEFORE:
+        case ObligationKind.BEFORE:
             return _before
         case _:
             assert_never(kind)

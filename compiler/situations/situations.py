@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import assert_never
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.obligation import TRAITS, Kind, Trait
+from compiler.formalization.obligation import TRAITS, ObligationKind, Trait
 from compiler.logic import formula as f
 from compiler.situations.decisions import Operand, operands
 from compiler.situations.demands import of_demand
@@ -190,14 +190,25 @@ def _of_triggers(predicates: TickPredicates) -> _Rows:
         yield "triggered-again", f.and_(triggered, before, f.not_(predicates.was_open))
 
 
-def _lasts(kind: Kind) -> bool:
+def _lasts(kind: ObligationKind) -> bool:
     """Whether a demand stays open as long as its interval, whatever is answered."""
     match kind:
-        case Kind.FINALLY | Kind.ALWAYS:
+        case ObligationKind.FINALLY | ObligationKind.ALWAYS:
             return True
-        case Kind.IMMEDIATELY | Kind.NEXT | Kind.EVENTUALLY | Kind.WITHIN | Kind.FOR:
+        case (
+            ObligationKind.IMMEDIATELY
+            | ObligationKind.NEXT
+            | ObligationKind.EVENTUALLY
+            | ObligationKind.WITHIN
+            | ObligationKind.FOR
+        ):
             return False
-        case Kind.AFTER | Kind.NOT_AFTER | Kind.UNTIL | Kind.BEFORE:
+        case (
+            ObligationKind.AFTER
+            | ObligationKind.NOT_AFTER
+            | ObligationKind.UNTIL
+            | ObligationKind.BEFORE
+        ):
             return False
         case _:
             assert_never(kind)
@@ -310,14 +321,14 @@ def _words(requirement: FormalizedRequirement, predicates: TickPredicates) -> Ma
     }
 
 
-def _is_negative(sentence: s.Sentence, kind: Kind) -> bool:
+def _is_negative(sentence: s.Sentence, kind: ObligationKind) -> bool:
     """Whether the response must be false."""
     never = s.SHAPES[type(sentence.timing)].quantifier is s.Quantifier.NONE
     negates = sentence.scope is not None and sentence.scope.kind.negates
     return never is not (negates and Trait.OPPOSITES not in TRAITS[kind])
 
 
-def _last(sentence: s.Sentence, kind: Kind) -> str:
+def _last(sentence: s.Sentence, kind: ObligationKind) -> str:
     """The words for the last tick of a demand."""
     bound = s.duration(sentence.timing)
     span = "" if bound is None else duration_text(bound)
@@ -325,19 +336,19 @@ def _last(sentence: s.Sentence, kind: Kind) -> str:
     first = "the first open trigger" if several else "the trigger"
     newest = "the newest trigger" if several else "the trigger"
     match kind:
-        case Kind.IMMEDIATELY:
+        case ObligationKind.IMMEDIATELY:
             return "the trigger"
-        case Kind.NEXT:
+        case ObligationKind.NEXT:
             return "the tick after the trigger"
-        case Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS:
+        case ObligationKind.FINALLY | ObligationKind.EVENTUALLY | ObligationKind.ALWAYS:
             return "the last tick of the scope"
-        case Kind.FOR:
+        case ObligationKind.FOR:
             return f"the last tick that counts ({span} after {newest})"
-        case Kind.WITHIN | Kind.NOT_AFTER:
+        case ObligationKind.WITHIN | ObligationKind.NOT_AFTER:
             return f"the last tick that counts ({span} after {first})"
-        case Kind.AFTER:
+        case ObligationKind.AFTER:
             return f"the one tick that counts ({span} after {first}, and one more)"
-        case Kind.UNTIL | Kind.BEFORE:
+        case ObligationKind.UNTIL | ObligationKind.BEFORE:
             return "the last tick before the stop"
         case _:
             assert_never(kind)

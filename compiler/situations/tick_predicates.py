@@ -21,7 +21,14 @@ from functools import cached_property
 from typing import assert_never
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait, obligation
+from compiler.formalization.obligation import (
+    TRAITS,
+    Demand,
+    Obligation,
+    ObligationKind,
+    Trait,
+    obligation,
+)
 from compiler.formalization.past import ScopeFormulas, scope_formulas
 from compiler.formalization.predicates import Past
 from compiler.logic import formula as f
@@ -72,25 +79,25 @@ class TickPredicates:
         stage, n = self.stage, self.demand.ticks
         q, silent = self.answer, f.not_(self.answer)
         match self.demand.kind:
-            case Kind.IMMEDIATELY:
+            case ObligationKind.IMMEDIATELY:
                 return f.FALSE
-            case Kind.NEXT:
+            case ObligationKind.NEXT:
                 return stage.trigger
-            case Kind.FINALLY:
+            case ObligationKind.FINALLY:
                 return stage.open(f.TRUE)
-            case Kind.ALWAYS:
+            case ObligationKind.ALWAYS:
                 return stage.open(q)
-            case Kind.EVENTUALLY:
+            case ObligationKind.EVENTUALLY:
                 return stage.open(silent)
-            case Kind.WITHIN:
+            case ObligationKind.WITHIN:
                 return stage.open(silent, f.Interval(0, n - 1)) if n else f.FALSE
-            case Kind.AFTER | Kind.NOT_AFTER:
+            case ObligationKind.AFTER | ObligationKind.NOT_AFTER:
                 return stage.open(silent, f.Interval(0, n))
-            case Kind.FOR:
+            case ObligationKind.FOR:
                 return stage.open(q, f.Interval(0, n - 1)) if n else f.FALSE
-            case Kind.UNTIL:
+            case ObligationKind.UNTIL:
                 return stage.open(f.and_(q, f.not_(self.demand.stop)))
-            case Kind.BEFORE:
+            case ObligationKind.BEFORE:
                 return stage.open(f.and_(silent, f.not_(self.demand.stop)))
             case _:
                 assert_never(self.demand.kind)
@@ -135,19 +142,21 @@ class TickPredicates:
         """The maximum number of ticks for which a demand is open."""
         n = self.demand.ticks
         match self.demand.kind:
-            case Kind.WITHIN:
+            case ObligationKind.WITHIN:
                 return n
-            case Kind.AFTER | Kind.NOT_AFTER:  # the answer comes a tick after the bound
+            case (
+                ObligationKind.AFTER | ObligationKind.NOT_AFTER
+            ):  # the answer comes a tick after the bound
                 return n + 1
             case (
-                Kind.IMMEDIATELY
-                | Kind.NEXT
-                | Kind.FINALLY
-                | Kind.EVENTUALLY
-                | Kind.ALWAYS
-                | Kind.FOR
-                | Kind.UNTIL
-                | Kind.BEFORE
+                ObligationKind.IMMEDIATELY
+                | ObligationKind.NEXT
+                | ObligationKind.FINALLY
+                | ObligationKind.EVENTUALLY
+                | ObligationKind.ALWAYS
+                | ObligationKind.FOR
+                | ObligationKind.UNTIL
+                | ObligationKind.BEFORE
             ):
                 raise AssertionError("no trigger of these is asked for by its age")
             case _:
@@ -212,22 +221,22 @@ class TickPredicates:
         """A trigger at this tick would change what is demanded."""
         unanswered, closed = f.not_(self.answer), f.not_(self.was_open)
         match self.demand.kind:
-            case Kind.IMMEDIATELY | Kind.NOT_AFTER:
+            case ObligationKind.IMMEDIATELY | ObligationKind.NOT_AFTER:
                 return unanswered
-            case Kind.NEXT:
+            case ObligationKind.NEXT:
                 return f.or_(closed, self.answer)
-            case Kind.FOR:
+            case ObligationKind.FOR:
                 return f.or_(closed, self.answer) if self.demand.ticks else unanswered
-            case Kind.AFTER:
+            case ObligationKind.AFTER:
                 in_order = f.iff(self.answer, self.oldest(self.demand.ticks + 1))
                 return f.or_(closed, in_order)
-            case Kind.FINALLY | Kind.ALWAYS:
+            case ObligationKind.FINALLY | ObligationKind.ALWAYS:
                 return closed
-            case Kind.EVENTUALLY | Kind.WITHIN:
+            case ObligationKind.EVENTUALLY | ObligationKind.WITHIN:
                 return f.and_(closed, unanswered)
-            case Kind.UNTIL:
+            case ObligationKind.UNTIL:
                 return f.and_(closed, f.not_(self.demand.stop))
-            case Kind.BEFORE:
+            case ObligationKind.BEFORE:
                 return f.and_(closed, f.or_(self.demand.stop, unanswered))
             case _:
                 assert_never(self.demand.kind)
@@ -237,22 +246,27 @@ class TickPredicates:
         """The response at this tick decides something, if only one more violation."""
         stage, demand = self.stage, self.demand
         match demand.kind:
-            case Kind.IMMEDIATELY:
+            case ObligationKind.IMMEDIATELY:
                 return self.triggered
-            case Kind.NEXT:
+            case ObligationKind.NEXT:
                 return self.was_open
-            case Kind.ALWAYS:
+            case ObligationKind.ALWAYS:
                 return stage.open(f.TRUE)
-            case Kind.FOR:
+            case ObligationKind.FOR:
                 return stage.open(f.TRUE, f.Interval(0, demand.ticks))
-            case Kind.FINALLY | Kind.EVENTUALLY | Kind.WITHIN | Kind.NOT_AFTER:
+            case (
+                ObligationKind.FINALLY
+                | ObligationKind.EVENTUALLY
+                | ObligationKind.WITHIN
+                | ObligationKind.NOT_AFTER
+            ):
                 return self.waiting
-            case Kind.AFTER:
+            case ObligationKind.AFTER:
                 clash = f.and_(self.triggered, self.oldest(demand.ticks + 1))
                 return f.and_(self.waiting, f.not_(clash))
-            case Kind.UNTIL:
+            case ObligationKind.UNTIL:
                 return stage.open(f.not_(demand.stop))
-            case Kind.BEFORE:
+            case ObligationKind.BEFORE:
                 return f.and_(self.waiting, f.not_(demand.stop))
             case _:
                 assert_never(demand.kind)

@@ -34,7 +34,7 @@ from compiler.logic import formula as f
 from compiler.logic.identifiers import legal_names, underlined
 from compiler.logic.spelling.reserved_words import DAFNY
 from compiler.targets.comparison_names import comparison_names, in_words
-from compiler.targets.dafny_claims import CHANNELS, Delay, delay, no_loop_reason
+from compiler.targets.dafny_claims import CHANNELS, ResponseDelay, delay, no_loop_reason
 from compiler.targets.interceptor_options import options as core
 from compiler.targets.target import Target, file_of_each, not_expressible, stem
 from fretish import expressions as e
@@ -273,7 +273,7 @@ def _loop(requirement: FormalizedRequirement, declarations: Declarations | None)
         return render("dafny/loopless.dfy.j2", reason=reason)
     declared = delay(requirement, declarations)
     fits = (
-        isinstance(declared, Delay)
+        isinstance(declared, ResponseDelay)
         and requirement.ticks is not None
         and declared.total <= requirement.ticks
     )

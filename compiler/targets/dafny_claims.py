@@ -25,7 +25,7 @@ CHANNELS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Delay:
+class ResponseDelay:
     """The delay from a trigger to the response, in ticks of the requirement's clock."""
 
     reach: int
@@ -62,7 +62,7 @@ def no_loop_reason(
 
 def delay(
     requirement: FormalizedRequirement, declarations: Declarations | None
-) -> Delay | str | None:
+) -> ResponseDelay | str | None:
     """The delay under [assume], or why it has no number of ticks; None without [assume]."""
     assumed = declarations.assumed if declarations else None
     if assumed is None:
@@ -74,7 +74,7 @@ def delay(
     if every is None and assumed.lost:
         return "a request that is sent once may be lost ([assume] requests, lost and no heartbeat)"
     reach = max(ticks(assumed.latency, period) - 1, 0) + assumed.lost * (every or 0)
-    return Delay(reach, ticks(assumed.braking, period) + 1)
+    return ResponseDelay(reach, ticks(assumed.braking, period) + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +163,7 @@ def _loop_claims(
 
 
 def _declared_claim(
-    declared: Delay | str, bound: int | None, assumptions: tuple[str, ...]
+    declared: ResponseDelay | str, bound: int | None, assumptions: tuple[str, ...]
 ) -> Claim:
     """The claim for the numbers of [assume]."""
     at = "the declared delay" if bound is None else f"the bound of {bound} ticks"

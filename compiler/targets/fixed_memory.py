@@ -8,7 +8,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.identifiers import legal_names
 from compiler.program.lowering import program
 from compiler.program.program import Counter
-from compiler.program.rails import Rail, Ring, rail
+from compiler.program.rails import Ring, StoredProgram, rail
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.python.monitor import watched
 from compiler.targets.python.names import prefixes_of
@@ -34,7 +34,9 @@ def too_large(requirement: FormalizedRequirement, language: str) -> Diagnostic |
     return not_expressible(f"a monitor in {language}", requirement, what, fix)
 
 
-def rail_of(requirements: Sequence[FormalizedRequirement], reserved: Container[str]) -> Rail:
+def rail_of(
+    requirements: Sequence[FormalizedRequirement], reserved: Container[str]
+) -> StoredProgram:
     """The program of one monitor for all requirements.
 
     Args:

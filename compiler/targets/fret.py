@@ -17,7 +17,7 @@ from compiler.logic import printing
 from compiler.logic.spelling.reserved_words import FRET
 from compiler.project.fret_import import OWN, STATUSES, assignment_field, unquoted
 from compiler.project.lustre import fretish, lustre
-from compiler.targets.target import DEFAULT, Options, Target, not_expressible
+from compiler.targets.target import DEFAULT, Target, TargetOptions, not_expressible
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.comparisons import is_mixed
@@ -38,7 +38,7 @@ _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
 
 
 def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
 ) -> tuple[Artifact, ...]:
     """`fret.json` with all requirements: `{"requirements": [...], "variables": [...]}`."""
     read = {formalized.entry: _in_fretish(formalized) for formalized in requirements}
@@ -156,7 +156,7 @@ def _without_units(requirement: FormalizedRequirement) -> FormalizedRequirement:
 
 
 def _ordered(
-    requirements: Sequence[FormalizedRequirement], options: Options
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions
 ) -> list[RequirementEntry]:
     """The entries of requirements and free texts, in the order of files and within files."""
     entries = [*(requirement.entry for requirement in requirements), *options.free_texts]

@@ -12,12 +12,12 @@ from compiler.logic import printing
 from compiler.logic.identifiers import legal_names
 from compiler.logic.spelling.reserved_words import SMV
 from compiler.targets.comparison_names import comparison_names, definitions
-from compiler.targets.target import DEFAULT, Options, Target, file_of_each
+from compiler.targets.target import DEFAULT, Target, TargetOptions, file_of_each
 from fretish.diagnostics.rendering import visible
 from fretish.meaning import meaning
 
 
-def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
+def text(requirement: FormalizedRequirement, options: TargetOptions = DEFAULT) -> str:
     """The text of a file: the sentence, its meaning, and its formulas."""
     dialect = printing.DIALECTS[options.notation]
     names = _names(requirement, dialect)

@@ -28,8 +28,8 @@ from compiler.logic.spelling.reserved_words import PRISM
 from compiler.targets.comparison_names import comparison_names, impossible_texts, in_words
 from compiler.targets.target import (
     DEFAULT,
-    Options,
     Target,
+    TargetOptions,
     identifier,
     not_expressible,
     stem,
@@ -86,7 +86,7 @@ def _looks_back(requirement: FormalizedRequirement) -> str | None:
 
 @with_recursion_limit
 def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
 ) -> tuple[Artifact, ...]:
     """`<id>.props` and `<id>.prism` for each requirement."""
     return tuple(file for requirement in requirements for file in _files(requirement))

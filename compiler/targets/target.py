@@ -20,7 +20,7 @@ from fretish.reading.recursion import with_recursion_limit
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
+class TargetOptions:
     """Options that some targets read; the others ignore them."""
 
     notation: str = "plain"
@@ -39,14 +39,14 @@ class Options:
     """Maintainer and license, for manifests of packages."""
 
 
-DEFAULT = Options()
+DEFAULT = TargetOptions()
 
 
 class Emit(Protocol):
     """A function from requirements to files."""
 
     def __call__(
-        self, requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+        self, requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
     ) -> tuple[Artifact, ...]:
         """The files of the requirements; a pure function."""
 
@@ -55,7 +55,7 @@ class Emit(Protocol):
 class Target:
     """One kind of output. After `refuse` accepts a requirement, `emit` never fails or weakens it.
 
-    With `Options.weaken`, the `weak` form of the target may weaken it.
+    With `TargetOptions.weaken`, the `weak` form of the target may weaken it.
     """
 
     name: str
@@ -64,14 +64,14 @@ class Target:
     refuse: Callable[[FormalizedRequirement], Diagnostic | None] = lambda requirement: None
     remark: Callable[[FormalizedRequirement], Diagnostic | None] = lambda requirement: None
     """A warning for the user of the output; it does not refuse the output."""
-    refuse_project: Callable[[Options], Diagnostic | None] = lambda options: None
+    refuse_project: Callable[[TargetOptions], Diagnostic | None] = lambda options: None
     """A reason to refuse the target for all requirements."""
-    remarks: Callable[[Options], tuple[Diagnostic, ...]] = lambda options: ()
+    remarks: Callable[[TargetOptions], tuple[Diagnostic, ...]] = lambda options: ()
     """Warnings about the whole output, in addition to `remark`."""
     per_rule: bool = True
     """False if all requirements go into one file, for exchange with another tool."""
     joins: bool = False
-    """Whether `Options.one_file` puts all requirements into one file."""
+    """Whether `TargetOptions.one_file` puts all requirements into one file."""
     of_bindings: bool = False
     """Whether the output depends only on the bindings."""
     of_loop: bool = False
@@ -86,7 +86,7 @@ class Target:
     """The target when weakening is allowed: it refuses less, and remarks on the loss."""
 
 
-def file_of_each(ending: str, text: Callable[[FormalizedRequirement, Options], str]) -> Emit:
+def file_of_each(ending: str, text: Callable[[FormalizedRequirement, TargetOptions], str]) -> Emit:
     """The function `emit` of a target that writes one file, `<id>.ending`, for each requirement.
 
     Args:
@@ -96,7 +96,7 @@ def file_of_each(ending: str, text: Callable[[FormalizedRequirement, Options], s
 
     @with_recursion_limit
     def emit(
-        requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+        requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
     ) -> tuple[Artifact, ...]:
         return tuple(
             Artifact(PurePosixPath(f"{stem(requirement)}.{ending}"), text(requirement, options))

@@ -27,13 +27,13 @@ from fretc.analysis.findings import (
     Conflict,
     Inconsistency,
     OpenQuestion,
+    RealizabilityVerdict,
     Redundancy,
     Repair,
     Vacuity,
-    Verdict,
 )
 from fretc.analysis.games import job as of_games
-from fretc.analysis.implications import Consistency, Constant, Removable
+from fretc.analysis.implications import Consistency, ConstantRequirement, Removable
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretc.analysis.repairs import repairs
 from fretc.analysis.verdicts import Completeness, component, conflicts, strategy, verdict
@@ -44,7 +44,7 @@ from fretish.reading.recursion import with_recursion_limit
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
+class AnalysisOptions:
     """Options of an analysis."""
 
     seconds: float = 20.0
@@ -56,14 +56,14 @@ class Options:
     """Whether to search for repairs of conflicts."""
 
 
-DEFAULT = Options()
+DEFAULT = AnalysisOptions()
 F = TypeVar("F", bound="Finding")
 Finding = (
     Component
     | Conflict
     | Completeness
     | Consistency
-    | Constant
+    | ConstantRequirement
     | Redundancy
     | Removable
     | Vacuity
@@ -83,7 +83,7 @@ def analyze(
     requirements: Sequence[FormalizedRequirement],
     roles: Roles,
     assumptions: Sequence[FormalizedRequirement] = (),
-    options: Options = DEFAULT,
+    options: AnalysisOptions = DEFAULT,
 ) -> Analysis:
     """The analysis of the requirements, computed in this process.
 
@@ -112,7 +112,7 @@ def jobs(
     requirements: Sequence[FormalizedRequirement],
     roles: Roles,
     assumptions: Sequence[FormalizedRequirement],
-    options: Options,
+    options: AnalysisOptions,
 ) -> tuple[Job, ...]:
     """All questions, the most important ones first."""
     components = [
@@ -137,7 +137,9 @@ def jobs(
     )
 
 
-def _promises(assumptions: Sequence[FormalizedRequirement], roles: Roles, options: Options) -> Job:
+def _promises(
+    assumptions: Sequence[FormalizedRequirement], roles: Roles, options: AnalysisOptions
+) -> Job:
     """Job: whether any run satisfies the assumptions; otherwise every result would follow."""
     title = f"can any run satisfy the assumptions {', '.join(each.id for each in assumptions)}?"
 
@@ -159,7 +161,7 @@ def controllers(
     requirements: Sequence[FormalizedRequirement],
     roles: Roles,
     assumptions: Sequence[FormalizedRequirement],
-    options: Options,
+    options: AnalysisOptions,
     form: ControllerFormat,
 ) -> tuple[Job, ...]:
     """Jobs that compute a controller of each realizable component in the given form."""
@@ -177,7 +179,7 @@ class _Setting:
         requirements: Sequence[FormalizedRequirement],
         roles: Roles,
         assumptions: Sequence[FormalizedRequirement],
-        options: Options,
+        options: AnalysisOptions,
     ) -> None:
         self._rules, self._roles, self._assumptions = requirements, roles, assumptions
         self._options = options
@@ -201,7 +203,7 @@ class _Setting:
         """Job: whether a component is realizable."""
 
         def not_checked(why: str) -> Component:
-            return component(self._rules, self._roles, Verdict.NOT_CHECKED, why)
+            return component(self._rules, self._roles, RealizabilityVerdict.NOT_CHECKED, why)
 
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
             budget = Budget(self._options.seconds)
@@ -229,7 +231,7 @@ class _Setting:
                     if isinstance(each, Component) and each.verdict is verdict
                     for id in each.requirements
                 }
-                for verdict in (Verdict.REALIZABLE, Verdict.UNREALIZABLE)
+                for verdict in (RealizabilityVerdict.REALIZABLE, RealizabilityVerdict.UNREALIZABLE)
             )
             chosen = (
                 self._roles[name] for requirement in self._rules for name in requirement.variables
@@ -253,7 +255,7 @@ class _Setting:
                 for each in known
                 if isinstance(each, Component) and each.requirements == self._ids
             ]
-            if any(each.verdict is Verdict.REALIZABLE for each in mine):
+            if any(each.verdict is RealizabilityVerdict.REALIZABLE for each in mine):
                 yield Completeness(self._ids)
             else:
                 yield from self._answers(title, conflicts)
@@ -309,7 +311,7 @@ def assembled(
     requirements: Sequence[FormalizedRequirement],
     roles: Roles,
     assumptions: Sequence[FormalizedRequirement],
-    options: Options,
+    options: AnalysisOptions,
     findings: Iterable[Finding],
 ) -> Analysis:
     """The findings as one analysis; a question without a finding is not checked."""
@@ -326,7 +328,7 @@ def assembled(
         if not any(requirement.id in c.requirements for c in components)
     ]
     overall, why = _verdict(components, missing)
-    constants = _of(Constant, found)
+    constants = _of(ConstantRequirement, found)
     known = {id for each in _of(Completeness, found) for id in each.requirements}
     return Analysis(
         schema=SCHEMA,
@@ -364,26 +366,30 @@ def _looks_back(requirement: FormalizedRequirement) -> bool:
     return any(NUMBERS_BACK & {*calls(each)} for each in conditions(requirement.sentence))
 
 
-def _verdict(components: Sequence[Component], missing: Sequence[str]) -> tuple[Verdict, str]:
+def _verdict(
+    components: Sequence[Component], missing: Sequence[str]
+) -> tuple[RealizabilityVerdict, str]:
     """Verdict of the whole set: one unrealizable component is enough."""
-    bad = [each for each in components if each.verdict is Verdict.UNREALIZABLE]
-    unknown = [each for each in components if each.verdict is Verdict.NOT_CHECKED]
+    bad = [each for each in components if each.verdict is RealizabilityVerdict.UNREALIZABLE]
+    unknown = [each for each in components if each.verdict is RealizabilityVerdict.NOT_CHECKED]
     if bad:
         which = "; ".join(", ".join(each.requirements) for each in bad)
-        return Verdict.UNREALIZABLE, f"cannot be satisfied together: {which}"
+        return RealizabilityVerdict.UNREALIZABLE, f"cannot be satisfied together: {which}"
     if missing:
-        return Verdict.NOT_CHECKED, f"not examined: {', '.join(missing)}"
+        return RealizabilityVerdict.NOT_CHECKED, f"not examined: {', '.join(missing)}"
     if unknown:
-        return Verdict.NOT_CHECKED, "; ".join(each.why for each in unknown)
-    return Verdict.REALIZABLE, "for each component the system has a strategy"
+        return RealizabilityVerdict.NOT_CHECKED, "; ".join(each.why for each in unknown)
+    return RealizabilityVerdict.REALIZABLE, "for each component the system has a strategy"
 
 
 def _fought(component: Component, conflicts: Sequence[frozenset[str]]) -> Component:
     """The component as unrealizable if it has a conflict, also if its own question timed out."""
-    if component.verdict is Verdict.NOT_CHECKED and any(
+    if component.verdict is RealizabilityVerdict.NOT_CHECKED and any(
         conflict.issubset(component.requirements) for conflict in conflicts
     ):
-        return replace(component, verdict=Verdict.UNREALIZABLE, why="some of them conflict")
+        return replace(
+            component, verdict=RealizabilityVerdict.UNREALIZABLE, why="some of them conflict"
+        )
     return component
 
 
@@ -397,7 +403,7 @@ def _consistent(
 
 
 def _terms(
-    requirements: Sequence[FormalizedRequirement], assumes: bool, options: Options
+    requirements: Sequence[FormalizedRequirement], assumes: bool, options: AnalysisOptions
 ) -> Iterator[str]:
     """Sentences with the assumptions of the analysis.
 

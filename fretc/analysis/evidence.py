@@ -16,7 +16,7 @@ from compiler.files.records import Name, Record, Sha256, about, json_schema
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.arena.roles import role
-from fretc.analysis.findings import Analysis, Verdict
+from fretc.analysis.findings import Analysis, RealizabilityVerdict
 from fretc.analysis.reasons import listed
 from fretish.bindings import canonical
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -29,7 +29,7 @@ DEFAULT = "build/analysis.json"
 """Default path of the output of `fretc analyze`."""
 
 
-class Member(Record, frozen=True):
+class AnalyzedRequirement(Record, frozen=True):
     """A requirement or an assumption when it was analyzed."""
 
     sentence: Annotated[str, about("in FRETish")]
@@ -42,7 +42,7 @@ class Member(Record, frozen=True):
     ]
 
 
-class Document(Record, frozen=True):
+class AnalysisDocument(Record, frozen=True):
     """Content of `build/analysis.json`."""
 
     schema: Literal["fretc-analyzed-set-1"]
@@ -51,16 +51,18 @@ class Document(Record, frozen=True):
         bool, about("whether FRET's question was answered: `eventually` means at once")
     ]
     requirements: Annotated[
-        dict[Name, Member], about("the requirements that were analyzed, by their ids")
+        dict[Name, AnalyzedRequirement], about("the requirements that were analyzed, by their ids")
     ]
-    assumptions: Annotated[dict[Name, Member], about("what the environment was assumed to satisfy")]
+    assumptions: Annotated[
+        dict[Name, AnalyzedRequirement], about("what the environment was assumed to satisfy")
+    ]
     analysis: Analysis
 
 
 def schema() -> dict[str, Any]:
     """The JSON Schema of the file."""
     return json_schema(
-        Document,
+        AnalysisDocument,
         SCHEMA,
         "Which requirements were analyzed, and what was found, as `fretc analyze` writes it",
         "Nothing but `seconds` depends on when or where it was made.",
@@ -73,17 +75,17 @@ def document(
     analysis: Analysis,
     *,
     as_fret: bool,
-) -> Document:
+) -> AnalysisDocument:
     """The evidence of an analysis of these requirements."""
-    return Document(
+    return AnalysisDocument(
         SCHEMA, __version__, as_fret, members(requirements), members(assumptions), analysis
     )
 
 
-def members(requirements: Sequence[FormalizedRequirement]) -> dict[str, Member]:
+def members(requirements: Sequence[FormalizedRequirement]) -> dict[str, AnalyzedRequirement]:
     """Present requirements or assumptions, by id."""
     return {
-        requirement.id: Member(printed(requirement.written), _digest(requirement))
+        requirement.id: AnalyzedRequirement(printed(requirement.written), _digest(requirement))
         for requirement in requirements
     }
 
@@ -111,7 +113,7 @@ def _digest(requirement: FormalizedRequirement) -> str:
 
 
 def suspicions(
-    known: Document,
+    known: AnalysisDocument,
     requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
 ) -> Iterator[str]:
@@ -128,7 +130,7 @@ def suspicions(
 
 
 def changes(
-    known: Document,
+    known: AnalysisDocument,
     requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
 ) -> Iterator[str]:
@@ -137,7 +139,9 @@ def changes(
     yield from _changes(known.assumptions, members(assumptions), "assumption ")
 
 
-def _changes(then: Mapping[str, Member], now: Mapping[str, Member], what: str) -> Iterator[str]:
+def _changes(
+    then: Mapping[str, AnalyzedRequirement], now: Mapping[str, AnalyzedRequirement], what: str
+) -> Iterator[str]:
     for id in (*then, *(each for each in now if each not in then)):
         if id not in now:
             yield f"{what}{id} is no longer part of the set"
@@ -164,9 +168,9 @@ def remarks(
             what=what,
             because=each.because,
         )
-    if analysis.verdict is Verdict.UNREALIZABLE and not analysis.conflicts:
+    if analysis.verdict is RealizabilityVerdict.UNREALIZABLE and not analysis.conflicts:
         yield diagnostic("unrealizable_set", why=analysis.why)
-    if analysis.verdict is Verdict.NOT_CHECKED:
+    if analysis.verdict is RealizabilityVerdict.NOT_CHECKED:
         yield diagnostic("not_analyzed", why=analysis.why)
 
 
@@ -179,13 +183,13 @@ class AnalyzedSet:
 
     file: str
     sha256: str
-    document: Document
+    document: AnalysisDocument
 
 
 def read(path: str) -> AnalyzedSet | Diagnostic:
     """Read and check a file of `fretc analyze`."""
     again = "analyze again: `fretc analyze FILE...`"
-    found = records.read(path, Document, "fretc analyze", again)
+    found = records.read(path, AnalysisDocument, "fretc analyze", again)
     if isinstance(found, Diagnostic):
         return found
     source, content = found
@@ -208,7 +212,7 @@ def default_path() -> str | None:
     return DEFAULT if Path(DEFAULT).exists() else None
 
 
-def _contradiction(found: Document) -> str:
+def _contradiction(found: AnalysisDocument) -> str:
     """Why the verdict does not follow from the findings; empty if it does."""
     analysis = found.analysis
     ids = found.requirements.keys()
@@ -219,15 +223,17 @@ def _contradiction(found: Document) -> str:
     shown = {
         id
         for each in analysis.components
-        if each.verdict is Verdict.REALIZABLE
+        if each.verdict is RealizabilityVerdict.REALIZABLE
         for id in each.requirements
     }
     if analysis.conflicts or any(
-        component.verdict is Verdict.UNREALIZABLE for component in analysis.components
+        component.verdict is RealizabilityVerdict.UNREALIZABLE for component in analysis.components
     ):
-        follows = Verdict.UNREALIZABLE
+        follows = RealizabilityVerdict.UNREALIZABLE
     else:
-        follows = Verdict.REALIZABLE if ids <= shown else Verdict.NOT_CHECKED
+        follows = (
+            RealizabilityVerdict.REALIZABLE if ids <= shown else RealizabilityVerdict.NOT_CHECKED
+        )
     if analysis.verdict is follows:
         return ""
     return f"the verdict is `{analysis.verdict}`, but its parts imply `{follows}`"

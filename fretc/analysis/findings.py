@@ -17,7 +17,7 @@ from fretish.bindings.declarations import Role
 SCHEMA: Final = "fretc-analysis-1"
 
 
-class Verdict(StrEnum):
+class RealizabilityVerdict(StrEnum):
     """Whether the requirements are realizable. The values are those of files."""
 
     REALIZABLE = "realizable"
@@ -30,7 +30,7 @@ class Component(Record, frozen=True):
 
     requirements: Annotated[tuple[Name, ...], about("ids, in the order of the files")]
     outputs: Annotated[tuple[Name, ...], about("the outputs that the requirements are about")]
-    verdict: Verdict
+    verdict: RealizabilityVerdict
     why: Annotated[str, about("the method that decided it, or why it was not decided")]
     seconds: Annotated[float, about("CPU seconds")]
 
@@ -115,7 +115,7 @@ class Analysis(Record, frozen=True):
 
     schema: Literal["fretc-analysis-1"]
     fretc: Annotated[str, about("version of the tool")]
-    verdict: Verdict
+    verdict: RealizabilityVerdict
     why: str
     components: tuple[Component, ...]
     conflicts: tuple[Conflict, ...]

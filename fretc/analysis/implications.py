@@ -11,7 +11,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
-from fretc.analysis.arena.memory import Counter
+from fretc.analysis.arena.memory import RequirementCounter
 from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vacuity
 from fretc.analysis.games.cores import minimal
 from fretc.analysis.realizability_problem import RealizabilityProblem
@@ -32,7 +32,7 @@ class Consistency:
 
 
 @dataclass(frozen=True, slots=True)
-class Constant:
+class ConstantRequirement:
     """A requirement that every run satisfies, or no run."""
 
     requirement: str
@@ -71,14 +71,16 @@ def consistency(
         yield Consistency(ids, is_possible)
 
 
-def constants(setting: RealizabilityProblem, budget: Budget) -> Iterator[Constant | OpenQuestion]:
+def constants(
+    setting: RealizabilityProblem, budget: Budget
+) -> Iterator[ConstantRequirement | OpenQuestion]:
     """Requirements that every run satisfies, or no run."""
     for counter in setting.arena.counters:
         try:
             if not setting.runs((counter,), budget.again()).is_possible():
-                yield Constant(counter.id, always=False)
+                yield ConstantRequirement(counter.id, always=False)
             elif _is_implied(setting, counter, (), budget.again()):
-                yield Constant(counter.id, always=True)
+                yield ConstantRequirement(counter.id, always=True)
         except OutOfTimeError as error:
             yield OpenQuestion(f"whether every run satisfies {counter.id}", str(error))
 
@@ -118,7 +120,10 @@ def _removable(
 
 
 def _implying(
-    setting: RealizabilityProblem, counter: Counter, others: Sequence[Counter], budget: Budget
+    setting: RealizabilityProblem,
+    counter: RequirementCounter,
+    others: Sequence[RequirementCounter],
+    budget: Budget,
 ) -> tuple[str, ...] | None:
     """A minimal set of others that implies a counter; None: there is none."""
 
@@ -133,7 +138,10 @@ def _implying(
 
 
 def _is_implied(
-    setting: RealizabilityProblem, counter: Counter, others: Sequence[Counter], budget: Budget
+    setting: RealizabilityProblem,
+    counter: RequirementCounter,
+    others: Sequence[RequirementCounter],
+    budget: Budget,
 ) -> bool:
     """Whether runs satisfy the others, and none of these runs violates the counter."""
     setting = setting.close((each.id for each in (counter, *others)), budget)
@@ -163,11 +171,11 @@ def vacuities(setting: RealizabilityProblem, budget: Budget) -> Iterator[Vacuity
 def _vacuity(
     setting: RealizabilityProblem,
     requirement: FormalizedRequirement,
-    counter: Counter,
+    counter: RequirementCounter,
     others: Sequence[str],
     budget: Budget,
 ) -> Vacuity | None:
-    def excluded(ids: Sequence[str], ticks: Callable[[Counter], Function]) -> bool:
+    def excluded(ids: Sequence[str], ticks: Callable[[RequirementCounter], Function]) -> bool:
         there = setting.close([*ids, counter.id], budget)
         (watched,) = there.counters([counter.id])
         runs = there.runs(there.counters(ids), budget, watched=(watched,))
@@ -176,7 +184,7 @@ def _vacuity(
             return False
         return not runs.can_reach(ticks(watched), lasting)
 
-    def by(ticks: Callable[[Counter], Function]) -> tuple[str, ...]:
+    def by(ticks: Callable[[RequirementCounter], Function]) -> tuple[str, ...]:
         return tuple(sorted(minimal(others, lambda ids: excluded(ids, ticks))))
 
     in_scope, begun = attrgetter("enforced"), attrgetter("triggered")
@@ -222,14 +230,14 @@ def inconsistencies(
 
 
 def _candidates(
-    setting: RealizabilityProblem, counters: Sequence[Counter]
-) -> Iterator[tuple[Counter, ...]]:
+    setting: RealizabilityProblem, counters: Sequence[RequirementCounter]
+) -> Iterator[tuple[RequirementCounter, ...]]:
     """Pairs and triples that share variables, and the whole set."""
     read = {
         requirement.id: frozenset(requirement.variables) for requirement in setting.requirements
     }
 
-    def near(left: Counter, right: Counter) -> bool:
+    def near(left: RequirementCounter, right: RequirementCounter) -> bool:
         return bool(read[left.id] & read[right.id])
 
     yield from (pair for pair in combinations(counters, 2) if near(*pair))
@@ -246,7 +254,7 @@ def _candidates(
 
 def _inconsistency(
     setting: RealizabilityProblem,
-    members: Sequence[Counter],
+    members: Sequence[RequirementCounter],
     alone: Mapping[str, Function],
     budget: Budget,
 ) -> Inconsistency | None:

@@ -14,7 +14,7 @@ from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet, Tick
 from fretc.analysis.arena.budget import ENDLESS, Budget
 from fretc.analysis.arena.counters import counter
-from fretc.analysis.arena.memory import Counter, side_by_side
+from fretc.analysis.arena.memory import RequirementCounter, side_by_side
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
@@ -23,7 +23,7 @@ from fretc.analysis.components import about
 from fretc.analysis.games.game import Game, upheld
 from fretc.analysis.games.game_traces import Run
 from fretc.analysis.games.replay import remembering
-from fretc.analysis.games.runs import Runs
+from fretc.analysis.games.runs import SatisfyingRuns
 from fretish.bindings.declarations import Role
 
 _FEW = 5
@@ -54,7 +54,7 @@ class RealizabilityProblem:
     _upheld: list[Function] = field(default_factory=list, compare=False, repr=False)
     """Computed facts about the assumptions that each game of the problem needs."""
 
-    def counters(self, ids: Iterable[str]) -> tuple[Counter, ...]:
+    def counters(self, ids: Iterable[str]) -> tuple[RequirementCounter, ...]:
         """Counters of some requirements, in the order of the files."""
         wanted = set(ids)
         return tuple(each for each in self.arena.counters if each.id in wanted)
@@ -91,7 +91,7 @@ class RealizabilityProblem:
         )
         return found if is_known and counted[0] == counted[1] else self
 
-    def game(self, counters: Sequence[Counter], budget: Budget) -> Game:
+    def game(self, counters: Sequence[RequirementCounter], budget: Budget) -> Game:
         """The game of some counters, under all assumptions."""
         kept, assumptions = [*counters], [*self.arena.assumptions]
         (kept if self.favoured is Role.OUTPUT else assumptions).extend(self._memory)
@@ -100,7 +100,7 @@ class RealizabilityProblem:
         return Game(self.arena.alphabet, kept, assumptions, budget, self._upheld[0])
 
     @property
-    def _memory(self) -> tuple[Counter, ...]:
+    def _memory(self) -> tuple[RequirementCounter, ...]:
         memory = self.arena.alphabet.memory()
         return () if memory is None else (memory,)
 
@@ -158,15 +158,15 @@ class RealizabilityProblem:
 
     def runs(
         self,
-        kept: Sequence[Counter],
+        kept: Sequence[RequirementCounter],
         budget: Budget,
-        watched: Sequence[Counter] = (),
+        watched: Sequence[RequirementCounter] = (),
         *,
         certain: bool = False,
-    ) -> Runs:
+    ) -> SatisfyingRuns:
         """Runs that satisfy some counters, and all assumptions."""
         counters = [*kept, *self.arena.assumptions, *self._memory]
-        return Runs(self.arena.alphabet, counters, budget, watched, certain=certain)
+        return SatisfyingRuns(self.arena.alphabet, counters, budget, watched, certain=certain)
 
     def ticks(
         self, ids: Iterable[str], runs: Iterable[Run], numbers: Sequence[Tick] = ()
@@ -202,7 +202,7 @@ class RealizabilityProblem:
         return tuple(shown(tick | more) for tick, more in zip(ticks, numbers, strict=True))
 
     @property
-    def certain(self) -> tuple[Counter, ...]:
+    def certain(self) -> tuple[RequirementCounter, ...]:
         """Counters of requirements for which the environment has only possible valuations."""
         doubtful = self.arena.alphabet.doubtful(Role.INPUT)
         if any(not doubtful.isdisjoint(_atoms(requirement)) for requirement in self.assumptions):

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import assert_never
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.obligation import TRAITS, Kind, Trait
+from compiler.formalization.obligation import TRAITS, ObligationKind, Trait
 from compiler.logic import formula as f
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet
-from fretc.analysis.arena.memory import Counter
+from fretc.analysis.arena.memory import RequirementCounter
 from fretc.analysis.games.game import Game
 from fretc.analysis.games.game_traces import GameTrace
 from fretc.analysis.games.replay import broken, columns
@@ -27,7 +27,7 @@ _LONGEST = 1_000
 
 def because(
     requirements: Sequence[FormalizedRequirement],
-    counters: Sequence[Counter],
+    counters: Sequence[RequirementCounter],
     game: Game,
     play: GameTrace,
 ) -> str:
@@ -64,7 +64,9 @@ def because(
     return f"at tick {last} {_joined(parts)}{''.join(f'; {each}' for each in before)}"
 
 
-def _asked_last(counters: Sequence[Counter], game: Game, play: GameTrace) -> dict[str, str]:
+def _asked_last(
+    counters: Sequence[RequirementCounter], game: Game, play: GameTrace
+) -> dict[str, str]:
     """Id → outputs that the requirement demands at the last tick, in words."""
     inputs = {number: play.runs[-1][0][number] for number in game.alphabet.inputs}
     known = bdd.point({**play.state, **inputs})
@@ -73,7 +75,7 @@ def _asked_last(counters: Sequence[Counter], game: Game, play: GameTrace) -> dic
 
 
 def _asked(
-    counters: Sequence[Counter], game: Game, play: GameTrace
+    counters: Sequence[RequirementCounter], game: Game, play: GameTrace
 ) -> Mapping[str, tuple[str, ...]]:
     """Id → outputs that the requirement demands at each tick, in words; empty for a long trace."""
     if not counters or play.ticks > _LONGEST:
@@ -123,24 +125,30 @@ def _limit(
     scope = requirement.sentence.scope
     demand = requirement.demanded.demand
     match demand.kind:
-        case Kind.WITHIN:
+        case ObligationKind.WITHIN:
             if begun is not None and begun < last == begun + demand.ticks:
                 yield f"by tick {last}"
-        case Kind.FOR:
+        case ObligationKind.FOR:
             kind = scope.kind if scope else None
             if begun is not None and demand.ticks and ends_with_run(kind):
                 yield f"up to tick {begun + demand.ticks}"
-        case Kind.UNTIL:
+        case ObligationKind.UNTIL:
             yield f"until `{_stop(requirement.written.timing)}`"
             names = f.atoms(demand.stop)
             inputs = {alphabet.labels.get(number) for number in alphabet.inputs}
             if names and inputs.issuperset(names):
                 yield "which the environment withholds"
-        case Kind.BEFORE:
+        case ObligationKind.BEFORE:
             yield f"before `{_stop(requirement.written.timing)}`"
-        case Kind.IMMEDIATELY | Kind.NEXT | Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS:
+        case (
+            ObligationKind.IMMEDIATELY
+            | ObligationKind.NEXT
+            | ObligationKind.FINALLY
+            | ObligationKind.EVENTUALLY
+            | ObligationKind.ALWAYS
+        ):
             return
-        case Kind.AFTER | Kind.NOT_AFTER:
+        case ObligationKind.AFTER | ObligationKind.NOT_AFTER:
             return
         case _:
             assert_never(demand.kind)

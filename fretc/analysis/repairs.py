@@ -18,7 +18,7 @@ from compiler.formalization.resolution import candidates
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
-from fretc.analysis.arena.memory import Counter
+from fretc.analysis.arena.memory import RequirementCounter
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.findings import Conflict, OpenQuestion, Repair
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
@@ -65,7 +65,7 @@ class _Known:
 
 
 @dataclass(frozen=True, slots=True)
-class _Setting:
+class _ConflictSetting:
     """A component, one of its conflicts, and the remaining time."""
 
     whole: RealizabilityProblem
@@ -104,14 +104,15 @@ def repairs(
             share = Budget(budget.seconds / len(conflicts) / 2)
             try:
                 yield from family(
-                    _Setting(setting, requirements, fought, share, known), conflict.requirements
+                    _ConflictSetting(setting, requirements, fought, share, known),
+                    conflict.requirements,
                 )
             except (OutOfTimeError, UnsupportedError) as error:
                 ids = ", ".join(conflict.requirements)
                 yield OpenQuestion(f"what else would resolve {ids}", str(error))
 
 
-def _changes(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:
+def _changes(setting: _ConflictSetting, conflict: Sequence[str]) -> Iterator[Repair]:
     """Repairs that change a bound as little as possible."""
     for requirement in setting.requirements:
         changed = _least_change(setting, requirement)
@@ -122,7 +123,7 @@ def _changes(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:
             yield Repair(tuple(conflict), requirement.id, (printed(changed.written),), settles)
 
 
-def _promises(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:
+def _promises(setting: _ConflictSetting, conflict: Sequence[str]) -> Iterator[Repair]:
     """Repairs that add assumptions."""
     for assumed in islice(_assumptions(setting), MOST_ASSUMPTIONS):
         sentences = tuple(printed(assumption.written) for assumption in assumed)
@@ -139,7 +140,7 @@ def _with(requirements: Rules, changed: FormalizedRequirement) -> Rules:
 # The proof -------------------------------------------------------------------------------------
 
 
-def _fits(setting: _Setting, requirements: Rules, assumed: Rules) -> bool:
+def _fits(setting: _ConflictSetting, requirements: Rules, assumed: Rules) -> bool:
     """Whether the system certainly wins, and each requirement can still be triggered."""
     key = (
         tuple((requirement.id, requirement.ticks) for requirement in requirements),
@@ -151,7 +152,7 @@ def _fits(setting: _Setting, requirements: Rules, assumed: Rules) -> bool:
     return known[key]
 
 
-def _is_shown_to_fit(setting: _Setting, requirements: Rules, assumed: Rules) -> bool:
+def _is_shown_to_fit(setting: _ConflictSetting, requirements: Rules, assumed: Rules) -> bool:
     there, counters = _staged(setting, requirements, assumed)
     if there.left_out is not None or there.of_outputs is not None:
         return False
@@ -161,8 +162,8 @@ def _is_shown_to_fit(setting: _Setting, requirements: Rules, assumed: Rules) -> 
 
 
 def _staged(
-    setting: _Setting, requirements: Rules, assumed: Rules
-) -> tuple[RealizabilityProblem, tuple[Counter, ...]]:
+    setting: _ConflictSetting, requirements: Rules, assumed: Rules
+) -> tuple[RealizabilityProblem, tuple[RequirementCounter, ...]]:
     """The problem of the requirements under the assumptions, and their counters.
 
     The component's problem is reused if it has all counters and the assumptions need no counts,
@@ -186,7 +187,7 @@ def _staged(
     return there, there.arena.counters
 
 
-def _triggered_now(setting: _Setting, requirements: Rules) -> frozenset[str]:
+def _triggered_now(setting: _ConflictSetting, requirements: Rules) -> frozenset[str]:
     """Ids of the requirements whose triggers can occur at present."""
     key = tuple(requirement.id for requirement in requirements)
     known = setting.known.triggered
@@ -196,7 +197,7 @@ def _triggered_now(setting: _Setting, requirements: Rules) -> frozenset[str]:
 
 
 def _triggered(
-    setting: _Setting, there: RealizabilityProblem, counters: Sequence[Counter]
+    setting: _ConflictSetting, there: RealizabilityProblem, counters: Sequence[RequirementCounter]
 ) -> frozenset[str]:
     """Ids of the requirements whose triggers can occur in a run that satisfies the assumptions."""
     found: set[str] = set()
@@ -214,7 +215,7 @@ def _triggered(
 
 
 def _least_change(
-    setting: _Setting, requirement: FormalizedRequirement
+    setting: _ConflictSetting, requirement: FormalizedRequirement
 ) -> FormalizedRequirement | None:
     """The requirement with the nearest bound that resolves the conflict."""
     scope, timing = requirement.sentence.scope, requirement.sentence.timing
@@ -242,7 +243,9 @@ def _least_change(
     return None if least is None else _bounded(requirement, least)
 
 
-def _first(setting: _Setting, is_enough: Callable[[int], bool], low: int, high: int) -> int | None:
+def _first(
+    setting: _ConflictSetting, is_enough: Callable[[int], bool], low: int, high: int
+) -> int | None:
     """The first number of low..high from which a monotone property holds; None: there is none.
 
     Numbers next to a bound of the conflict are tried first, because the answer is often one of
@@ -278,7 +281,7 @@ def _bounded(requirement: FormalizedRequirement, ticks: int) -> FormalizedRequir
 # Assumptions -----------------------------------------------------------------------------------
 
 
-def _assumptions(setting: _Setting) -> Iterator[Rules]:
+def _assumptions(setting: _ConflictSetting) -> Iterator[Rules]:
     """Assumptions about the inputs of the conflict, each as weak as its pattern allows."""
     inputs = _inputs(setting)
     if len(inputs) > MOST_INPUTS:
@@ -308,7 +311,7 @@ def _assumptions(setting: _Setting) -> Iterator[Rules]:
             yield from _distances(setting, (f"whenever {one}", other), (f"whenever {other}", one))
 
 
-def _lost(setting: _Setting) -> Function | None:
+def _lost(setting: _ConflictSetting) -> Function | None:
     """Inputs that lose at any tick, if no requirement has memory; None: some has.
 
     Then every tick is like the first one, and only an assumption that excludes all of these inputs
@@ -321,7 +324,7 @@ def _lost(setting: _Setting) -> Function | None:
     return game.legal - game.answered(bdd.true())
 
 
-def _inputs(setting: _Setting) -> dict[str, Function]:
+def _inputs(setting: _ConflictSetting) -> dict[str, Function]:
     """Propositions of the conflict that the environment chooses, as spelled in sentences."""
     roles, alphabet = setting.whole.roles, setting.whole.arena.alphabet
     found: dict[str, Function] = {}
@@ -335,14 +338,14 @@ def _inputs(setting: _Setting) -> dict[str, Function]:
     return found
 
 
-def _kept(setting: _Setting, *wordings: str) -> Iterator[Rules]:
+def _kept(setting: _ConflictSetting, *wordings: str) -> Iterator[Rules]:
     """The assumptions as a repair, if they resolve the conflict."""
     assumed = _assumed(setting, wordings)
     if assumed is not None and _fits(setting, setting.requirements, assumed):
         yield assumed
 
 
-def _distances(setting: _Setting, *sides: tuple[str, str]) -> Iterator[Rules]:
+def _distances(setting: _ConflictSetting, *sides: tuple[str, str]) -> Iterator[Rules]:
     """The least distance between two inputs that resolves the conflict."""
 
     def wordings(ticks: int) -> list[str]:
@@ -356,7 +359,7 @@ def _distances(setting: _Setting, *sides: tuple[str, str]) -> Iterator[Rules]:
         yield from _kept(setting, *wordings(least))
 
 
-def _assumed(setting: _Setting, wordings: Sequence[str]) -> Rules | None:
+def _assumed(setting: _ConflictSetting, wordings: Sequence[str]) -> Rules | None:
     known, key = setting.known.assumptions, tuple(wordings)
     if key not in known:
         texts = (w if " shall " in w else f"the environment shall {w}" for w in wordings)

@@ -6,7 +6,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from fretc.analysis.findings import Analysis, Component, Conflict, Inconsistency, Repair, Verdict
+from fretc.analysis.findings import (
+    Analysis,
+    Component,
+    Conflict,
+    Inconsistency,
+    RealizabilityVerdict,
+    Repair,
+)
 from fretc.analysis.reasons import listed
 from fretish.bindings.declarations import Role
 from fretish.diagnostics import status_symbols as signs
@@ -14,10 +21,10 @@ from fretish.diagnostics.status_symbols import StatusSymbol
 
 Line = tuple[str, str | None]
 """A line and its colour."""
-SIGNS: Mapping[Verdict, StatusSymbol] = {
-    Verdict.UNREALIZABLE: signs.BAD,
-    Verdict.NOT_CHECKED: signs.UNKNOWN,
-    Verdict.REALIZABLE: signs.GOOD,
+SIGNS: Mapping[RealizabilityVerdict, StatusSymbol] = {
+    RealizabilityVerdict.UNREALIZABLE: signs.BAD,
+    RealizabilityVerdict.NOT_CHECKED: signs.UNKNOWN,
+    RealizabilityVerdict.REALIZABLE: signs.GOOD,
 }
 """Symbols of verdicts, the worst first."""
 _UNKNOWN = signs.UNKNOWN.colour
@@ -60,18 +67,20 @@ def lines(
 
 def _headline(analysis: Analysis, which: str) -> str:
     count = len(analysis.components)
-    bad = sum(component.verdict is Verdict.UNREALIZABLE for component in analysis.components)
+    bad = sum(
+        component.verdict is RealizabilityVerdict.UNREALIZABLE for component in analysis.components
+    )
     match analysis.verdict:
-        case Verdict.REALIZABLE:
+        case RealizabilityVerdict.REALIZABLE:
             how = (
                 "while the assumptions hold" if analysis.assumptions else "whatever the inputs are"
             )
             return f"realizable: a system can satisfy all {which}requirements, {how}"
-        case Verdict.UNREALIZABLE if count == 1:
+        case RealizabilityVerdict.UNREALIZABLE if count == 1:
             return f"unrealizable: no system can satisfy all {which}requirements"
-        case Verdict.UNREALIZABLE:
+        case RealizabilityVerdict.UNREALIZABLE:
             return f"unrealizable: {bad} of {count} components cannot be satisfied"
-        case Verdict.NOT_CHECKED:
+        case RealizabilityVerdict.NOT_CHECKED:
             return f"not checked: {analysis.why}"
 
 
@@ -135,7 +144,7 @@ def drawn(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> It
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class TickColumn:
     """Equal adjacent ticks, and the value of each row."""
 
     first: int
@@ -154,13 +163,13 @@ def lanes(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> li
     return sorted(names, key=lambda name: (roles.get(name) is Role.OUTPUT, name))
 
 
-def columns(play: Sequence[Mapping[str, object]], names: Sequence[str]) -> list[Column]:
+def columns(play: Sequence[Mapping[str, object]], names: Sequence[str]) -> list[TickColumn]:
     """A trace with equal adjacent ticks in one column."""
-    found: list[Column] = []
+    found: list[TickColumn] = []
     for _, group in groupby(enumerate(play), lambda pair: pair[1]):
         run = list(group)
         values = tuple(_value(run[0][1][name]) for name in names)
-        found.append(Column(run[0][0], run[-1][0], values))
+        found.append(TickColumn(run[0][0], run[-1][0], values))
     return found
 
 

@@ -14,7 +14,7 @@ from fretc.analysis.controllers.circuit import Circuit, circuit
 from fretc.analysis.controllers.files import ControllerFormat
 from fretc.analysis.controllers.machine import NoMachineError, machine
 from fretc.analysis.controllers.moves import Mealy, mealy
-from fretc.analysis.findings import Component, Conflict, OpenQuestion, Verdict
+from fretc.analysis.findings import Component, Conflict, OpenQuestion, RealizabilityVerdict
 from fretc.analysis.games.cores import Members, cores, minimal
 from fretc.analysis.games.game_traces import Counterstrategy, NoPlayError
 from fretc.analysis.games.replay import broken
@@ -40,7 +40,7 @@ def verdict(
     """
     answer, why = _answer(setting, budget)
     there = setting
-    while answer is Verdict.NOT_CHECKED and _has_room(budget):
+    while answer is RealizabilityVerdict.NOT_CHECKED and _has_room(budget):
         try:
             finer = there.finer(budget)
         except (UnsupportedError, OutOfTimeError):
@@ -49,7 +49,7 @@ def verdict(
             break
         there = finer
         found, because_ = _answer(there, budget)
-        if found is not Verdict.NOT_CHECKED:
+        if found is not RealizabilityVerdict.NOT_CHECKED:
             answer, why, setting = found, because_, there
     spent = round(budget.spent, 3)
     return component(setting.requirements, setting.roles, answer, why, spent), setting
@@ -60,17 +60,17 @@ def _has_room(budget: Budget) -> bool:
     return budget.spent < budget.seconds / 8
 
 
-def _answer(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str]:
+def _answer(setting: RealizabilityProblem, budget: Budget) -> tuple[RealizabilityVerdict, str]:
     try:
         return _verdict(setting, budget)
     except (UnsupportedError, OutOfTimeError) as error:
-        return Verdict.NOT_CHECKED, str(error)
+        return RealizabilityVerdict.NOT_CHECKED, str(error)
 
 
 def component(
     requirements: Sequence[FormalizedRequirement],
     roles: Roles,
-    answer: Verdict,
+    answer: RealizabilityVerdict,
     why: str,
     seconds: float = 0.0,
 ) -> Component:
@@ -85,35 +85,37 @@ def component(
     return Component(ids, tuple(dict.fromkeys(names)), answer, why, seconds)
 
 
-def _verdict(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str]:
+def _verdict(setting: RealizabilityProblem, budget: Budget) -> tuple[RealizabilityVerdict, str]:
     """The verdict with its reason."""
     _check_assumptions(setting, budget)
     if not _is_lost(setting, [counter.id for counter in setting.arena.counters], budget):
         doubt = setting.left_out or setting.of_outputs
         if doubt is None:
-            return Verdict.REALIZABLE, "the system has a strategy"
+            return RealizabilityVerdict.REALIZABLE, "the system has a strategy"
     else:
         doubt = setting.of_inputs
         if doubt is None:
-            return Verdict.UNREALIZABLE, "the environment wins"
+            return RealizabilityVerdict.UNREALIZABLE, "the environment wins"
         generous, ids = (
             setting.generous(budget),
             [requirement.id for requirement in setting.requirements],
         )
         if generous.of_inputs is None and _is_lost(generous, ids, budget):
-            return Verdict.UNREALIZABLE, f"the environment wins, {_WHATEVER}"
+            return RealizabilityVerdict.UNREALIZABLE, f"the environment wins, {_WHATEVER}"
         answer = _unrolled(setting, budget) if generous is not setting else None
         if answer is not None:
             return answer
-    return Verdict.NOT_CHECKED, doubt
+    return RealizabilityVerdict.NOT_CHECKED, doubt
 
 
 _WHATEVER = "whatever the unknown values are"
 
 
-def _unrolled(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str] | None:
+def _unrolled(
+    setting: RealizabilityProblem, budget: Budget
+) -> tuple[RealizabilityVerdict, str] | None:
     """Verdict without inputs: a satisfying run, or proof that there is none."""
-    from fretc.analysis.games.lassos import Impossible, lasso
+    from fretc.analysis.games.lassos import NoShortRun, lasso
 
     chosen = [
         setting.roles[name]
@@ -126,10 +128,13 @@ def _unrolled(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, s
     found = lasso(setting.requirements, setting.roles, budget, as_fret=setting.as_fret)
     if found is None:
         return None
-    if isinstance(found, Impossible):
-        return Verdict.UNREALIZABLE, f"no run of {found.ticks} ticks satisfies all of them"
+    if isinstance(found, NoShortRun):
+        return (
+            RealizabilityVerdict.UNREALIZABLE,
+            f"no run of {found.ticks} ticks satisfies all of them",
+        )
     run = f"a run of {len(found.numbers)} ticks that repeats itself from tick {found.loop} on"
-    return Verdict.REALIZABLE, f"there are no inputs, and {run} satisfies all of them"
+    return RealizabilityVerdict.REALIZABLE, f"there are no inputs, and {run} satisfies all of them"
 
 
 def _is_lost(setting: RealizabilityProblem, ids: Sequence[str], budget: Budget) -> bool:

@@ -10,7 +10,7 @@ from fretc.api.refusal import Refusal, accepted, bounded
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result
 from fretc.audit.log_paths import logs as logs_of
-from fretc.audit.many_logs import Audit as Run
+from fretc.audit.many_logs import AuditOutcome as Run
 from fretc.audit.many_logs import audit_logs as audited
 from fretc.audit.many_logs import local_executor
 from fretc.audit.outputs.totals import VerdictWords

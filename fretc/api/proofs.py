@@ -9,7 +9,7 @@ from compiler.logic.claims import PROVERS, Layer, Proof
 from compiler.project.project import Project
 from fretc.api.refusal import Refusal, accepted, bounded
 from fretc.verification.ajpf_results import ajpf_proofs
-from fretc.verification.engines.sandbox import Limits
+from fretc.verification.engines.sandbox import CallLimits
 from fretc.verification.layers.request import Request
 from fretc.verification.verify import missing_prover, prove, refusals
 from fretish.diagnostics.diagnostic import has_errors
@@ -60,7 +60,7 @@ def verify(
         raise Refusal(remarks)
     request = Request(
         [Layer(name) for name in chosen_layers],
-        Limits(seconds=limit),
+        CallLimits(seconds=limit),
         demanded=[Layer(name) for name in demanded],
         provers=chosen_provers,
         ajpf=results,

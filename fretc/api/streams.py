@@ -10,8 +10,8 @@ from compiler.project.project import Project
 from compiler.targets.python import monitor as python
 from fretc.api.refusal import Refusal, accepted, bounded
 from fretc.audit.plan import Plan, planned
-from fretc.logs.stream import Stream as Truths
-from fretc.logs.stream import Tick as Row
+from fretc.logs.stream import ClockTick as Row
+from fretc.logs.stream import SampleStream as Truths
 from fretc.watch.requirement_monitors import RequirementMonitors
 from fretish.bindings.declarations import Signal
 from fretish.diagnostics.diagnostic import Diagnostic, did_you_mean

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from compiler.files.checked_json import SchemaError
 from compiler.files.text_files import read as read_text
 from fretc.attestation import statement as attestation
-from fretc.attestation.statement import Statement, Subject
+from fretc.attestation.statement import SignedItem, Statement
 from fretc.attestation.statement import read as read_statement
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import unless_installed
@@ -97,7 +97,7 @@ def _wrong(place: Span, what: str) -> Diagnostic:
     )
 
 
-def appended(envelopes: Sequence[Envelope], new: Envelope, current: frozenset[Subject]) -> str:
+def appended(envelopes: Sequence[Envelope], new: Envelope, current: frozenset[SignedItem]) -> str:
     """The text of the signature file with a new envelope added.
 
     Args:
@@ -109,7 +109,7 @@ def appended(envelopes: Sequence[Envelope], new: Envelope, current: frozenset[Su
 
 
 def kept(
-    envelopes: Sequence[Envelope], new: Envelope, current: frozenset[Subject]
+    envelopes: Sequence[Envelope], new: Envelope, current: frozenset[SignedItem]
 ) -> tuple[Envelope, ...]:
     """The envelopes to keep when a new one is added.
 
@@ -127,7 +127,7 @@ def kept(
 # Judging ---------------------------------------------------------------------------------------
 
 
-class State(StrEnum):
+class SignatureState(StrEnum):
     """The state of the signature of an item."""
 
     SIGNED = "signed"
@@ -141,13 +141,13 @@ class State(StrEnum):
 class Signing:
     """The state of a signature, with an explanation."""
 
-    state: State
+    state: SignatureState
     text: str
 
     @property
     def is_good(self) -> bool:
         """Whether the required signer has signed the item."""
-        return self.state is State.SIGNED
+        return self.state is SignatureState.SIGNED
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +155,7 @@ class _CheckedEnvelope:
     """An envelope, its signers with a valid signature, and its signers with only invalid ones."""
 
     envelope: Envelope
-    subjects: frozenset[Subject]
+    subjects: frozenset[SignedItem]
     by: tuple[Signer, ...]
     broken: tuple[Signer, ...]
 
@@ -168,7 +168,7 @@ class SignatureBook:
     """The trusted signers; None if there is no list, so that no signature is valid."""
     envelopes: tuple[_CheckedEnvelope, ...] = ()
 
-    def of(self, subject: Subject, name: str | None = None) -> Signing:
+    def of(self, subject: SignedItem, name: str | None = None) -> Signing:
         """The signature of a subject.
 
         Args:
@@ -181,7 +181,7 @@ class SignatureBook:
     def of_file(self, kind: str, sha256: str) -> Signing:
         """The signature of a file with this content, under any name."""
         about = [entry for entry in self.envelopes if _has(entry, kind, sha256)]
-        return self._of(about, Subject(kind, "", sha256), None)
+        return self._of(about, SignedItem(kind, "", sha256), None)
 
     def agreed(self, evidence: EvidenceSource) -> Signing:
         """The signature of evidence, only from statements that agree with the file."""
@@ -192,21 +192,23 @@ class SignatureBook:
             return signing
         if not any(entry.by for entry in agreeing):
             return Signing(
-                State.CHANGED, "the signed statement differs from what the file contains"
+                SignatureState.CHANGED, "the signed statement differs from what the file contains"
             )
         return SignatureBook(self.signers, tuple(agreeing)).of_file(
             attestation.EVIDENCE, evidence.sha256
         )
 
-    def _of(self, about: Sequence[_CheckedEnvelope], subject: Subject, name: str | None) -> Signing:
+    def _of(
+        self, about: Sequence[_CheckedEnvelope], subject: SignedItem, name: str | None
+    ) -> Signing:
         by = list(dict.fromkeys(signer for entry in about for signer in entry.by))
         good = [signer for signer in by if name is None or signer.goes_by(name)]
         if good:
-            return Signing(State.SIGNED, f"signed by {_names(good)}")
+            return Signing(SignatureState.SIGNED, f"signed by {_names(good)}")
         if by:
-            return Signing(State.ANOTHER, f"signed by {_names(by)}, who is not {name}")
+            return Signing(SignatureState.ANOTHER, f"signed by {_names(by)}, who is not {name}")
         if about:
-            return Signing(State.UNKNOWN, self._unknown(about))
+            return Signing(SignatureState.UNKNOWN, self._unknown(about))
         before = [
             signer
             for entry in self.envelopes
@@ -215,8 +217,8 @@ class SignatureBook:
         ]
         if before:
             names = _names(dict.fromkeys(before))
-            return Signing(State.CHANGED, f"{names} signed it before it was changed")
-        return Signing(State.NONE, "nobody signed it")
+            return Signing(SignatureState.CHANGED, f"{names} signed it before it was changed")
+        return Signing(SignatureState.NONE, "nobody signed it")
 
     def _unknown(self, about: Sequence[_CheckedEnvelope]) -> str:
         keys = dict.fromkeys(key for entry in about for key in entry.envelope.dsse.key_ids)
@@ -249,7 +251,7 @@ def _has(one: _CheckedEnvelope, kind: str, sha256: str) -> bool:
     return any((subject.kind, subject.sha256) == (kind, sha256) for subject in one.subjects)
 
 
-def _has_another(one: _CheckedEnvelope, subject: Subject) -> bool:
+def _has_another(one: _CheckedEnvelope, subject: SignedItem) -> bool:
     """Whether the envelope covers an earlier content of the subject (for a file: of its kind)."""
     return any(
         item.kind == subject.kind and subject.name in ("", item.name) for item in one.subjects

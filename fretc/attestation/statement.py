@@ -44,7 +44,7 @@ _KINDS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
+class SignedItem:
     """A signed item; its kind is signed too, so that a log cannot pass for evidence."""
 
     kind: str
@@ -63,16 +63,16 @@ class Statement:
 
     about: str
     """The topic: one of the kinds."""
-    subjects: tuple[Subject, ...]
+    subjects: tuple[SignedItem, ...]
     says: Mapping[str, Any] = field(default_factory=dict)
     """Results of the subjects that the statement repeats."""
 
     @property
-    def main(self) -> frozenset[Subject]:
+    def main(self) -> frozenset[SignedItem]:
         """The subjects of the topic, without the logs and proofs of evidence."""
         return self.of(self.about)
 
-    def of(self, kind: str) -> frozenset[Subject]:
+    def of(self, kind: str) -> frozenset[SignedItem]:
         """The subjects of one kind."""
         return frozenset(subject for subject in self.subjects if subject.kind == kind)
 
@@ -121,7 +121,7 @@ def read(payload: bytes) -> Statement:
     return Statement(about, subjects, says)
 
 
-def _subject(at: JsonValue, about: str) -> Subject:
+def _subject(at: JsonValue, about: str) -> SignedItem:
     at.only("name", "digest")
     at.field("digest").only("sha256")
     kind, colon, name = at.field("name").text().partition(":")
@@ -130,7 +130,7 @@ def _subject(at: JsonValue, about: str) -> Subject:
         raise at.field("name").wrong(f"the name of something that is signed as `{about}`")
     if not is_sha256(digest.text()):
         raise digest.wrong("a SHA-256")
-    return Subject(kind, name, digest.text())
+    return SignedItem(kind, name, digest.text())
 
 
 # What is signed --------------------------------------------------------------------------------
@@ -139,11 +139,11 @@ def _subject(at: JsonValue, about: str) -> Subject:
 def evidence(file: EvidenceSource, proofs: Proofs | None) -> Statement:
     """The statement about evidence and proofs."""
     briefs = [brief for _, brief in file.briefs()]
-    logs = dict.fromkeys(Subject(LOG, result.run, result.log) for result in briefs if result.log)
+    logs = dict.fromkeys(SignedItem(LOG, result.run, result.log) for result in briefs if result.log)
     return Statement(
         EVIDENCE,
         (
-            Subject(EVIDENCE, Path(file.file).name, file.sha256),
+            SignedItem(EVIDENCE, Path(file.file).name, file.sha256),
             *logs,
             *([_proofs(proofs)] if proofs else []),
         ),
@@ -184,11 +184,11 @@ def analysis(file: AnalyzedSet) -> Statement:
         "conflicts": [list(conflict.requirements) for conflict in found.conflicts],
         "assumptions": {assumption.id: assumption.sentence for assumption in found.assumptions},
     }
-    return Statement(ANALYSIS, (Subject(ANALYSIS, Path(file.file).name, file.sha256),), says)
+    return Statement(ANALYSIS, (SignedItem(ANALYSIS, Path(file.file).name, file.sha256),), says)
 
 
-def _proofs(file: Proofs) -> Subject:
-    return Subject(PROOFS, Path(file.file).name, file.sha256)
+def _proofs(file: Proofs) -> SignedItem:
+    return SignedItem(PROOFS, Path(file.file).name, file.sha256)
 
 
 def _proved(proofs: Sequence[Proof]) -> list[dict[str, Any]]:
@@ -209,9 +209,9 @@ def reviews(all_reviews: Iterable[Review]) -> Statement:
     return Statement(REVIEW, tuple(map(review, all_reviews)))
 
 
-def review(one: Review) -> Subject:
+def review(one: Review) -> SignedItem:
     """The subject of one review."""
-    return Subject(REVIEW, one.requirement, one.seal)
+    return SignedItem(REVIEW, one.requirement, one.seal)
 
 
 def waivers(all_waivers: Iterable[Waiver]) -> Statement:
@@ -219,11 +219,11 @@ def waivers(all_waivers: Iterable[Waiver]) -> Statement:
     return Statement(WAIVER, tuple(map(waiver, all_waivers)))
 
 
-def waiver(one: Waiver) -> Subject:
+def waiver(one: Waiver) -> SignedItem:
     """The subject of one waiver."""
-    return Subject(WAIVER, one.requirement, one.seal)
+    return SignedItem(WAIVER, one.requirement, one.seal)
 
 
 def report(path: str, sha256: str) -> Statement:
     """The statement about a report in any format."""
-    return Statement(REPORT, (Subject(REPORT, Path(path).name, sha256),))
+    return Statement(REPORT, (SignedItem(REPORT, Path(path).name, sha256),))

@@ -6,40 +6,40 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from fretc.audit.evidence.schema import Result
-from fretc.audit.measurements.tallies import NOTHING, Tally
+from fretc.audit.measurements.tallies import NOTHING, PropositionTally
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 
 
 @dataclass(frozen=True, slots=True)
-class Total:
+class PropositionTotal:
     """The ticks of a proposition in some runs."""
 
-    ticks: Tally
+    ticks: PropositionTally
     runs: int
 
 
-def totals(runs: Iterable[Mapping[str, Tally]]) -> dict[str, Total]:
+def totals(runs: Iterable[Mapping[str, PropositionTally]]) -> dict[str, PropositionTotal]:
     """The total of each proposition.
 
     Args:
         runs: the tally of each proposition in each run.
     """
-    of_name: dict[str, list[Tally]] = {}
+    of_name: dict[str, list[PropositionTally]] = {}
     for tallies in runs:
         for name, tally in tallies.items():
             of_name.setdefault(name, []).append(tally)
-    return {name: Total(sum(some, NOTHING), len(some)) for name, some in of_name.items()}
+    return {name: PropositionTotal(sum(some, NOTHING), len(some)) for name, some in of_name.items()}
 
 
-def tallies_of(results: Iterable[Result]) -> dict[str, Tally]:
+def tallies_of(results: Iterable[Result]) -> dict[str, PropositionTally]:
     """The tally of each proposition in one run, from all results of the run."""
     return {name: counts for result in results for name, counts in result.propositions.items()}
 
 
 def never_changed(
-    of_all: Mapping[str, Total],
+    of_all: Mapping[str, PropositionTotal],
     declarations: Declarations,
     diagnostics: Iterable[Diagnostic] = (),
 ) -> Iterator[Diagnostic]:
@@ -69,7 +69,7 @@ def never_changed(
         )
 
 
-def _always(total: Tally) -> str:
+def _always(total: PropositionTally) -> str:
     parts = [
         f"{word} at {count} tick{'' if count == 1 else 's'}"
         for word, count in (

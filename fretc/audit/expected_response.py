@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import assert_never
 
 from compiler.formalization.formalized import FormalizedRequirement
-from fretc.audit.measurements.violations import Demand
+from fretc.audit.measurements.violations import DemandText
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.printer import expression, timing
 
 
-def demand(requirement: FormalizedRequirement) -> Demand:
+def demand(requirement: FormalizedRequirement) -> DemandText:
     """The demand of the sentence at each trigger.
 
     It is the response alone if nothing else can be missing, and the response with its timing
@@ -20,19 +20,19 @@ def demand(requirement: FormalizedRequirement) -> Demand:
     sentence = requirement.sentence
     response = expression(sentence.response)
     if sentence.scope is not None and sentence.scope.kind.negates:
-        return Demand(f"not ({timing(sentence.timing)} satisfy {response})".replace("( ", "("))
+        return DemandText(f"not ({timing(sentence.timing)} satisfy {response})".replace("( ", "("))
     match sentence.timing:
         case s.Never():
-            return Demand(expression(e.Not(sentence.response)))
+            return DemandText(expression(e.Not(sentence.response)))
         case s.After():
-            return Demand(
+            return DemandText(
                 f"{timing(sentence.timing)} satisfy {response}", requirement.watch.horizon
             )
         case s.Until() | s.Before():
-            return Demand(f"{timing(sentence.timing)} satisfy {response}")
+            return DemandText(f"{timing(sentence.timing)} satisfy {response}")
         case s.Immediately() | s.Next() | s.Within():
-            return Demand(response, requirement.watch.horizon)
+            return DemandText(response, requirement.watch.horizon)
         case s.Finally() | s.Eventually() | s.Always() | s.For():
-            return Demand(response)  # a response that must always hold has no deadline
+            return DemandText(response)  # a response that must always hold has no deadline
         case _:
             assert_never(sentence.timing)

@@ -30,7 +30,7 @@ from fretc.audit.many_logs import (
 )
 from fretc.audit.plan import Plan, keys
 from fretc.audit.store.errors import StoreError
-from fretc.audit.store.manifest import FILE, REUSE, SCHEMA, UNFINISHED, Manifest, Part
+from fretc.audit.store.manifest import FILE, REUSE, SCHEMA, UNFINISHED, Part, StoreManifest
 from fretc.audit.store.parts import parts
 from fretc.audit.store.reader import Store, manifest, opened
 from fretc.audit.store.recordings import KnownBy
@@ -242,7 +242,7 @@ class _Log:
 
 
 @dataclass(slots=True)
-class _Draft:
+class _PartDraft:
     """A part that is being filled or written."""
 
     logs: Sequence[str]
@@ -291,7 +291,7 @@ class StoreWriter:
         self._before = files(folder)
         """Files that existed before: an earlier manifest that is damaged may need them."""
         self._is_finished = False
-        self._drafts = [_Draft([logs[n] for n in indices]) for indices in parts(logs)]
+        self._drafts = [_PartDraft([logs[n] for n in indices]) for indices in parts(logs)]
         self._draft_of = {log: draft for draft in self._drafts for log in draft.logs}
         self.known = {
             log: reusable for log in logs if (reusable := self.earlier.find(log)) is not None
@@ -407,14 +407,14 @@ class StoreWriter:
         if notes:
             self._of_log[log] = notes
 
-    def _complete(self, draft: _Draft) -> None:
+    def _complete(self, draft: _PartDraft) -> None:
         """Write a part if all its logs are finished."""
         if len(draft.found) == len(draft.logs):
             draft.part = self._written(draft, draft.logs)
             draft.entries = tuple(draft.found[log].entry for log in draft.logs)
             draft.found = {}
 
-    def _written(self, draft: _Draft, logs: Sequence[str]) -> Part:
+    def _written(self, draft: _PartDraft, logs: Sequence[str]) -> Part:
         groups = list(self._grouped(draft.found[log] for log in logs))
         return _right(write_part(self.folder, joined(groups)))
 
@@ -434,10 +434,10 @@ class StoreWriter:
 
     # Manifests
 
-    def _manifest(self, drafts: Sequence[tuple[Part, Sequence[Entry]]], name: str) -> Manifest:
+    def _manifest(self, drafts: Sequence[tuple[Part, Sequence[Entry]]], name: str) -> StoreManifest:
         entries = [entry for _, some in drafts for entry in some]
         about = document(self._plan, (), ())
-        new_manifest = Manifest(
+        new_manifest = StoreManifest(
             schema=SCHEMA,
             fretc=about.fretc,
             bindings=about.bindings,
@@ -453,7 +453,7 @@ class StoreWriter:
         estimates = estimates_of(self._plan, (each for _, each in provisional.briefs()))
         return replace(new_manifest, probabilities=estimates or UNSET)
 
-    def _write(self, made: Manifest, name: str) -> str:
+    def _write(self, made: StoreManifest, name: str) -> str:
         """Write a manifest and the register that authenticates it."""
         digest = _right(write_manifest(self.folder, made, name))
         if self._key is not None:

@@ -22,16 +22,16 @@ from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary,
 from fretc.audit.evidence.run_plot_data import map_diagnostics, plot_data
 from fretc.audit.evidence.schema import (
     SCHEMA,
-    Bindings,
-    Document,
+    BindingsRecord,
+    EvidenceDocument,
     Hashes,
-    Requirement,
+    RequirementRecord,
     Result,
-    Situation,
+    SituationRecord,
 )
 from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged_result, unread_result
 from fretc.audit.evidence.writer import text as written
-from fretc.audit.measurements.tallies import Tally
+from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.one_log import (
     MonitoredRequirement,
     audit,
@@ -62,10 +62,10 @@ from monitors import kernel
 
 
 @dataclass(frozen=True, slots=True)
-class Audit:
+class AuditOutcome:
     """The outcome of an audit: a result for each run and requirement, ordered by run."""
 
-    document: Document
+    document: EvidenceDocument
     diagnostics: tuple[Diagnostic, ...]
     read: int = 0
     """Number of logs that could be read."""
@@ -163,7 +163,7 @@ def audit_logs(
     engine: Engine = SEQUENTIAL,
     finished: Mapping[str, LogResult] = MappingProxyType({}),
     tell: Callable[[str, LogResult], None] = lambda log, result: None,
-) -> Audit | Diagnostic:
+) -> AuditOutcome | Diagnostic:
     """Audit every log against every requirement.
 
     Args:
@@ -189,13 +189,13 @@ def audit_logs(
     return combined_audit(plan, [with_command_labels(plan, done[log]) for log in logs])
 
 
-def combined_audit(plan: Plan, audits: Sequence[LogResult]) -> Audit:
+def combined_audit(plan: Plan, audits: Sequence[LogResult]) -> AuditOutcome:
     """One audit from the results of single logs, in their order."""
     results = [result for audit in audits for result in audit.results]
     of_all_runs = estimates_of(plan, map(brief, results))
     tallies = (tallies_of(audit.results) for audit in audits)
     of_logs = [(audit.results[0].run, audit.diagnostics) for audit in audits]
-    return Audit(
+    return AuditOutcome(
         document(plan, results, of_all_runs),
         diagnostics_of_all(plan, of_logs, tallies, of_all_runs),
         sum(audit.read for audit in audits),
@@ -212,7 +212,7 @@ def estimates_of(plan: Plan, results: Iterable[ResultSummary]) -> tuple[Estimate
 def diagnostics_of_all(
     plan: Plan,
     of_logs: Sequence[tuple[str, Sequence[Diagnostic]]],
-    tallies: Iterable[Mapping[str, Tally]],
+    tallies: Iterable[Mapping[str, PropositionTally]],
     of_all_runs: Sequence[Estimated],
 ) -> tuple[Diagnostic, ...]:
     """The diagnostics of all logs together.
@@ -429,22 +429,24 @@ def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
     return {} if digest is None or changed else {"log": digest}
 
 
-def named_situations(claim: AuditedRequirement) -> tuple[Situation, ...]:
+def named_situations(claim: AuditedRequirement) -> tuple[SituationRecord, ...]:
     """The situations of a requirement, as evidence lists them."""
-    return tuple(Situation(situation.key, situation.words) for situation in claim.situations)
+    return tuple(SituationRecord(situation.key, situation.words) for situation in claim.situations)
 
 
-def document(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estimated]) -> Document:
+def document(
+    plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estimated]
+) -> EvidenceDocument:
     """The evidence document of an audit."""
-    return Document(
+    return EvidenceDocument(
         schema=SCHEMA,
         fretc=__version__,
-        bindings=Bindings(
+        bindings=BindingsRecord(
             plan.declarations.source.name,
             of_all({requirement.id: requirement.basis[BINDINGS] for requirement in plan.named}),
         ),
         requirements=tuple(
-            Requirement(
+            RequirementRecord(
                 requirement.id,
                 requirement.sentence,
                 requirement.basis[SENTENCE],

@@ -19,7 +19,7 @@ from fretc.audit.measurements.situations import Near, nowhere_known, situation_t
 from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
-from fretc.audit.measurements.violations import Demand, Moment, violations
+from fretc.audit.measurements.violations import DemandText, Moment, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
 from fretc.logs.sample_fingerprint import fingerprint
@@ -27,7 +27,7 @@ from fretc.logs.signals.enum_values import UnmappedSamples, shown
 from fretc.logs.signals.rates import late_topics, slow_topics
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.signals import blind_zones
-from fretc.logs.signals.traces import Timeline, Trace, timeline, trace
+from fretc.logs.signals.traces import Trace, WholeTicks, timeline, trace
 from fretc.logs.watch_records import clock_text
 from fretish import expressions as e
 from fretish.bindings.amounts import duration, scaled, seconds, shared_unit
@@ -48,7 +48,7 @@ class MonitoredRequirement:
 
     monitor: Monitor
     hashes: Mapping[str, str]
-    demand: Demand = field(default_factory=Demand)
+    demand: DemandText = field(default_factory=DemandText)
     count: Count | None = None
     """The counter of trigger outcomes, for a requirement with a probability."""
     counted: tuple[str, ...] = ()
@@ -286,7 +286,7 @@ def hash_of_messages(recording: Recording) -> Mapping[str, str]:
     return {} if messages is None else {"messages": messages}
 
 
-def _moments(timeline: Timeline) -> Callable[[int], Moment]:
+def _moments(timeline: WholeTicks) -> Callable[[int], Moment]:
     """The moment of each tick, cached for triggers, answers and states."""
     times: list[int] = timeline.times.tolist()
 

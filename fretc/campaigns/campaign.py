@@ -27,7 +27,7 @@ CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class MissionResult:
     """Result of one mission: what happened in the world, and the verdicts on its log."""
 
     scenario: str
@@ -68,12 +68,12 @@ def share(count: int, runs: int) -> Share:
     return Share(count, runs, lowest(count, runs, each), highest(count, runs, each))
 
 
-def simulated(scenario: Scenario, seed: int, out: Path) -> Run:
+def simulated(scenario: Scenario, seed: int, out: Path) -> MissionResult:
     """Record one mission, and audit its log."""
     return assessed(recorded(scenario, seed, out))
 
 
-def assessed(mission: Mission) -> Run:
+def assessed(mission: Mission) -> MissionResult:
     """Audit the log of a mission."""
     audit = audit_log(plan(), str(mission.path))
     return _run(mission, {r.requirement: r.verdict for r in audit.results})
@@ -106,10 +106,10 @@ def intercepted(options: Interceptor) -> MakeInterceptor:
     return partial(interceptor, gate_options)
 
 
-def _run(mission: Mission, verdicts: Mapping[str, str]) -> Run:
+def _run(mission: Mission, verdicts: Mapping[str, str]) -> MissionResult:
     stated = mission.scenario.expect.verdicts
     stood = [stop for stop in mission.stops if stop.latency is not None]
-    return Run(
+    return MissionResult(
         scenario=mission.scenario.name,
         seed=mission.seed,
         duration=mission.duration,
@@ -131,7 +131,7 @@ def campaign(
     jobs: int,
     folder: Path | None = None,
     tell: Callable[[int], None] = lambda done: None,
-) -> list[Run]:
+) -> list[MissionResult]:
     """Run every scenario with every seed, scenario by scenario.
 
     Args:
@@ -146,7 +146,7 @@ def campaign(
     """
     monitored_requirements(plan())  # Set before the processes start, because they inherit it.
     things = [(scenario, seed) for scenario in scenarios for seed in seeds]
-    runs: dict[int, Run] = {}
+    runs: dict[int, MissionResult] = {}
     with _place(folder, things) as logs:
         function = partial(_one, logs, folder is not None)
         with closing(map_processes(function, things, jobs)) as done:
@@ -173,7 +173,7 @@ def _place(folder: Path | None, things: Sequence[tuple[Scenario, int]]) -> Itera
                 partly.unlink(missing_ok=True)
 
 
-def _one(folder: Path, keep: bool, thing: tuple[Scenario, int]) -> Run:
+def _one(folder: Path, keep: bool, thing: tuple[Scenario, int]) -> MissionResult:
     scenario, seed = thing
     out = folder / _name(scenario, seed)
     run = simulated(scenario, seed, out)
@@ -186,9 +186,9 @@ def _name(scenario: Scenario, seed: int) -> str:
     return f"{scenario.name}-{seed}.mcap"
 
 
-def table(runs: Sequence[Run]) -> str:
+def table(runs: Sequence[MissionResult]) -> str:
     """Table with a line for each scenario, then the violations by requirement and scenario."""
-    groups: dict[str, list[Run]] = {}
+    groups: dict[str, list[MissionResult]] = {}
     for run in runs:
         groups.setdefault(run.scenario, []).append(run)
     rows = [_HEAD, *(_row(name, group) for name, group in groups.items())]
@@ -210,7 +210,7 @@ _HEAD = (
 )
 
 
-def _row(name: str, runs: Sequence[Run]) -> tuple[str, ...]:
+def _row(name: str, runs: Sequence[MissionResult]) -> tuple[str, ...]:
     latencies = [latency for run in runs for latency in run.latencies]
     distances = [distance for run in runs for distance in run.distances]
     return (
@@ -231,7 +231,7 @@ def _range(values: Sequence[int]) -> str:
     return str(low) if low == high else f"{low}-{high}"
 
 
-def _violations(groups: Mapping[str, Sequence[Run]]) -> Iterator[str]:
+def _violations(groups: Mapping[str, Sequence[MissionResult]]) -> Iterator[str]:
     yield f"violated in, with {CONFIDENCE * 100:.0f} % intervals (Clopper-Pearson):"
     for name, runs in groups.items():
         counts = {

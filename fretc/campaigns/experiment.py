@@ -17,7 +17,7 @@ from compiler.project.paths import requirement_files
 from compiler.project.project import Project
 from compiler.targets.python import interceptor as interceptors
 from compiler.targets.python import monitor as monitors
-from compiler.targets.target import Options as TargetOptions
+from compiler.targets.target import TargetOptions as TargetOptions
 from fretc.audit.plan import Plan, planned
 from fretc.logs.signals.propositions import TRUE, evaluate
 from fretc.logs.signals.samples import Recording, Samples

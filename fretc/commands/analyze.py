@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from compiler.formalization.formalized import FormalizedRequirement
-    from fretc.analysis.analysis import Options
+    from fretc.analysis.analysis import AnalysisOptions
     from fretc.analysis.arena.roles import Roles
     from fretc.analysis.findings import Analysis
 
@@ -103,7 +103,7 @@ def analyze(
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from fretc.analysis.analysis import Options
+    from fretc.analysis.analysis import AnalysisOptions
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.evidence import document
     from fretc.analysis.text_output import lines
@@ -114,7 +114,7 @@ def analyze(
     chosen = roles([*formalized, *assumed])
     if isinstance(chosen, tuple):
         fail(*chosen)
-    analysis, stopped = asked(formalized, assumed, chosen, Options(seconds, as_fret))
+    analysis, stopped = asked(formalized, assumed, chosen, AnalysisOptions(seconds, as_fret))
     evidence = f"{to_json(plain(document(formalized, assumed, analysis, as_fret=as_fret)))}\n"
     if emitted is not None and emit_to == "-":
         pass  # Standard output then holds the controller.
@@ -129,7 +129,15 @@ def analyze(
     if output != "-":
         write_outputs({Path(output): evidence}, input_files(project, bindings))
     if emitted is not None and not stopped:
-        _emit(analysis, formalized, assumed, chosen, Options(seconds, as_fret), emitted, emit_to)
+        _emit(
+            analysis,
+            formalized,
+            assumed,
+            chosen,
+            AnalysisOptions(seconds, as_fret),
+            emitted,
+            emit_to,
+        )
     raise SystemExit(EXIT_INTERRUPTED if stopped else _status(analysis))
 
 
@@ -137,7 +145,7 @@ def asked(
     requirements: Sequence[FormalizedRequirement],
     assumed: Sequence[FormalizedRequirement],
     chosen: Roles,
-    options: Options,
+    options: AnalysisOptions,
 ) -> tuple[Analysis, bool]:
     """The analysis of the requirements, and whether Ctrl-C has stopped it."""
     from fretc.analysis.analysis import assembled, jobs
@@ -152,7 +160,7 @@ def _emit(
     requirements: Sequence[FormalizedRequirement],
     assumed: Sequence[FormalizedRequirement],
     chosen: Roles,
-    options: Options,
+    options: AnalysisOptions,
     emitted: str,
     output: str,
 ) -> None:
@@ -161,11 +169,11 @@ def _emit(
     from fretc.analysis.controllers.circuit import Circuit
     from fretc.analysis.controllers.files import ControllerFormat, automata, controller
     from fretc.analysis.controllers.moves import Mealy
-    from fretc.analysis.findings import OpenQuestion, Verdict
+    from fretc.analysis.findings import OpenQuestion, RealizabilityVerdict
     from fretc.analysis.worker import finished
     from fretish.printer import sentence as printed
 
-    if analysis.verdict is not Verdict.REALIZABLE:
+    if analysis.verdict is not RealizabilityVerdict.REALIZABLE:
         print_status(f"no controller is written: {analysis.why}")
         return
     output_format = ControllerFormat(emitted)
@@ -197,12 +205,12 @@ def _smaller(output_format: str) -> str:
 
 
 def _status(analysis: Analysis) -> int:
-    from fretc.analysis.findings import Verdict
+    from fretc.analysis.findings import RealizabilityVerdict
 
     match analysis.verdict:
-        case Verdict.REALIZABLE:
+        case RealizabilityVerdict.REALIZABLE:
             return EXIT_OK
-        case Verdict.UNREALIZABLE:
+        case RealizabilityVerdict.UNREALIZABLE:
             return EXIT_VIOLATION
-        case Verdict.NOT_CHECKED:
+        case RealizabilityVerdict.NOT_CHECKED:
             return EXIT_INCONCLUSIVE

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 from fretc.audit.evidence.schema import Selection
 from fretc.audit.log_paths import logs as logs_of
-from fretc.audit.many_logs import Audit, Engine, audit_logs
+from fretc.audit.many_logs import AuditOutcome, Engine, audit_logs
 from fretc.audit.plan import Plan
 from fretc.audit.selection.choice import chosen, in_words
 from fretc.audit.selection.dates import since as time_of
@@ -37,7 +37,7 @@ def selected(
     return some, selection
 
 
-def audit_in_memory(plan: Plan, logs: Sequence[str], engine: Engine) -> Audit:
+def audit_in_memory(plan: Plan, logs: Sequence[str], engine: Engine) -> AuditOutcome:
     """Audit the logs in memory; an interrupted audit saves nothing."""
     try:
         with shown(logs) as show:

@@ -23,7 +23,7 @@ _BATCH = 256
 """Number of results that are read at once."""
 
 
-class Outcome(Protocol):
+class CommandOutcome(Protocol):
     """Result of an audit, in memory or in a store."""
 
     @property
@@ -44,7 +44,7 @@ class Outcome(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Target:
+class EvidencePath:
     """Output path of the evidence."""
 
     path: Path
@@ -58,16 +58,16 @@ class Target:
         return str(self.path) == "-"
 
 
-def target(output: str | None, logs: int) -> Target:
+def target(output: str | None, logs: int) -> EvidencePath:
     """The output path: by default a file for one log and a store for several."""
     if output is None:
         places = (EVIDENCE, STORE) if logs == 1 else (STORE, EVIDENCE)
         path, other = map(Path, places)
-        return Target(path, is_store=logs > 1, other=other)
-    return Target(Path(output), is_store=output != "-" and not output.endswith(".json"))
+        return EvidencePath(path, is_store=logs > 1, other=other)
+    return EvidencePath(Path(output), is_store=output != "-" and not output.endswith(".json"))
 
 
-def check(target: Target, parquet: str | None) -> None:
+def check(target: EvidencePath, parquet: str | None) -> None:
     """Check that the outputs can be written, before the audit starts."""
     path = target.path
     if parquet is not None:
@@ -95,14 +95,14 @@ def _check_table(parquet: str, evidence: Path) -> None:
         fail(not_written(parquet, "two outputs would go there"))
 
 
-def table(outcome: Outcome) -> bytes:
+def table(outcome: CommandOutcome) -> bytes:
     """The content of a Parquet file with a row for each result."""
     from fretc.audit.outputs import table as tables
 
     return tables.parquet(tables.table(outcome.source))
 
 
-def remove_other(target: Target) -> None:
+def remove_other(target: EvidencePath) -> None:
     """Remove evidence of an earlier audit at the other default path."""
     other = target.other
     if other is None:
@@ -139,7 +139,9 @@ def bare(source: EvidenceSource, project: Project) -> Iterator[Result]:
         yield from without_samples([result], project.declarations)
 
 
-def annotation_files(outcome: Outcome, project: Project, folder: str | None) -> dict[Path, bytes]:
+def annotation_files(
+    outcome: CommandOutcome, project: Project, folder: str | None
+) -> dict[Path, bytes]:
     """An annotation log for each run, and a Foxglove layout that shows them."""
     from fretc.audit.outputs.annotations import sidecars
     from fretc.audit.outputs.foxglove_layout import layout_file
@@ -152,7 +154,7 @@ def annotation_files(outcome: Outcome, project: Project, folder: str | None) -> 
 
 
 def text(
-    outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], output_format: str
+    outcome: CommandOutcome, project: Project, refusals: Iterable[Diagnostic], output_format: str
 ) -> str:
     """The results in a format for programs."""
     from fretc.audit.outputs.github import github
@@ -173,7 +175,7 @@ def text(
     return sarif(each, project.formalized, diagnostics, together, project.without_rule)
 
 
-def _json(outcome: Outcome) -> str:
+def _json(outcome: CommandOutcome) -> str:
     """JSON array with an object for each run and requirement; an object with probabilities."""
     found = [plain(each) for each in results(outcome.source)]
     if not outcome.estimates:

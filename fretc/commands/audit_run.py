@@ -17,13 +17,13 @@ from compiler.project.folder import load
 from compiler.project.paths import companions, requirement_files
 from compiler.project.project import Project
 from fretc.audit.log_paths import files_of
-from fretc.audit.many_logs import Audit, Engine, local_executor
+from fretc.audit.many_logs import AuditOutcome, Engine, local_executor
 from fretc.audit.outputs.totals import VerdictWords
 from fretc.audit.plan import Plan, planned
 from fretc.audit.pool import ENDLESS, Limits
 from fretc.commands import audit_outputs as outputs
 from fretc.commands.audit_logs import audit_in_memory, selected, shown
-from fretc.commands.audit_text import Places, Subject, lines
+from fretc.commands.audit_text import AuditPaths, AuditText, lines
 from fretc.commands.audit_text import summary as summary_of
 from fretc.commands.notify import notify, words
 from fretc.commands.opening import AUDIT_TABLES
@@ -132,7 +132,7 @@ class _Job:
     project: Project
     plan: Plan
     logs: Sequence[str]
-    target: outputs.Target
+    target: outputs.EvidencePath
     limits: Limits
     inputs: Sequence[str]
     """Files that no output may replace."""
@@ -214,7 +214,7 @@ def _seconds(option: str, text: str | None) -> float | None:
     return None if length is None else length / 1e9
 
 
-def _samples(target: outputs.Target, *, rehash: bool) -> SampleCache | None:
+def _samples(target: outputs.EvidencePath, *, rehash: bool) -> SampleCache | None:
     """Cache for samples beside the evidence; None without the user's key."""
     from fretc.audit.store.recordings import SUFFIX, SampleCache
 
@@ -240,7 +240,7 @@ def _key() -> bytes | None:
 
 def _audited(
     job: _Job, options: EngineOptions, kept: SampleCache | None, stack: ExitStack
-) -> outputs.Outcome:
+) -> outputs.CommandOutcome:
     """The results, in memory or in a store, which `stack` closes."""
     if not job.target.is_store:
         return audit_in_memory(job.plan, job.logs, _engine(options, job.limits, kept))
@@ -326,7 +326,7 @@ def _kept(session: StoreWriter) -> str:
 # After the audit --------------------------------------------------------------------------------
 
 
-def _write(job: _Job, result: outputs.Outcome, options: OutputOptions) -> None:
+def _write(job: _Job, result: outputs.CommandOutcome, options: OutputOptions) -> None:
     """Write all outputs; a store is already written."""
     target = job.target
     if not result.read:  # A mistyped log name must not overwrite the evidence of the last audit.
@@ -340,7 +340,7 @@ def _write(job: _Job, result: outputs.Outcome, options: OutputOptions) -> None:
         others[Path(options.parquet)] = outputs.table(result)
     own: dict[Path, str | bytes] = {}
     if not target.is_store:
-        assert isinstance(result, Audit), "what is no store is in memory"
+        assert isinstance(result, AuditOutcome), "what is no store is in memory"
         own = {target.path: result.evidence}
     if {*map(os.path.realpath, own)} & {*map(os.path.realpath, others)}:
         fail(not_written(str(target.path), "two outputs would go there"))
@@ -350,22 +350,26 @@ def _write(job: _Job, result: outputs.Outcome, options: OutputOptions) -> None:
     outputs.remove_other(target)
 
 
-def _subject(job: _Job, result: outputs.Outcome, options: PlanOptions, began: float) -> Subject:
+def _subject(
+    job: _Job, result: outputs.CommandOutcome, options: PlanOptions, began: float
+) -> AuditText:
     """The audit as its text shows it."""
     not_judged = {refusal.id for refusal in job.plan.refused}
     briefs = (each for _, each in result.source.briefs())
-    return Subject(
+    return AuditText(
         result.source,
         VerdictWords.of(briefs, result.estimates, not_judged),
         result.estimates,
         job.project,
         not_judged,
-        Places(options.requirements, options.bindings, str(job.target.path)),
+        AuditPaths(options.requirements, options.bindings, str(job.target.path)),
         time.perf_counter() - began,
     )
 
 
-def _print(job: _Job, result: outputs.Outcome, subject: Subject, options: OutputOptions) -> None:
+def _print(
+    job: _Job, result: outputs.CommandOutcome, subject: AuditText, options: OutputOptions
+) -> None:
     if options.output_format == "text":
         text = painted(lines(subject, screen(), every=options.verbose))
     else:

@@ -13,12 +13,12 @@ from compiler.project.project import Project
 from fretc.audit.evidence.declared_units import without_samples
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import EvidenceSource
-from fretc.audit.evidence.schema import Result, Threshold, Violation
+from fretc.audit.evidence.schema import Result, ThresholdRecord, Violation
 from fretc.audit.evidence.verdicts import SHOWN, VERDICTS
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretc.audit.outputs.totals import (
     COUNTED,
-    Total,
+    ResultCount,
     VerdictWords,
     longest,
     runs,
@@ -44,7 +44,7 @@ _LONGEST_NAME = 48
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class AuditPaths:
     """Paths that an audit reads and writes, as named on the command line."""
 
     requirements: str
@@ -71,7 +71,7 @@ class Places:
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
+class AuditText:
     """An audit, and the other values that its text shows."""
 
     source: EvidenceSource
@@ -80,12 +80,12 @@ class Subject:
     project: Project
     refused: Collection[str]
     """Ids of requirements that could not be evaluated on any run."""
-    places: Places
+    places: AuditPaths
     seconds: float
     """Duration of the audit."""
 
 
-def lines(subject: Subject, screen: Screen, *, every: bool) -> Iterator[Line]:
+def lines(subject: AuditText, screen: Screen, *, every: bool) -> Iterator[Line]:
     """All lines, the counts last.
 
     Args:
@@ -106,7 +106,7 @@ def lines(subject: Subject, screen: Screen, *, every: bool) -> Iterator[Line]:
     yield _last(subject)
 
 
-def _situations(subject: Subject) -> Iterator[Line]:
+def _situations(subject: AuditText) -> Iterator[Line]:
     """Number of situations that the runs exercised, and the command that lists them."""
     _, found = of_all_runs(subject.source)
     if any(each.situations for each in found):
@@ -115,7 +115,7 @@ def _situations(subject: Subject) -> Iterator[Line]:
         yield ((visible(f"{in_counts(found)}{more}"), None),)
 
 
-def _listed(subject: Subject, titles: Mapping[str, str], screen: Screen) -> Iterator[Line]:
+def _listed(subject: AuditText, titles: Mapping[str, str], screen: Screen) -> Iterator[Line]:
     """The name of each run, and a line for each of its results."""
     most = max(_LONGEST_NAME, screen.width // 3)
     names = {
@@ -141,7 +141,7 @@ def _estimate(one: Estimated, name: str) -> Iterator[Line]:
     yield from (((visible(f"    {line}"), None),) for line in rest)
 
 
-def summary(subject: Subject, status: int) -> dict[str, Any]:
+def summary(subject: AuditText, status: int) -> dict[str, Any]:
     """JSON summary for `--notify`: a text and numbers."""
     last = "".join(text for text, _ in _last(subject)).rsplit("  ", 1)[0]
     worst_first = [*_first_to_look_at(subject, commands=False)]
@@ -156,7 +156,7 @@ def summary(subject: Subject, status: int) -> dict[str, Any]:
     }
 
 
-def _first_to_look_at(subject: Subject, *, commands: bool = True) -> Iterator[str]:
+def _first_to_look_at(subject: AuditText, *, commands: bool = True) -> Iterator[str]:
     """The worst result, and the commands that show more; nothing if all are satisfied."""
     place = subject.marks.worst
     ((_, result),) = subject.source.details([place]) if place is not None else ((0, None),)
@@ -175,7 +175,7 @@ def _first_to_look_at(subject: Subject, *, commands: bool = True) -> Iterator[st
         yield f"  {'more:' if place == 0 else '     '} {command}"
 
 
-def _details(result: Result, subject: Subject) -> Iterator[str]:
+def _details(result: Result, subject: AuditText) -> Iterator[str]:
     """The longest violation of a result, or the reason for another verdict."""
     violation = longest(result)
     if violation is None:
@@ -185,7 +185,7 @@ def _details(result: Result, subject: Subject) -> Iterator[str]:
     yield from _violation(shown, shown.violations[result.violations.index(violation)])
 
 
-def _name(subject: Subject, id: str) -> str:
+def _name(subject: AuditText, id: str) -> str:
     """Title and id of a requirement, or id and sentence if it has no title."""
     requirement = next((each for each in subject.project.requirements if each.id == id), None)
     if requirement is None or requirement.title:
@@ -224,7 +224,7 @@ def _is_in(proposition: str, expression: str) -> bool:
     return re.search(rf"(?<!\w){re.escape(proposition)}(?!\w)", expression) is not None
 
 
-def _limit(threshold: Threshold) -> str:
+def _limit(threshold: ThresholdRecord) -> str:
     """`speed <= 1.5 m/s (slow); from 0 m/s to 1.8 m/s in this run`."""
     unit, bound = threshold.unit, threshold.bound
     comparison = f"{threshold.signal} {threshold.operator} {exact(bound, unit)}"
@@ -234,7 +234,7 @@ def _limit(threshold: Threshold) -> str:
     return f"{comparison}{name}{known}"
 
 
-def _last(subject: Subject) -> Line:
+def _last(subject: AuditText) -> Line:
     """`16 runs x 15 requirements: 12 violated (3 requirements in 4 runs), 228 satisfied  2.1 s`."""
     marks = subject.marks
     counts = totals(marks)
@@ -245,7 +245,7 @@ def _last(subject: Subject) -> Line:
     return ((text, counts[0].colour if counts else None),)
 
 
-def _count(total: Total, *, many: bool) -> str:
+def _count(total: ResultCount, *, many: bool) -> str:
     if not total.runs:
         return f"{total.results:,} {total.word} over all runs"
     where = f" ({count_of(total.requirements, 'requirement')} in {count_of(total.runs, 'run')})"

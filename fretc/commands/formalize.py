@@ -33,7 +33,7 @@ from fretish.diagnostics.rendering import visible
 if TYPE_CHECKING:
     from compiler.formalization.formalized import FormalizedRequirement
     from compiler.project.project import Project, Refused
-    from compiler.targets.target import Options, Target
+    from compiler.targets.target import Target, TargetOptions
 
 _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 
@@ -105,10 +105,10 @@ def compile_(
         _deliver_formulas(project, output if kinds else "-")
         return
     project = usable_part(project, others=any(TARGETS[kind].of_bindings for kind in kinds))
-    from compiler.targets.target import Options
+    from compiler.targets.target import TargetOptions
 
     free_texts = tuple(f.requirement for f in project.failed if not f.diagnostic.is_error)
-    options = Options(
+    options = TargetOptions(
         notation,
         simplify,
         one_file,
@@ -156,7 +156,7 @@ def _deliver_formulas(project: Project, output: str) -> None:
     write_outputs({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})
 
 
-def _print_formulas(project: Project, options: Options) -> None:
+def _print_formulas(project: Project, options: TargetOptions) -> None:
     from compiler.targets.ltl import text
 
     click.echo(
@@ -168,7 +168,7 @@ def _emit(
     project: Project,
     kinds: dict[str, None],
     output: str,
-    options: Options,
+    options: TargetOptions,
     remarks: Sequence[Diagnostic],
 ) -> None:
     """Write the files of all targets; a refusal of one target does not affect the others."""
@@ -225,7 +225,7 @@ def _next_steps(project: Project, firsts: Mapping[str, str], output: str) -> str
 
 
 def _emitted(
-    target: Target, project: Project, options: Options
+    target: Target, project: Project, options: TargetOptions
 ) -> tuple[list[FormalizedRequirement] | None, list[Diagnostic]]:
     """The requirements that the target accepts, or None for no file; and the refusals.
 

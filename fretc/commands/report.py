@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.report.forms.forms import FORMS, Form, Subject
+from fretc.report.forms.forms import FORMS, Form, FormInput
 from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import (
     analysis_option,
@@ -41,7 +41,7 @@ from fretish.diagnostics.diagnostic import Severity, has_errors
 if TYPE_CHECKING:
     from compiler.project.project import Project
     from fretc.audit.evidence.result_summaries import EvidenceSource
-    from fretc.report.model.views import Report
+    from fretc.report.model.views import ReportView
     from fretc.report.page.html import Inset
 
 _HEADINGS = {
@@ -182,7 +182,7 @@ def report(
     if outcome.report is None or outcome.details is None:
         raise SystemExit(EXIT_USAGE)
     inset = _inset(project, outcome.details.evidence, analysis) if play else None
-    subject = Subject(outcome.report, project, outcome.details, outcome.diagnostics, inset)
+    subject = FormInput(outcome.report, project, outcome.details, outcome.diagnostics, inset)
     others = (bindings, hazards, verification, analysis, lock, waivers, signers)
     inputs = filter(None, (*others, *ajpf_results))
     read = [evidence, *files, *companions(files), *inputs, *outcome.details.logs]
@@ -232,7 +232,9 @@ def _outputs(
     return [(FORMS[output_format or "html"], output or "-"), *chosen]
 
 
-def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequence[str]) -> None:
+def _deliver(
+    outputs: Sequence[tuple[Form, str]], subject: FormInput, inputs: Sequence[str]
+) -> None:
     """Write each format to its path."""
     paths: dict[Path, str | Iterable[str]] = {}
     for report_format, path in outputs:
@@ -242,7 +244,7 @@ def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequ
     write_outputs(paths, inputs)
 
 
-def _status(whole: Report) -> int:
+def _status(whole: ReportView) -> int:
     from fretc.audit.evidence.verdicts import BROKEN, RETIRED, WAIVED
     from fretc.report.sections.proofs import is_refuted
 

@@ -102,7 +102,7 @@ def lock(
     """
     from compiler.files.templating import to_json
     from fretc.traceability.lock import (
-        Acceptance,
+        AcceptedVerdicts,
         Lock,
         accepted,
         outdated_results,
@@ -139,7 +139,7 @@ def lock(
     reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in subjects}
     signatures = _signatures(where, reviews, subjects, key) if key is not None else {}
     write_outputs({Path(where): text(Lock(reviews)), **signatures})
-    counts = Acceptance.of(subjects, refuted)
+    counts = AcceptedVerdicts.of(subjects, refuted)
     if output_format == "json":
         click.echo(to_json({**counts.as_record, "left_out": sorted(removals, key=natural)}))
         return

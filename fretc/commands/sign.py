@@ -30,7 +30,7 @@ from fretish.reading.natural_order import natural
 
 if TYPE_CHECKING:
     from fretc.attestation.keys import PrivateKey
-    from fretc.attestation.statement import Statement, Subject
+    from fretc.attestation.statement import SignedItem, Statement
     from fretc.audit.evidence.result_summaries import EvidenceSource
     from fretc.traceability.lock import Review
     from fretc.traceability.waivers import Waiver
@@ -46,7 +46,7 @@ class Signable:
 
     path: str
     statement: Statement
-    current: frozenset[Subject]
+    current: frozenset[SignedItem]
     """All subjects in the file that anybody can sign."""
     lines: tuple[str, ...]
 
@@ -292,13 +292,13 @@ def _analyzed(path: str) -> Signable:
 
 
 def _summary_of_proofs(proofs: Proofs) -> Iterator[str]:
-    from compiler.logic.claims import Result
+    from compiler.logic.claims import ClaimResult
 
     counts = Counter(proof.result for proof in proofs.proofs)
     totals = ", ".join(f"{count} {result}" for result, count in sorted(counts.items()))
     yield f"proofs {proofs.file}: {totals or 'none'}"
     for proof in proofs.proofs:
-        if proof.result is Result.COUNTEREXAMPLE:
+        if proof.result is ClaimResult.COUNTEREXAMPLE:
             yield f"  {proof.requirement}, {proof.layer}: a counterexample to: {proof.claim}"
 
 

@@ -10,7 +10,14 @@ from typing import Any, NoReturn
 import click
 
 from fretc.audit.evidence.verdicts import VERDICTS
-from fretc.audit.outputs.summary import COUNTED, MOST, Answer, Summary, run_query, summarize
+from fretc.audit.outputs.summary import (
+    COUNTED,
+    MOST,
+    QueryResult,
+    TableSummary,
+    run_query,
+    summarize,
+)
 from fretc.audit.outputs.table import read
 from fretc.terminal.output import (
     EXIT_INCONCLUSIVE,
@@ -59,7 +66,7 @@ def _plain(value: object) -> object:
             return value
 
 
-def _text(summary: Summary) -> str:
+def _text(summary: TableSummary) -> str:
     whole = summary.whole
     damaged = f", {count_of(whole['damaged'], 'damaged run')}" if whole["damaged"] else ""
     lines = [
@@ -77,7 +84,7 @@ def _text(summary: Summary) -> str:
     return "".join(f"{line}\n" for line in lines)
 
 
-def _verdicts(summary: Summary) -> tuple[list[str], list[list[str]]]:
+def _verdicts(summary: TableSummary) -> tuple[list[str], list[list[str]]]:
     counted = (f"{VERDICTS[word].sign.glyph} {word}" for word in COUNTED.values())
     head = ["requirement", "runs", *counted, "violations"]
     rows = [
@@ -100,7 +107,7 @@ def _worst(failed: Sequence[Mapping[str, Any]]) -> tuple[list[str], list[list[st
     return head, rows
 
 
-def _slowest(summary: Summary) -> tuple[list[str], list[list[str]]]:
+def _slowest(summary: TableSummary) -> tuple[list[str], list[list[str]]]:
     head = ["requirement", "longest", "median", "run"]
     rows = [
         [
@@ -114,7 +121,7 @@ def _slowest(summary: Summary) -> tuple[list[str], list[list[str]]]:
     return head, rows
 
 
-def _listed(answer: Answer) -> str:
+def _listed(answer: QueryResult) -> str:
     """Lines of a query result: its columns, then its rows."""
     rows = [["" if value is None else str(value) for value in row] for row in answer.rows]
     return "".join(f"{line}\n" for line in _aligned(list(answer.columns), rows))

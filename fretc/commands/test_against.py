@@ -32,7 +32,7 @@ from fretc.terminal.output import (
 from fretc.terminal.progress import print_activity
 from fretc.testing.conformance.conformance_run import ConformanceRun
 from fretc.testing.conformance.findings import Conformance
-from fretc.testing.conformance.program import Program, ProgramError
+from fretc.testing.conformance.program import ProgramError, ProgramRun
 from fretc.testing.conformance.text_output import lines
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -72,7 +72,7 @@ def test_program(checked: RequirementSet, options: ProgramOptions, protected: It
         oracle = campaign.oracle
         try:
             campaign.run(
-                lambda: Program(words, oracle.inputs, oracle.outputs, options.line_time),
+                lambda: ProgramRun(words, oracle.inputs, oracle.outputs, options.line_time),
                 print_activity,
             )
         except ProgramError as error:

@@ -29,7 +29,7 @@ from fretc.terminal.progress import print_activity
 from fretc.testing.assembly import jobs
 from fretc.testing.assembly import suite as suite_of
 from fretc.testing.exports.files import SuiteFormat, files
-from fretc.testing.exports.pytest_file import Language
+from fretc.testing.exports.pytest_file import MonitorLanguage
 from fretc.testing.exports.saved import WrongError, saved
 from fretc.testing.reader import read
 from fretc.testing.requirement_model import demands
@@ -124,7 +124,9 @@ def _files(
 ) -> dict[Path, str]:
     """The files of the tests; tests without a file are reported."""
     emitted = str(options.emitted)
-    chosen = [each for each in Language if each in options.languages] or [Language.PYTHON]
+    chosen = [each for each in MonitorLanguage if each in options.languages] or [
+        MonitorLanguage.PYTHON
+    ]
     artifacts, left = files(suite, requirements, SuiteFormat(emitted), chosen)
     for why in dict.fromkeys(left.values()):
         names = [name for name in left if left[name] == why]

@@ -11,8 +11,8 @@ from fretc.audit.selection.choice import in_words
 from fretc.report.model import phrases
 from fretc.terminal.output import Piece
 from fretc.terminal.screen import Screen, fitted, padded
-from fretc.trends.changes import Change, RoundOutcome
-from fretc.trends.comparisons import Finding
+from fretc.trends.changes import RoundOutcome, VerdictChange
+from fretc.trends.comparisons import ComparisonFinding
 from fretc.trends.trends import Group, Item, Trends, arrived, gone, not_selected
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.rendering import visible
@@ -31,18 +31,18 @@ class _Section:
     """One kind of change."""
 
     title: str
-    kinds: tuple[Change, ...]
+    kinds: tuple[VerdictChange, ...]
     sign: StatusSymbol
     most: int
     """Maximum number of lines."""
 
 
 _SECTIONS = (
-    _Section("newly violated", (Change.NEW,), signs.BAD, 8),
-    _Section("violated, and never judged before", (Change.FIRST_VIOLATED,), signs.BAD, 8),
-    _Section("still violated", (Change.STILL,), signs.BAD, 6),
-    _Section("known before, open now", (Change.LOST,), signs.UNKNOWN, 5),
-    _Section("fixed", (Change.FIXED,), signs.GOOD, 4),
+    _Section("newly violated", (VerdictChange.NEW,), signs.BAD, 8),
+    _Section("violated, and never judged before", (VerdictChange.FIRST_VIOLATED,), signs.BAD, 8),
+    _Section("still violated", (VerdictChange.STILL,), signs.BAD, 6),
+    _Section("known before, open now", (VerdictChange.LOST,), signs.UNKNOWN, 5),
+    _Section("fixed", (VerdictChange.FIXED,), signs.GOOD, 4),
 )
 
 
@@ -166,7 +166,13 @@ def _words(item: Item) -> str:
 
 def _flaky(trends: Trends, screen: Screen) -> Iterator[Line]:
     """Flaky requirements that no other section lists."""
-    listed = {Change.NEW, Change.FIRST_VIOLATED, Change.STILL, Change.LOST, Change.FIXED}
+    listed = {
+        VerdictChange.NEW,
+        VerdictChange.FIRST_VIOLATED,
+        VerdictChange.STILL,
+        VerdictChange.LOST,
+        VerdictChange.FIXED,
+    }
     items = [item for item in trends.items if item.flaky and item.change not in listed]
     if not items:
         return
@@ -190,7 +196,7 @@ def _groups(groups: Sequence[Group], sign: StatusSymbol, title: str) -> Iterator
 
 
 def _regressions(trends: Trends, screen: Screen) -> Iterator[Line]:
-    found = trends.with_finding(Finding.REGRESSED)
+    found = trends.with_finding(ComparisonFinding.REGRESSED)
     if not found:
         return
     yield _BLANK
@@ -208,16 +214,17 @@ def _regressions(trends: Trends, screen: Screen) -> Iterator[Line]:
 
 def _rest(trends: Trends) -> Iterator[Line]:
     yield _BLANK
-    steady, never = len(trends.of(Change.STEADY)), len(trends.of(Change.NEVER_SHOWN))
+    steady, never = len(trends.of(VerdictChange.STEADY)), len(trends.of(VerdictChange.NEVER_SHOWN))
     flaky = sum(item.flaky for item in trends.items)
     yield ((f"{steady} shown as before, {never} never shown; {flaky} flaky in all", None),)
-    chance = len(trends.with_finding(Finding.CHANCE))
-    few = len(trends.with_finding(Finding.TOO_FEW))
+    chance = len(trends.with_finding(ComparisonFinding.CHANCE))
+    few = len(trends.with_finding(ComparisonFinding.TOO_FEW))
     compared = f"{trends.compared.after} against {trends.compared.before}"
     yield (
         (
-            f"latencies and margins, {compared}: {len(trends.with_finding(Finding.REGRESSED))} "
-            f"regressed, {chance} no worse than chance, {few} with too few runs to tell",
+            f"latencies and margins, {compared}: "
+            f"{len(trends.with_finding(ComparisonFinding.REGRESSED))} regressed, "
+            f"{chance} no worse than chance, {few} with too few runs to tell",
             None,
         ),
     )

@@ -13,7 +13,7 @@ import click
 
 from compiler.files.build_id import __version__
 from compiler.files.records import plain
-from compiler.logic.claims import PROVERS, SCHEMA, Document, Layer, Result
+from compiler.logic.claims import PROVERS, SCHEMA, ClaimResult, Layer, VerificationDocument
 from fretc.commands.opening import input_files, print_excluded, project_of
 from fretc.terminal.group import CommandWithHeadings
 from fretc.terminal.options import (
@@ -158,7 +158,7 @@ def verify(
 ) -> None:
     """The command; its help is `_HELP`."""
     from fretc.verification.ajpf_results import default_paths
-    from fretc.verification.engines.sandbox import Limits
+    from fretc.verification.engines.sandbox import CallLimits
     from fretc.verification.layers.request import Request
     from fretc.verification.text_output import lines
     from fretc.verification.verify import missing_prover, refusals
@@ -173,7 +173,7 @@ def verify(
     results = ajpf or (default_paths() if Layer.AJPF in layer_names else ())
     request = Request(
         layers=layer_names,
-        limits=Limits(seconds=limit),
+        limits=CallLimits(seconds=limit),
         demanded=demanded,
         monitor=(text := _read(monitor_file)),
         header=(header := _header(text, layer_names)),
@@ -314,7 +314,7 @@ def _print_and_write(
     """
     from compiler.files.templating import to_json
 
-    document = f"{to_json(plain(Document(SCHEMA, __version__, tuple(proofs))))}\n"
+    document = f"{to_json(plain(VerificationDocument(SCHEMA, __version__, tuple(proofs))))}\n"
     files: dict[Path, str | bytes] = {}
     if text is None:
         click.echo(document, nl=False)
@@ -355,8 +355,8 @@ def _status(proofs: Sequence[Proof]) -> int:
     """
     from fretc.verification.loop.closed_loop import RELEASED
 
-    refuted = (proof.claim for proof in proofs if proof.result is Result.COUNTEREXAMPLE)
+    refuted = (proof.claim for proof in proofs if proof.result is ClaimResult.COUNTEREXAMPLE)
     if any(claim != RELEASED for claim in refuted):
         return EXIT_VIOLATION
-    fine = (Result.PROVED, Result.NOT_APPLICABLE)
+    fine = (ClaimResult.PROVED, ClaimResult.NOT_APPLICABLE)
     return EXIT_OK if all(proof.result in fine for proof in proofs) else EXIT_INCONCLUSIVE

@@ -51,9 +51,9 @@ if TYPE_CHECKING:
     from fretc.analysis.evidence import AnalyzedSet
     from fretc.attestation.signatures import SignatureBook
     from fretc.audit.evidence.reader import EvidenceFile
-    from fretc.audit.evidence.schema import Document
+    from fretc.audit.evidence.schema import EvidenceDocument
     from fretc.audit.plan import Plan
-    from fretc.reproduction.completeness import Scope
+    from fretc.reproduction.completeness import ComparisonScope
     from fretc.reproduction.manifest import Manifest
     from fretc.reproduction.outcome import Recheck
     from fretc.traceability.lock import Lock
@@ -183,13 +183,13 @@ def verify_evidence(
     raise SystemExit(_status(results, same, scope))
 
 
-def _status(results: Sequence[Recheck], same: bool | None, scope: Scope) -> int:
-    from fretc.reproduction.outcome import Finding
+def _status(results: Sequence[Recheck], same: bool | None, scope: ComparisonScope) -> int:
+    from fretc.reproduction.outcome import ItemOutcome
 
     kinds = {result.finding for result in results}
-    if Finding.DIFFERS in kinds or same is False:
+    if ItemOutcome.DIFFERS in kinds or same is False:
         return EXIT_VIOLATION
-    return EXIT_INCONCLUSIVE if Finding.UNKNOWN in kinds or scope.part else EXIT_OK
+    return EXIT_INCONCLUSIVE if ItemOutcome.UNKNOWN in kinds or scope.part else EXIT_OK
 
 
 def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tuple[Project, Plan]:
@@ -232,18 +232,18 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
 # What it is compared with ------------------------------------------------------------------------
 
 
-def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
-    from fretc.reproduction.completeness import Scope
+def _scope(plan: Plan, only: str | None, requirements: str) -> ComparisonScope:
+    from fretc.reproduction.completeness import ComparisonScope
 
     claims = tuple(each.id for each in plan.named)
     if only is None:
-        return Scope(claims, _lock(requirements))
+        return ComparisonScope(claims, _lock(requirements))
     ids = tuple(dict.fromkeys(name.strip() for name in only.split(",")))
     for name in ids:
         if name not in claims:
             fix = did_you_mean(name, claims, f"there are {', '.join(claims)}")
             fail(diagnostic("requirement_not_in_force", name=name, help=fix))
-    return Scope(ids, _lock(requirements), part=True)
+    return ComparisonScope(ids, _lock(requirements), part=True)
 
 
 def _lock(requirements: str) -> Lock | None:
@@ -265,7 +265,7 @@ def _manifest(path: str | None) -> Manifest | None:
     return manifest
 
 
-def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
+def _against(scope: ComparisonScope, requirements: str, manifest: str | None) -> str:
     """The extent of the check in words, so that nothing unchecked seems confirmed."""
     count = len(scope.claimed)
     whole = f"{count} requirement{'' if count == 1 else 's'} of `{requirements}`"
@@ -278,7 +278,7 @@ def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
 
 def _unmet(
     evidence: EvidenceFile,
-    scope: Scope,
+    scope: ComparisonScope,
     requirements: str,
     signed_by: str | None,
     others: Mapping[str, str | None],
@@ -317,10 +317,10 @@ def _signatures(files: Sequence[str], signers: str | None) -> SignatureBook:
 
 
 def _rechecked(
-    whole: Document,
+    whole: EvidenceDocument,
     plan: Plan,
     places: dict[str, str],
-    scope: Scope,
+    scope: ComparisonScope,
     manifest: Manifest | None,
     jobs: int,
 ) -> tuple[Recheck, ...]:
@@ -331,11 +331,11 @@ def _rechecked(
 
 
 def _reproved(
-    project: Project, proofs: Proofs | None, scope: Scope, limit: int, *, skip: bool
+    project: Project, proofs: Proofs | None, scope: ComparisonScope, limit: int, *, skip: bool
 ) -> Sequence[Recheck]:
     from fretc.reproduction.outcome import PROOFS, unknown
     from fretc.reproduction.proofs import prove_again, unproved_plans
-    from fretc.verification.engines.sandbox import Limits
+    from fretc.verification.engines.sandbox import CallLimits
 
     missing = tuple(unproved_plans(project, proofs.proofs if proofs else (), scope.claimed))
     if proofs is None:
@@ -343,16 +343,16 @@ def _reproved(
     if skip:
         return (unknown(PROOFS, "", "the proofs were not repeated: `--no-proofs`"), *missing)
     results = or_fail(
-        prove_again(project, proofs, Limits(seconds=limit), scope.claimed, print_activity)
+        prove_again(project, proofs, CallLimits(seconds=limit), scope.claimed, print_activity)
     )
     return (*results, *missing)
 
 
 def _asked_again(
-    project: Project, known: AnalyzedSet, scope: Scope, *, skip: bool
+    project: Project, known: AnalyzedSet, scope: ComparisonScope, *, skip: bool
 ) -> Sequence[Recheck]:
     """The repeated analysis of the requirement set, compared with the stored one."""
-    from fretc.analysis.analysis import Options
+    from fretc.analysis.analysis import AnalysisOptions
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.assumptions import assumptions
     from fretc.analysis.evidence import changes
@@ -374,7 +374,7 @@ def _asked_again(
         fail(*remarks)
     if isinstance(chosen, tuple):
         fail(*chosen)
-    now, stopped = asked(requirements, assumed, chosen, Options(as_fret=document.as_fret))
+    now, stopped = asked(requirements, assumed, chosen, AnalysisOptions(as_fret=document.as_fret))
     if stopped:
         raise SystemExit(EXIT_INTERRUPTED)
     old = [differs(TOGETHER, "", why) for why in changes(document, requirements, assumed)]
@@ -414,7 +414,7 @@ def _report(
 
 
 def _print(results: Sequence[Recheck], same: bool | None, against: str) -> None:
-    from fretc.reproduction.outcome import SIGNS, Finding
+    from fretc.reproduction.outcome import SIGNS, ItemOutcome
 
     lines: list[tuple[str, str | None]] = []
     width = max((len(result.requirement) for result in results), default=0)
@@ -427,7 +427,7 @@ def _print(results: Sequence[Recheck], same: bool | None, against: str) -> None:
         text = ": ".join(filter(None, (one.finding, one.claim, "; ".join(one.reasons))))
         lines.append((f"  {sign.glyph} {one.requirement:<{width}}  {text}", sign.colour))
     if same is not None:
-        sign = SIGNS[Finding.STANDS if same else Finding.DIFFERS]
+        sign = SIGNS[ItemOutcome.STANDS if same else ItemOutcome.DIFFERS]
         text = "the same, byte for byte" if same else "the report made now is different"
         lines.append((f"{sign.glyph} report  {text}", sign.colour))
     totals = ", ".join(f"{finding} {count}" for finding, count in _counts(results, same).items())
@@ -437,15 +437,17 @@ def _print(results: Sequence[Recheck], same: bool | None, against: str) -> None:
 
 def _counts(results: Sequence[Recheck], same: bool | None) -> dict[str, int]:
     """Number of each finding, including the report."""
-    from fretc.reproduction.outcome import Finding, counts
+    from fretc.reproduction.outcome import ItemOutcome, counts
 
     totals = {str(finding): count for finding, count in counts(results).items()}
     if same is not None:
-        totals[Finding.STANDS if same else Finding.DIFFERS] += 1
+        totals[ItemOutcome.STANDS if same else ItemOutcome.DIFFERS] += 1
     return totals
 
 
-def _print_json(results: Sequence[Recheck], same: bool | None, scope: Scope, against: str) -> None:
+def _print_json(
+    results: Sequence[Recheck], same: bool | None, scope: ComparisonScope, against: str
+) -> None:
     from dataclasses import asdict
 
     from compiler.files.templating import to_json

@@ -13,8 +13,8 @@ from enum import StrEnum
 
 from compiler.files.records import UnsetType
 from fretc.audit.evidence.result_summaries import EvidenceSource
-from fretc.audit.evidence.schema import Moment, Requirement, Situations
-from fretc.audit.evidence.schema import Situation as Named
+from fretc.audit.evidence.schema import Moment, RequirementRecord, Situations
+from fretc.audit.evidence.schema import SituationRecord as Named
 from fretc.coverage.least_runs import LeastRuns, least_runs
 
 
@@ -125,7 +125,7 @@ def of_requirements(
 class _Ledger:
     """Accumulates the coverage of one requirement while results are read."""
 
-    def __init__(self, requirement: Requirement) -> None:
+    def __init__(self, requirement: RequirementRecord) -> None:
         self._id, self._fingerprint = requirement.id, requirement.sha256
         self._situations = requirement.situations or ()
         self._seen: dict[str, dict[int, Moment]] = {

@@ -60,7 +60,7 @@ class MutationJob:
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class MutantDifference:
     """Different results of a requirement and of a mutant on one run."""
 
     own: str
@@ -77,7 +77,7 @@ class RunSurvey:
 
     known: frozenset[str]
     """The requirements on which the run has a verdict."""
-    noticed: Mapping[tuple[str, str], Difference]
+    noticed: Mapping[tuple[str, str], MutantDifference]
     """(requirement, mutant) → the difference on this run."""
 
 
@@ -153,7 +153,7 @@ def of_run(asked: MutationJob, log: str) -> RunSurvey | Diagnostic:
     truths = trace(declarations, recording, names)
     end = Verdict(declarations.clock.end)
     known: set[str] = set()
-    noticed: dict[tuple[str, str], Difference] = {}
+    noticed: dict[tuple[str, str], MutantDifference] = {}
     for batch in asked.batches:
         own, *others = judgements(batch.monitor, truths, end, intact=recording.intact)
         if own.verdict != kernel.NO_DATA:
@@ -184,7 +184,7 @@ def judgements(
     return judge(monitor, columns, cut, ticks, intact=intact, end=end)
 
 
-def difference(own: Judgement, other: Judgement) -> Difference | None:
+def difference(own: Judgement, other: Judgement) -> MutantDifference | None:
     """The certain difference between the judgements of two requirements, or None.
 
     Args:
@@ -194,7 +194,7 @@ def difference(own: Judgement, other: Judgement) -> Difference | None:
     ticks = [*_only_in(own.outcome, other.outcome), *_only_in(other.outcome, own.outcome)]
     known = kernel.NO_DATA not in (own.verdict, other.verdict)
     if ticks or (known and own.verdict != other.verdict):
-        return Difference(own.verdict, other.verdict, min(ticks, default=None))
+        return MutantDifference(own.verdict, other.verdict, min(ticks, default=None))
     return None
 
 
@@ -221,7 +221,7 @@ class MutationResult:
     batches: tuple[MutantBatch, ...]
     known: frozenset[str]
     """The requirements on which some run has a verdict."""
-    noticed: Mapping[tuple[str, str], tuple[int, Difference]]
+    noticed: Mapping[tuple[str, str], tuple[int, MutantDifference]]
     """(requirement, mutant) → index of the first run that notices it, and the difference."""
     diagnostics: tuple[Diagnostic, ...]
     """Diagnostics about logs that could not be read."""
@@ -269,7 +269,7 @@ def survey(
         tell: called with each log when it is done.
     """
     known: set[str] = set()
-    first: dict[tuple[str, str], tuple[int, Difference]] = {}
+    first: dict[tuple[str, str], tuple[int, MutantDifference]] = {}
     unread: dict[int, Diagnostic] = {}
     for place, one in _each_run(asked, logs, jobs):
         tell(logs[place])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from fretc.coverage.mutation import Difference, MutantBatch, MutationResult
+from fretc.coverage.mutation import MutantBatch, MutantDifference, MutationResult
 from fretc.coverage.mutation_record import written
 from fretish.diagnostics import status_symbols as signs
 
@@ -54,7 +54,7 @@ def _requirement(
             yield text, signs.UNKNOWN.colour
 
 
-def _how(found: tuple[int, Difference], runs: tuple[str, ...]) -> str:
+def _how(found: tuple[int, MutantDifference], runs: tuple[str, ...]) -> str:
     place, difference = found
     at = "" if difference.tick is None else f", first at tick {difference.tick}"
     return f"{difference.other}, and the requirement {difference.own}, in {runs[place]}{at}"

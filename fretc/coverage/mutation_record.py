@@ -10,14 +10,14 @@ from compiler.files.records import Count, Name, Record, about, json_schema, plai
 from compiler.files.templating import to_json
 from compiler.situations.mutants import Mutant
 from fretc.audit.evidence.schema import Verdict
-from fretc.coverage.mutation import Difference, MutantBatch, MutationResult
+from fretc.coverage.mutation import MutantBatch, MutantDifference, MutationResult
 from fretish.printer import sentence
 
 SCHEMA: Final = "fretc-mutation-1"
 Outcome = Literal["noticed", "not noticed", "equivalent", "not judged"]
 
 
-class Notice(Record, frozen=True):
+class MutantDetection(Record, frozen=True):
     """The first run that notices a mutant, and the difference."""
 
     run: Annotated[Count, about("index of the run, from 0")]
@@ -31,7 +31,7 @@ class Notice(Record, frozen=True):
     ]
 
 
-class Judged(Record, frozen=True):
+class RecordedMutant(Record, frozen=True):
     """A mutant: a requirement with one small change."""
 
     key: Name
@@ -43,25 +43,25 @@ class Judged(Record, frozen=True):
             "equivalent: proved to have the same verdict on every run, so that no run can notice it"
         ),
     ]
-    notice: Notice | None
+    notice: MutantDetection | None
     why: Annotated[str, about("why the mutant was not judged; empty if it was judged")] = ""
 
 
-class Requirement(Record, frozen=True):
+class RequirementMutants(Record, frozen=True):
     """A requirement and its mutants."""
 
     id: Name
     known: Annotated[bool, about("whether some run has a verdict on the requirement")]
-    mutants: tuple[Judged, ...]
+    mutants: tuple[RecordedMutant, ...]
 
 
-class Document(Record, frozen=True):
+class MutationDocument(Record, frozen=True):
     """The JSON document."""
 
     schema: Literal["fretc-mutation-1"]
     fretc: Annotated[str, about("version of the tool")]
     runs: Annotated[tuple[str, ...], about("the logs that were read")]
-    requirements: tuple[Requirement, ...]
+    requirements: tuple[RequirementMutants, ...]
 
 
 def text(survey: MutationResult) -> str:
@@ -69,31 +69,31 @@ def text(survey: MutationResult) -> str:
     return f"{to_json(plain(document(survey)))}\n"
 
 
-def document(survey: MutationResult) -> Document:
+def document(survey: MutationResult) -> MutationDocument:
     """The JSON document of a result."""
-    return Document(
+    return MutationDocument(
         schema=SCHEMA,
         fretc=__version__,
         runs=survey.runs,
         requirements=tuple(
-            Requirement(batch.id, batch.id in survey.known, tuple(_mutants(batch, survey)))
+            RequirementMutants(batch.id, batch.id in survey.known, tuple(_mutants(batch, survey)))
             for batch in survey.batches
         ),
     )
 
 
-def _mutants(batches: MutantBatch, survey: MutationResult) -> Iterator[Judged]:
+def _mutants(batches: MutantBatch, survey: MutationResult) -> Iterator[RecordedMutant]:
     for mutant in batches.mutants:
         key = batches.id, mutant.key
         found = survey.noticed.get(key)
         outcome: Outcome = "equivalent" if key in survey.equivalent else "not noticed"
         outcome = outcome if found is None else "noticed"
         notice = None if found is None else _notice(*found)
-        yield Judged(mutant.key, mutant.words, written(mutant), outcome, notice)
+        yield RecordedMutant(mutant.key, mutant.words, written(mutant), outcome, notice)
     for mutant, why in batches.refused:
         same = (batches.id, mutant.key) in survey.equivalent
         outcome = "equivalent" if same else "not judged"
-        yield Judged(mutant.key, mutant.words, written(mutant), outcome, None, why)
+        yield RecordedMutant(mutant.key, mutant.words, written(mutant), outcome, None, why)
 
 
 def written(mutant: Mutant) -> str:
@@ -101,14 +101,16 @@ def written(mutant: Mutant) -> str:
     return sentence(mutant.requirement.written)
 
 
-def _notice(run: int, found: Difference) -> Notice:
-    return Notice(run, cast("Verdict", found.own), cast("Verdict", found.other), found.tick)
+def _notice(run: int, found: MutantDifference) -> MutantDetection:
+    return MutantDetection(
+        run, cast("Verdict", found.own), cast("Verdict", found.other), found.tick
+    )
 
 
 def schema() -> dict[str, Any]:
     """The JSON Schema of the document."""
     return json_schema(
-        Document,
+        MutationDocument,
         SCHEMA,
         "Mutants of requirements that recorded runs notice, as `fretc mutate --format json` "
         "prints it",

@@ -25,7 +25,7 @@ class Sighting(Record, frozen=True):
     seconds: Seconds
 
 
-class Situation(Record, frozen=True):
+class CoveredSituation(Record, frozen=True):
     """A way in which a run can meet a requirement."""
 
     key: Name
@@ -49,24 +49,26 @@ class Situation(Record, frozen=True):
     ]
 
 
-class Requirement(Record, frozen=True):
+class CoveredRequirement(Record, frozen=True):
     """A requirement of the audit."""
 
     id: Name
-    situations: Annotated[tuple[Situation, ...], about("empty: the situations were not measured")]
+    situations: Annotated[
+        tuple[CoveredSituation, ...], about("empty: the situations were not measured")
+    ]
     measured: Annotated[tuple[Count, ...], about("indices of the runs that were measured")]
     unmeasured: Annotated[
         tuple[Count, ...], about("indices of the runs that were not, or could not be, measured")
     ]
 
 
-class Document(Record, frozen=True):
+class CoverageDocument(Record, frozen=True):
     """The JSON document."""
 
     schema: Literal["fretc-coverage-1"]
     fretc: Annotated[str, about("version of the tool")]
     runs: Annotated[tuple[str, ...], about("the logs, as the user named them")]
-    requirements: tuple[Requirement, ...]
+    requirements: tuple[CoveredRequirement, ...]
     least_runs: Annotated[
         tuple[Count, ...],
         about("indices of runs that together show every situation that all runs show"),
@@ -81,14 +83,14 @@ def text(covered: c.Coverage, known: Directions = MappingProxyType({})) -> str:
     return f"{to_json(plain(document(covered, known)))}\n"
 
 
-def document(covered: c.Coverage, known: Directions) -> Document:
+def document(covered: c.Coverage, known: Directions) -> CoverageDocument:
     """The JSON document of a coverage, with directions to unseen situations."""
-    return Document(
+    return CoverageDocument(
         schema=SCHEMA,
         fretc=__version__,
         runs=covered.runs,
         requirements=tuple(
-            Requirement(
+            CoveredRequirement(
                 requirement.id,
                 tuple(
                     _situation(requirement.id, situation, known)
@@ -104,11 +106,11 @@ def document(covered: c.Coverage, known: Directions) -> Document:
     )
 
 
-def _situation(id: str, one: c.RecordedSituation, known: Directions) -> Situation:
+def _situation(id: str, one: c.RecordedSituation, known: Directions) -> CoveredSituation:
     seen, perhaps = _sightings(one.seen), _sightings(one.perhaps)
     found = None if one.standing is c.CoverageStatus.SEEN else known.get((id, one.key))
     direction = None if found is None else found.text
-    return Situation(one.key, one.words, one.standing.value, seen, perhaps, direction)
+    return CoveredSituation(one.key, one.words, one.standing.value, seen, perhaps, direction)
 
 
 def _sightings(moments: Mapping[int, Moment]) -> tuple[Sighting, ...]:
@@ -118,7 +120,7 @@ def _sightings(moments: Mapping[int, Moment]) -> tuple[Sighting, ...]:
 def schema() -> dict[str, Any]:
     """The JSON Schema of coverage."""
     return json_schema(
-        Document,
+        CoverageDocument,
         SCHEMA,
         "What recorded runs have exercised, as `fretc coverage --format json` prints it",
         "Seconds count from the first tick of a run, ticks from 0; `ns` is the time of the log.",

@@ -13,8 +13,8 @@ from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Gap
 from fretc.logs.storage import bags
 from fretc.logs.storage.bags import NOWHERE
-from fretc.logs.storage.inputs import Input
-from fretc.logs.storage.parts import Part
+from fretc.logs.storage.inputs import OpenLog
+from fretc.logs.storage.parts import FileContents
 from fretc.logs.storage.splits import unclosed_backup
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -23,8 +23,8 @@ from fretish.reading.limits import extend_budget
 
 
 def part(
-    log: Input, sink: Sink, integrity: Integrity, place: Span, wanted: Collection[str] = ()
-) -> Part | Diagnostic:
+    log: OpenLog, sink: Sink, integrity: Integrity, place: Span, wanted: Collection[str] = ()
+) -> FileContents | Diagnostic:
     """The messages of one file, or the diagnostic that says why the file cannot be read.
 
     Args:
@@ -42,15 +42,15 @@ def part(
     return diagnostic("changed_log", place) if log.changed() else contents
 
 
-def only_grows(log: Input) -> bool:
+def only_grows(log: OpenLog) -> bool:
     """Whether the file is of a kind that is written from its beginning to its end."""
     log.stream.seek(0)
     return log.stream.read(len(MAGIC)) == MAGIC
 
 
 def _read(
-    log: Input, sink: Sink, integrity: Integrity, place: Span, wanted: Collection[str]
-) -> Part | Diagnostic:
+    log: OpenLog, sink: Sink, integrity: Integrity, place: Span, wanted: Collection[str]
+) -> FileContents | Diagnostic:
     log.stream.seek(0)
     start = log.stream.read(_BEGINNING)
     if not start:
@@ -64,20 +64,20 @@ def _read(
 
 
 def _bag(
-    log: Input,
+    log: OpenLog,
     start: bytes,
     sink: Sink,
     integrity: Integrity,
     place: Span,
     wanted: Collection[str],
-) -> Part | Diagnostic:
+) -> FileContents | Diagnostic:
     if log.file is None or log.same is None:
         return diagnostic("bag_of_no_file", place)
     contents = bags.read(log.file, log.same, start, sink, place)
     if isinstance(contents, Diagnostic):
         return contents
     damages = (*contents.damages, *_reindexed(log.file, contents.span))
-    return Part(log.sha256(), log.size, contents.span, damages, contents.notes)
+    return FileContents(log.sha256(), log.size, contents.span, damages, contents.notes)
 
 
 def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None]]:
@@ -92,27 +92,31 @@ def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None
 
 
 def _mcap(
-    log: Input,
+    log: OpenLog,
     start: bytes,
     sink: Sink,
     integrity: Integrity,
     place: Span,
     wanted: Collection[str],
-) -> Part | Diagnostic:
+) -> FileContents | Diagnostic:
     held = contents(log.stream, log.size, sink, integrity, wanted)
     if held.span is not None:
         digest = log.sha256() if held.checked.hashed else held.summary_sha256
         notes = (diagnostic("without_crc", place),) if held.unprotected else ()
-        return Part(digest, log.size, held.span, held.damages, notes, held.checked, held.described)
+        return FileContents(
+            digest, log.size, held.span, held.damages, notes, held.checked, held.described
+        )
     if held.cut is not None:
         return log_diagnostics.truncated(held.cut, place)
     if held.damages:
         return diagnostic("no_whole_message", place, description=held.damages[0][0].description)
-    return Part(log.sha256(), log.size, None, ())
+    return FileContents(log.sha256(), log.size, None, ())
 
 
 _BEGINNING = 16
 """The first bytes of a file; enough to recognize every format."""
-Container = Callable[[Input, bytes, Sink, Integrity, Span, Collection[str]], Part | Diagnostic]
+Container = Callable[
+    [OpenLog, bytes, Sink, Integrity, Span, Collection[str]], FileContents | Diagnostic
+]
 """The reader of one container format; its last argument is the first bytes of the file."""
 CONTAINERS: Mapping[bytes, Container] = {MAGIC: _mcap, bags.BAG: _bag, bags.DB3: _bag}

@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretc.logs import log_diagnostics
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.payloads import Payloads, Places
 from fretc.logs.messages.decoding import Decode, constants, decoder, is_single, shape, stamp
-from fretc.logs.messages.layouts import Layout, Layouts, Location, Shape, Where
+from fretc.logs.messages.layouts import Layout, Layouts, Location, TopicType, Where
 from fretc.logs.messages.probes import trusted
 from fretc.logs.messages.vectorized import nearest, samples, siblings
 from fretc.logs.signals.enum_values import UnmappedSamples, enum_index, enum_indices, shown
@@ -126,7 +126,7 @@ class Extract:
 class Extraction:
     """The reader of one stream."""
 
-    def __init__(self, stream: Stream, signals: Sequence[Signal]) -> None:
+    def __init__(self, stream: ChannelDefinition, signals: Sequence[Signal]) -> None:
         self.signals = list(signals)
         """The readable signals; the others have a diagnostic."""
         self.diagnostics: dict[str, Diagnostic] = {}
@@ -177,7 +177,7 @@ class Extraction:
         self.signals.remove(signal)
         self.diagnostics[signal.name] = diagnostic
 
-    def _name_numbers(self, stream: Stream) -> None:
+    def _name_numbers(self, stream: ChannelDefinition) -> None:
         """Look up the number of each enumeration value in the definition of the messages."""
         for signal in tuple(self.signals):
             if not signal.values or signal.numbers:
@@ -224,7 +224,7 @@ class Extraction:
 
     # By positions
 
-    def _placed(self, shape: Shape) -> bool:
+    def _placed(self, shape: TopicType) -> bool:
         """Whether every wanted field has a position; if not, each message must be decoded."""
         names = tuple(signal.name for signal in self.signals)
         if names != self._sought:
@@ -233,7 +233,7 @@ class Extraction:
             self._layouts = Layouts(shape, self._wanted(shape)) if placed else None
         return self._layouts is not None
 
-    def _are_placed(self, shape: Shape) -> bool:
+    def _are_placed(self, shape: TopicType) -> bool:
         return all(_reads(shape, signal) for signal in self.signals) and all(
             field is not None and field.type in _SECONDS
             for field in map(shape.number, _stamp_places(shape))
@@ -260,7 +260,7 @@ class Extraction:
                     break
         return sorted(rest)
 
-    def _wanted(self, shape: Shape) -> tuple[Where, ...]:
+    def _wanted(self, shape: TopicType) -> tuple[Where, ...]:
         wanted: dict[Where, None] = {}
         for signal in self.signals:
             wanted[signal.path.fields] = None
@@ -350,7 +350,7 @@ class Extraction:
         return np.concatenate(values)
 
 
-def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
+def _shape(stream: ChannelDefinition, decode: Decode | None) -> TopicType | None:
     """The layout of the messages; None: it is not certain."""
     layout = shape(stream) if decode is not None else None
     return layout if decode and layout and trusted(layout, decode) else None
@@ -368,7 +368,7 @@ def _telling(rows: Places, payloads: Payloads) -> set[int]:
     return {max(sorted(chosen), key=lambda row: len(set(bytes(payloads.payload(row)))))}
 
 
-def _reads(shape: Shape, signal: Signal) -> bool:
+def _reads(shape: TopicType, signal: Signal) -> bool:
     """Whether the signal's fields are numbers, or arrays where its path needs arrays."""
     field, path = shape.number(signal.path.fields), signal.path
     return (
@@ -392,7 +392,7 @@ def _numbers(numbers: NDArray[np.generic]) -> Numbers:
         return numbers.astype(np.float64)
 
 
-def _stamp_places(shape: Shape) -> tuple[Where, ...]:
+def _stamp_places(shape: TopicType) -> tuple[Where, ...]:
     """The seconds and nanoseconds of `header.stamp`, if the messages have one."""
     for names in _STAMPS:
         places = tuple(("header", "stamp", name) for name in names)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.messages import Messages, Sink
-from fretc.logs.vocabulary import Vocabulary
+from fretc.logs.vocabulary import MessageTexts
 
 _MOST, _MOST_BYTES = 20, 2**20
 """The most messages of a topic, and the most bytes of them."""
@@ -16,7 +16,7 @@ class FirstMessages:
     If a vocabulary is given, it gets every message too.
     """
 
-    def __init__(self, sink: Sink, vocabulary: Vocabulary | None = None) -> None:
+    def __init__(self, sink: Sink, vocabulary: MessageTexts | None = None) -> None:
         self._sink = sink
         self._vocabulary = vocabulary
         self._examples: dict[str, list[bytes]] = {}
@@ -25,13 +25,15 @@ class FirstMessages:
         """The payloads of a topic; none if it is not in JSON."""
         return tuple(self._examples.get(topic, ()))
 
-    def declare(self, stream: Stream) -> None:
+    def declare(self, stream: ChannelDefinition) -> None:
         """A stream of the file."""
         if stream.channel.message_encoding == "json":
             self._examples.setdefault(stream.channel.topic, [])
         self._sink.declare(stream)
 
-    def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
+    def add(
+        self, stream: ChannelDefinition, log_time: int, publish_time: int, payload: memoryview
+    ) -> None:
         """One whole message."""
         examples = self._open(stream)
         if examples is not None and len(payload) <= _MOST_BYTES:
@@ -40,7 +42,7 @@ class FirstMessages:
             self._vocabulary.take(stream, payload)
         self._sink.add(stream, log_time, publish_time, payload)
 
-    def add_all(self, stream: Stream, messages: Messages) -> None:
+    def add_all(self, stream: ChannelDefinition, messages: Messages) -> None:
         """Whole messages of one stream."""
         examples = self._open(stream)
         if examples is not None:
@@ -56,11 +58,11 @@ class FirstMessages:
         """Whether the messages themselves are wanted, not only their number."""
         return self._sink.wants(topic)
 
-    def count(self, stream: Stream, count: int) -> None:
+    def count(self, stream: ChannelDefinition, count: int) -> None:
         """Count messages of a stream that is not wanted."""
         self._sink.count(stream, count)
 
-    def _open(self, stream: Stream) -> list[bytes] | None:
+    def _open(self, stream: ChannelDefinition) -> list[bytes] | None:
         """The list for further messages of a stream; None: it is full or not wanted."""
         examples = self._examples.get(stream.channel.topic)
         full = examples is None or len(examples) >= _MOST or sum(map(len, examples)) >= _MOST_BYTES

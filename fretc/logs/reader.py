@@ -27,13 +27,13 @@ from fretc.logs.signals.samples import Gap, Recording, Samples
 from fretc.logs.storage import storage_diagnostics
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder, of_all
-from fretc.logs.storage.inputs import Input, opened
+from fretc.logs.storage.inputs import OpenLog, opened
 from fretc.logs.storage.log_names import name_of
-from fretc.logs.storage.parts import Part, RenumberingSink, around, widened
+from fretc.logs.storage.parts import FileContents, RenumberingSink, around, widened
 from fretc.logs.storage.splits import ACTIVE, run_name, split
 from fretc.logs.topic_columns import Columns
 from fretc.logs.topics import clocks, never_stated, topic
-from fretc.logs.vocabulary import Vocabulary, Words
+from fretc.logs.vocabulary import MessageTexts, Words
 from fretc.logs.watch_records import watched
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.clock import Clock
@@ -131,7 +131,7 @@ def look(path: str, *, words: bool = False) -> Overview | Diagnostic:
 
 def _look(path: str, words: bool) -> Overview | Diagnostic:
     nothing = Declarations(Source("", ""), Clock(None, None), {}, {})
-    vocabulary = Vocabulary() if words else None
+    vocabulary = MessageTexts() if words else None
     log = _opened(path, lambda: Columns(nothing, ()), Integrity.FULL, vocabulary=vocabulary)
     if isinstance(log, Diagnostic):
         return log
@@ -150,7 +150,7 @@ def _look(path: str, words: bool) -> Overview | Diagnostic:
 
 
 @dataclass(frozen=True, slots=True)
-class _Run:
+class _LogContents:
     """The contents of the files of one log."""
 
     sha256: str
@@ -165,7 +165,7 @@ class _Run:
     """The wanted values of its metadata."""
 
 
-_Read = tuple[Span, _Run, Columns, FirstMessages]
+_Read = tuple[Span, _LogContents, Columns, FirstMessages]
 """A log, and the sink that received its messages."""
 
 
@@ -174,7 +174,7 @@ def _opened(
     new: Callable[[], Columns],
     integrity: Integrity,
     asked: Collection[str] = (),
-    vocabulary: Vocabulary | None = None,
+    vocabulary: MessageTexts | None = None,
 ) -> _Read | Diagnostic:
     """The log at a path: a file, standard input, a URL, or a folder of rosbag2."""
     place = Source(name_of(path), "").span()
@@ -200,11 +200,11 @@ def _opened(
 
 
 def _tried(
-    use: Callable[[Sink, Integrity, Span], _Run | Diagnostic],
+    use: Callable[[Sink, Integrity, Span], _LogContents | Diagnostic],
     place: Span,
     new: Callable[[], Columns],
     integrity: Integrity,
-    vocabulary: Vocabulary | None,
+    vocabulary: MessageTexts | None,
 ) -> _Read | Diagnostic:
     """Read a log; if it does not match its index, read it again in full."""
     columns = new()
@@ -219,8 +219,8 @@ def _tried(
 
 
 def _file(
-    path: str, log: Input, asked: Collection[str], sink: Sink, integrity: Integrity, place: Span
-) -> _Run | Diagnostic:
+    path: str, log: OpenLog, asked: Collection[str], sink: Sink, integrity: Integrity, place: Span
+) -> _LogContents | Diagnostic:
     part = containers.part(log, sink, integrity, place, asked)
     if isinstance(part, Diagnostic):
         return part
@@ -231,7 +231,9 @@ def _file(
         (*part.notes, *_alone(path, place)),
     )
     described = together([*_of_folder(path, asked), part.described])
-    return _Run(part.sha256, part.size, (part.span,), damages, notes, part.checked, described)
+    return _LogContents(
+        part.sha256, part.size, (part.span,), damages, notes, part.checked, described
+    )
 
 
 def _of_folder(path: str, asked: Collection[str]) -> Iterator[Described]:
@@ -250,8 +252,8 @@ _CUSTOM = "custom_data"
 
 
 def _beginning(
-    path: str, log: Input, asked: Collection[str], sink: Sink, integrity: Integrity, place: Span
-) -> _Run | Diagnostic:
+    path: str, log: OpenLog, asked: Collection[str], sink: Sink, integrity: Integrity, place: Span
+) -> _LogContents | Diagnostic:
     """The first bytes of a file that has grown since it was opened."""
     run = _file(path, log, asked, sink, integrity, place)
     if isinstance(run, Diagnostic):
@@ -282,7 +284,7 @@ def _folder(
     one: Sink,
     integrity: Integrity,
     place: Span,
-) -> _Run | Diagnostic:
+) -> _LogContents | Diagnostic:
     """The files of one run, in the order of its metadata."""
     sink = RenumberingSink(one)
     if isinstance(about, Diagnostic):
@@ -291,7 +293,7 @@ def _folder(
         return diagnostic("compressed_run", place, mode=about.compressed)
     paths = [os.path.join(about.path, name) for name in about.files]
     places = [Source(name_of(path), "").span() for path in paths]
-    found: list[Part | Diagnostic] = []
+    found: list[FileContents | Diagnostic] = []
     for path, file in zip(paths, places, strict=True):
         sink.next_file()
         with opened(path) as log:
@@ -300,7 +302,7 @@ def _folder(
                 if isinstance(log, Diagnostic)
                 else containers.part(log, sink, integrity, file, asked)
             )
-    parts = [part for part in found if isinstance(part, Part)]
+    parts = [part for part in found if isinstance(part, FileContents)]
     spans = [part.span for part in parts if part.span is not None]
     if not spans:
         wrong = [part for part in found if isinstance(part, Diagnostic)]
@@ -314,24 +316,26 @@ def _folder(
     hashes = {
         name: part.sha256
         for name, part in zip(about.files, found, strict=True)
-        if isinstance(part, Part)
+        if isinstance(part, FileContents)
     }
     notes = {note.message: note for part in parts for note in part.notes}
     size = sum(part.size for part in parts)
     checked = reduce(add, (part.checked for part in parts))
     custom = of_record(_CUSTOM, about.custom, asked)
     described = together([custom, *(part.described for part in parts)])
-    return _Run(of_all(hashes), size, spans, damages, tuple(notes.values()), checked, described)
+    return _LogContents(
+        of_all(hashes), size, spans, damages, tuple(notes.values()), checked, described
+    )
 
 
 def _losses(
-    about: Folder, places: Sequence[Span], found: Sequence[Part | Diagnostic]
+    about: Folder, places: Sequence[Span], found: Sequence[FileContents | Diagnostic]
 ) -> Iterator[tuple[Span, Damage, Gap | None]]:
     """The damages of all files, in their order; an unreadable file is one damage."""
-    parts = [part if isinstance(part, Part) else None for part in found]
+    parts = [part if isinstance(part, FileContents) else None for part in found]
     for i, (place, part) in enumerate(zip(places, found, strict=True)):
         before, after = around(parts, i)
-        if isinstance(part, Part):
+        if isinstance(part, FileContents):
             for damage, gap in widened(part, before, after):
                 yield place, damage, gap
         else:
@@ -348,7 +352,7 @@ def _too_long(recording: Recording, clock: Clock, place: Span) -> Diagnostic | N
 
 def _recording(
     place: Span,
-    run: _Run,
+    run: _LogContents,
     columns: Columns,
     examples: FirstMessages,
     wanted: Sequence[Signal],

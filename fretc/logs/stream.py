@@ -19,7 +19,7 @@ import numpy as np
 
 from fretc.logs import log_diagnostics
 from fretc.logs.mcap.damage import LATEST
-from fretc.logs.messages.python_messages import Message, Value, sampled
+from fretc.logs.messages.python_messages import PythonMessage, Value, sampled
 from fretc.logs.signals.enum_values import UnmappedSamples, shown
 from fretc.logs.signals.propositions import truth_values
 from fretc.logs.signals.samples import EXACT, Gap, Late, Recording, Samples
@@ -38,7 +38,7 @@ MOST_TICKS = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class Tick:
+class ClockTick:
     """One tick of the clock, with the truth value of each proposition."""
 
     time: int
@@ -46,10 +46,10 @@ class Tick:
 
 
 @dataclass(frozen=True, slots=True)
-class End:
+class StreamEnd:
     """The last ticks, and the tick that the end of the stream cuts short (None: there is none)."""
 
-    ticks: tuple[Tick, ...]
+    ticks: tuple[ClockTick, ...]
     cut: Mapping[str, Truth] | None
     until: int = 0
     """The end of the log, on the declared clock."""
@@ -81,7 +81,7 @@ class _Span:
         return place < len(ticks) and ticks[place] <= self.last
 
 
-class Stream:
+class SampleStream:
     """A stream of samples in any order, as long as none is earlier than the time passed."""
 
     def __init__(self, declarations: Declarations, propositions: Collection[str]) -> None:
@@ -146,7 +146,7 @@ class Stream:
         wrong = self._over() or self._untimely(topic, time)
         if wrong is not None:
             return wrong
-        read = Message(message)
+        read = PythonMessage(message)
         values: list[tuple[_Queue, Value]] = []
         for signal in signals:
             try:
@@ -227,7 +227,7 @@ class Stream:
             return None
         return Withdrawn(first, judged, self._propositions)
 
-    def glance(self, time: int) -> tuple[Tick, ...]:
+    def glance(self, time: int) -> tuple[ClockTick, ...]:
         """The values if there were a tick now, after those that still wait for messages.
 
         Nothing is judged. There are no values before the first tick is placed.
@@ -272,7 +272,7 @@ class Stream:
         """
         return self._ticking.waiting
 
-    def until(self, time: int) -> tuple[Tick, ...] | Diagnostic:
+    def until(self, time: int) -> tuple[ClockTick, ...] | Diagnostic:
         """Advance the time: no message before `time` arrives any more.
 
         Returns:
@@ -289,7 +289,7 @@ class Stream:
         self._remember(times)
         return ticks
 
-    def end(self) -> End | Diagnostic:
+    def end(self) -> StreamEnd | Diagnostic:
         """The remaining ticks if the log ends here: at the last message or the time passed."""
         if (over := self._over()) is not None:
             return over
@@ -301,17 +301,17 @@ class Stream:
         if self._ticking.last is None or self._ticking.last == end:
             whole = self._ticks(times, end)
             self._remember(times)
-            return End(whole, None, end)
+            return StreamEnd(whole, None, end)
         *ticks, cut = self._ticks([*times, end], end)
         self._remember(times)
-        return End(tuple(ticks), cut.truth, end)
+        return StreamEnd(tuple(ticks), cut.truth, end)
 
     def _over(self) -> Diagnostic | None:
         if not self._ended:
             return None
         return diagnostic("stream_ended")
 
-    def _ticks(self, times: Sequence[int], end: int) -> tuple[Tick, ...]:
+    def _ticks(self, times: Sequence[int], end: int) -> tuple[ClockTick, ...]:
         """The values at each of the new ticks, in a log that continues up to `end`."""
         if not times:
             return ()
@@ -331,7 +331,7 @@ class Stream:
             for name in self._propositions
         }
         return tuple(
-            Tick(time, {name: values[i] for name, values in truth.items()})
+            ClockTick(time, {name: values[i] for name, values in truth.items()})
             for i, time in enumerate(times, len(before))
         )
 

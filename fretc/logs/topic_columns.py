@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from fretc.logs import log_diagnostics
 from fretc.logs.extraction import Extract, Extraction
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.messages import FileTimes, Messages
 from fretc.logs.mcap.payloads import Payloads
 from fretc.logs.signals.enum_values import UnmappedSamples
-from fretc.logs.signals.samples import Gap, Late, Series, Times, Values
+from fretc.logs.signals.samples import Gap, Late, NumberList, Times, Values
 from fretc.logs.signals.topic_clocks import JUMP, forward_fill, late, unset
 from fretish.bindings.declarations import Declarations, Signal, short_type
 from fretish.clock import TimeSource
@@ -36,7 +36,7 @@ _ENOUGH = 1024
 class Pending:
     """Messages of one stream that wait to be decoded."""
 
-    stream: Stream
+    stream: ChannelDefinition
     logs: list[int] = field(default_factory=list)
     publishes: list[int] = field(default_factory=list)
     payloads: list[bytes] = field(default_factory=list)
@@ -56,7 +56,7 @@ class Pending:
 
 
 @dataclass(slots=True)
-class Column:
+class TopicColumn:
     """The data of one topic; `logs` are the log times, `times` those of the declared clock.
 
     Until all messages have come, `times` are the times in the messages.
@@ -71,7 +71,7 @@ class Column:
     """The wanted and readable signals of the topic."""
     logs: array[int] = field(default_factory=lambda: array("q"))
     times: array[int] = field(default_factory=lambda: array("q"))
-    values: dict[str, Series] = field(default_factory=dict)
+    values: dict[str, NumberList] = field(default_factory=dict)
     diagnostics: dict[str, Diagnostic] = field(default_factory=dict)
     """For each signal without samples, the reason."""
     foreign: dict[str, UnmappedSamples] = field(default_factory=dict)
@@ -145,9 +145,9 @@ class Columns:
             wanted: the signals to read.
             beside: further signals of topics that a wanted one reads; they get no diagnostics.
         """
-        self.topics: dict[str, Column] = {}
+        self.topics: dict[str, TopicColumn] = {}
         """Every topic of the log."""
-        self.streams: dict[str, Stream] = {}
+        self.streams: dict[str, ChannelDefinition] = {}
         """The first stream of each topic."""
         self.nearest: dict[str, float] = {}
         self.clock = declarations.clock
@@ -161,12 +161,12 @@ class Columns:
 
     # Messages
 
-    def declare(self, stream: Stream) -> None:
+    def declare(self, stream: ChannelDefinition) -> None:
         """A topic of the log, with or without messages."""
         topic, type_ = stream.channel.topic, stream.schema.name if stream.schema else ""
         self.streams.setdefault(topic, stream)
         if topic not in self.topics:
-            self.topics[topic] = Column(
+            self.topics[topic] = TopicColumn(
                 topic,
                 type_,
                 stream.channel.message_encoding,
@@ -179,7 +179,9 @@ class Columns:
             if stream.schema and declared and declared != short_type(type_):
                 column.refuse(signal, log_diagnostics.wrong_type(signal, type_))
 
-    def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
+    def add(
+        self, stream: ChannelDefinition, log_time: int, publish_time: int, payload: memoryview
+    ) -> None:
         """Add one message; messages of bound topics wait for others of their stream."""
         column = self.topics[stream.channel.topic]
         if not column.bound:
@@ -188,7 +190,7 @@ class Columns:
         payloads = [bytes(payload) if self._decodes(column) else b""]
         self._wait(column, stream, [log_time], [publish_time], payloads)
 
-    def add_all(self, stream: Stream, messages: Messages) -> None:
+    def add_all(self, stream: ChannelDefinition, messages: Messages) -> None:
         """Add messages of one topic, in their order."""
         column = self.topics[stream.channel.topic]
         logs = messages.logs.astype(np.int64)
@@ -206,18 +208,18 @@ class Columns:
         """Whether the topic is bound."""
         return topic in self._bound
 
-    def count(self, stream: Stream, count: int) -> None:
+    def count(self, stream: ChannelDefinition, count: int) -> None:
         """Count messages of a topic that is not bound."""
         self.topics[stream.channel.topic].stated += count
 
-    def _decodes(self, column: Column) -> bool:
+    def _decodes(self, column: TopicColumn) -> bool:
         """Whether messages of the topic must be decoded."""
         return bool(column.signals) or self.clock.time is TimeSource.HEADER_STAMP
 
     def _wait(
         self,
-        column: Column,
-        stream: Stream,
+        column: TopicColumn,
+        stream: ChannelDefinition,
         logs: Sequence[int],
         publishes: Sequence[int],
         payloads: Sequence[bytes],
@@ -246,7 +248,7 @@ class Columns:
         times = (column.raw()[1] for column in of_all)
         return any(((some > 0) & (some <= JUMP)).any() for some in times)
 
-    def _settle(self, column: Column) -> None:
+    def _settle(self, column: TopicColumn) -> None:
         pending, column.pending = column.pending, None
         if pending is not None:
             logs, publishes = np.array(pending.logs, np.int64), np.array(pending.publishes, "u8")
@@ -254,7 +256,12 @@ class Columns:
             self._read(column, pending.stream, logs, publishes, payloads)
 
     def _read(
-        self, column: Column, stream: Stream, logs: Times, publishes: FileTimes, payloads: Payloads
+        self,
+        column: TopicColumn,
+        stream: ChannelDefinition,
+        logs: Times,
+        publishes: FileTimes,
+        payloads: Payloads,
     ) -> None:
         """Decode messages of one stream and store their data."""
         column.types[short_type(stream.schema.name) if stream.schema else ""] = None
@@ -267,14 +274,18 @@ class Columns:
         column.times.frombytes(times[usable].tobytes())
         column.timeless.extend((~dated[usable]).tobytes())
         for signal in column.signals:
-            column.values.setdefault(signal.name, Series()).add(extract.values[signal.name][usable])
+            column.values.setdefault(signal.name, NumberList()).add(
+                extract.values[signal.name][usable]
+            )
             foreign = extract.foreign_of(signal.name, usable)
             if foreign is not None:
                 later = replace(foreign, first=before + foreign.first)
                 earlier = column.foreign.get(signal.name)
                 column.foreign[signal.name] = earlier.followed(later) if earlier else later
 
-    def _extract(self, column: Column, stream: Stream, payloads: Payloads) -> Extract:
+    def _extract(
+        self, column: TopicColumn, stream: ChannelDefinition, payloads: Payloads
+    ) -> Extract:
         """The data of the signals; a signal with a diagnostic gets no samples."""
         if not self._decodes(column):
             return Extract.empty(len(payloads), ())
@@ -293,7 +304,7 @@ class Columns:
         return extract
 
     def _times(
-        self, column: Column, extract: Extract, logs: Times, publishes: FileTimes
+        self, column: TopicColumn, extract: Extract, logs: Times, publishes: FileTimes
     ) -> tuple[Times, NDArray[np.bool_]]:
         """The times of the messages on the declared clock, and a mask of those with one."""
         every = np.ones(len(logs), bool)
@@ -410,7 +421,7 @@ class Columns:
         start = self._source.text.find(f'"{topic}"')
         return self._source.span(start, start + len(topic) + 2) if start >= 0 else None
 
-    def _oddities(self, column: Column, signal: Signal) -> list[Diagnostic]:
+    def _oddities(self, column: TopicColumn, signal: Signal) -> list[Diagnostic]:
         diagnostics, count = [], len(column.logs)
         if len(column.types) > 1 and signal.type is None:
             diagnostics.append(log_diagnostics.several_types(signal, list(column.types)))

@@ -10,10 +10,10 @@ import numpy as np
 from fretc.logs import log_diagnostics
 from fretc.logs.first_messages import FirstMessages
 from fretc.logs.messages.json_messages import message_leaves
-from fretc.logs.messages.leaves import Kind
+from fretc.logs.messages.leaves import FieldKind
 from fretc.logs.signals.samples import Samples, Topic
 from fretc.logs.signals.topic_clocks import JUMP, ClockOffset, clock_offset, count_still
-from fretc.logs.topic_columns import Column, Columns
+from fretc.logs.topic_columns import Columns, TopicColumn
 from fretish.bindings.declarations import Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -29,7 +29,9 @@ def never_stated(
         if not payloads or not len(values) or not np.isnan(values).all():
             continue
         leaves = message_leaves(payloads)
-        paths = [p for p, leaf in leaves.items() if signal.values or leaf.kind is not Kind.TEXT]
+        paths = [
+            p for p, leaf in leaves.items() if signal.values or leaf.kind is not FieldKind.TEXT
+        ]
         if ".".join(signal.path.fields) not in {path.removesuffix("[:]") for path in paths}:
             diagnostics.append(log_diagnostics.never_stated(signal, paths))
     return diagnostics
@@ -71,13 +73,13 @@ def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
             yield log_diagnostics.still_clock(topic, place, same, column.count, time)
 
 
-def _clock_offset(column: Column) -> ClockOffset | None:
+def _clock_offset(column: TopicColumn) -> ClockOffset | None:
     """The offset of the clock, without messages whose time was never set."""
     is_set = ~column.unset
     return clock_offset(np.array(column.logs, np.int64)[is_set], column.stamps()[is_set])
 
 
-def topic(column: Column) -> Topic:
+def topic(column: TopicColumn) -> Topic:
     """The statistics of a topic and its clock."""
     if column.stated:
         return _counted(column)
@@ -101,7 +103,7 @@ def topic(column: Column) -> Topic:
     )
 
 
-def _counted(column: Column) -> Topic:
+def _counted(column: TopicColumn) -> Topic:
     """A topic whose messages were only counted."""
     return Topic(
         name=column.name,

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.messages.decoding import Decode, decoder, leaves
-from fretc.logs.messages.leaves import Kind
+from fretc.logs.messages.leaves import FieldKind
 from fretc.logs.signals.signals import FieldError, UnstatedError, field_of
 from fretish.bindings.declarations import Path
 
@@ -24,7 +24,7 @@ Words = Mapping[str, tuple[str, ...] | None]
 text."""
 
 
-class Vocabulary:
+class MessageTexts:
     """A collector of the texts of messages, as long as there are few different ones."""
 
     def __init__(self) -> None:
@@ -37,7 +37,7 @@ class Vocabulary:
         texts = self._words.get(topic, {})
         return {path: None if words is None else tuple(words) for path, words in texts.items()}
 
-    def take(self, stream: Stream, payload: memoryview) -> None:
+    def take(self, stream: ChannelDefinition, payload: memoryview) -> None:
         """One message."""
         topic = stream.channel.topic
         if self._counts[topic] >= _MOST_MESSAGES or len(payload) > _MOST_BYTES:
@@ -57,7 +57,7 @@ class Vocabulary:
             if words is not None and not _add(words, path, message):
                 self._words[topic][path] = None
 
-    def _decoder(self, stream: Stream) -> Decode | None:
+    def _decoder(self, stream: ChannelDefinition) -> Decode | None:
         """The decoder of a stream; None: it has no field with few different texts."""
         id, topic = stream.channel.id, stream.channel.topic
         if id not in self._decoders:
@@ -70,12 +70,12 @@ class Vocabulary:
         )
         return self._decoders[id] if is_open else None
 
-    def _find(self, stream: Stream, payloads: tuple[bytes, ...]) -> None:
+    def _find(self, stream: ChannelDefinition, payloads: tuple[bytes, ...]) -> None:
         """Find the text fields of a stream."""
         texts = self._words.setdefault(stream.channel.topic, {})
         for path, leaf in (leaves(stream, payloads) or {}).items():
             *above, last = path.split(".")
-            if leaf.kind is Kind.TEXT and last not in _NAMES and above[:1] != ["header"]:
+            if leaf.kind is FieldKind.TEXT and last not in _NAMES and above[:1] != ["header"]:
                 texts.setdefault(path, {})
 
 

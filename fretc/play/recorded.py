@@ -17,7 +17,7 @@ from compiler.targets.python import monitor as emitted
 from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.plan import Plan
 from fretc.logs.reader import read
-from fretc.logs.signals.traces import Timeline, trace
+from fretc.logs.signals.traces import WholeTicks, trace
 from fretc.logs.storage.log_names import path_of
 from fretc.play.starts import MOST, Start, Ticks
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -73,7 +73,7 @@ def of_log(
     violations = 0
     for requirement in chosen:
         columns = {name: truths.columns[name] for name in requirement.watched}
-        run = Run(requirement, columns, truths.timeline, recording.name)
+        run = RecordedRun(requirement, columns, truths.timeline, recording.name)
         starts += run.starts()
         notes += run.notes()
         violations += run.violations
@@ -118,14 +118,14 @@ def of_evidence(
     return Recorded(tuple(starts), tuple(notes))
 
 
-class Run:
+class RecordedRun:
     """The violations of one requirement on one run."""
 
     def __init__(
         self,
         requirement: FormalizedRequirement,
         columns: Mapping[str, Column],
-        timeline: Timeline,
+        timeline: WholeTicks,
         name: str,
     ) -> None:
         self._id, self._name, self._columns = requirement.id, name, columns

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from compiler.explanation.explain import explanation
 from compiler.formalization.formalized import FormalizedRequirement
-from fretc.analysis.evidence import Document
+from fretc.analysis.evidence import AnalysisDocument
 from fretc.testing.suite import Suite
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -84,14 +84,16 @@ def changed(suite: Suite, requirements: Sequence[FormalizedRequirement]) -> tupl
     )
 
 
-def others(document: Document, requirements: Sequence[FormalizedRequirement]) -> tuple[str, ...]:
+def others(
+    document: AnalysisDocument, requirements: Sequence[FormalizedRequirement]
+) -> tuple[str, ...]:
     """The requirements of an analysis that have changed, or are not in the project."""
     sentences = {requirement.id: printed(requirement.written) for requirement in requirements}
     members = document.requirements.items()
     return tuple(id for id, member in members if sentences.get(id) != member.sentence)
 
 
-def of_analysis(document: Document, changed: Sequence[str]) -> Iterator[Start]:
+def of_analysis(document: AnalysisDocument, changed: Sequence[str]) -> Iterator[Start]:
     """The runs of conflicts between unchanged requirements; a loop appears three times."""
     for conflict in document.analysis.conflicts:
         if not {*changed}.isdisjoint(conflict.requirements):

@@ -1,4 +1,4 @@
-"""Assembles the `Report` from project, evidence, proofs and reviews; reads no file.
+"""Assembles the `ReportView` from project, evidence, proofs and reviews; reads no file.
 
 `fretc.report.make` reads the files; `fretc.report.sections` builds the parts.
 """
@@ -25,9 +25,9 @@ from fretc.report.model.marks import verdict_mark
 from fretc.report.model.results import ResultView
 from fretc.report.model.views import (
     SCHEMA,
-    Count,
+    MarkCount,
     NotShown,
-    Report,
+    ReportView,
     RequirementView,
     Withdrawal,
     worst_first,
@@ -40,7 +40,7 @@ from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.reproduction import commands, folder_of, manifest
 from fretc.report.sections.requirement import remark, section, situation_views
 from fretc.report.sections.results import is_bounded
-from fretc.report.sections.runs import Run, run_summaries, runs, trust
+from fretc.report.sections.runs import AuditedFile, run_summaries, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.set_analysis.assembly import in_front, in_overall, set_analysis
 from fretc.traceability.acceptances import warnings
@@ -50,7 +50,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors import kernel
 
 
-def report(inputs: Inputs) -> tuple[Report, Details, tuple[Diagnostic, ...]]:
+def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]:
     """The report, the evidence behind its rows, and diagnostics about its files."""
     project, evidence = inputs.project, inputs.evidence
     lock, together = inputs.lock, inputs.together
@@ -104,7 +104,7 @@ def report(inputs: Inputs) -> tuple[Report, Details, tuple[Diagnostic, ...]]:
         all_changes,
         [text for text in overall_result.sentences if text != trust(all_runs, project)],
     )
-    whole = Report(
+    whole = ReportView(
         schema=SCHEMA,
         fretc=__version__,
         project=folder_of(project),
@@ -216,13 +216,13 @@ def _claims(assessed: Sequence[Assessment], runs: int, selection: Selection | No
     return f"{', '.join(filter(None, parts))}."
 
 
-def _counts(assessed: Sequence[Assessment]) -> tuple[Count, ...]:
+def _counts(assessed: Sequence[Assessment]) -> tuple[MarkCount, ...]:
     active = [assessment for assessment in assessed if assessment.verdict != RETIRED]
     requirements = Counter(assessment.mark for assessment in assessed)
     audits = Counter(audit.mark for assessment in active for audit in assessment.reviewed_audits)
     marks = {*map(verdict_mark, _ALWAYS), *requirements, *audits}
     return tuple(
-        Count(mark, requirements[mark], audits[mark])
+        MarkCount(mark, requirements[mark], audits[mark])
         for mark in sorted(marks, key=lambda mark: mark.severity)
     )
 
@@ -238,7 +238,7 @@ _ALWAYS = (
 """Verdicts that have a row in the table of counts even if their count is 0."""
 
 
-def _assumptions(project: Project, runs: Sequence[Run]) -> tuple[str, ...]:
+def _assumptions(project: Project, runs: Sequence[AuditedFile]) -> tuple[str, ...]:
     """The declared assumptions, then assumptions of the audit that are no longer declared."""
     declared = project.declarations.assumptions if project.declarations else ()
     now = dict.fromkeys(declared)

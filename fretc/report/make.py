@@ -18,7 +18,7 @@ from fretc.audit.store.errors import StoreError
 from fretc.report.assembly import report
 from fretc.report.forms.json_text import json_pieces
 from fretc.report.model.assessments import Inputs
-from fretc.report.model.views import Report
+from fretc.report.model.views import ReportView
 from fretc.report.page.html import html
 from fretc.report.sections.details import Details
 from fretc.traceability.lock import read as read_lock
@@ -33,7 +33,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 class ReportBuild:
     """A report, the diagnostics of its files, and further inputs of the formats."""
 
-    report: Report | None
+    report: ReportView | None
     """None if evidence, proofs, analysis, lock or signatures cannot be read.
 
     Unreadable waivers and results of AJPF are ignored: the report then shows the items as open, and

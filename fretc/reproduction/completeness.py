@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 
-from fretc.audit.evidence.schema import Document, Result, Selection
+from fretc.audit.evidence.schema import EvidenceDocument, Result, Selection
 from fretc.reproduction.outcome import FILE, Recheck, differs, unknown
 from fretc.traceability.chain import LOG
 from fretc.traceability.lock import Lock, Review
@@ -21,7 +21,7 @@ Prints = Callable[[str], Collection[str]]
 
 
 @dataclass(frozen=True, slots=True)
-class Scope:
+class ComparisonScope:
     """The requirements and reviews that evidence is compared with."""
 
     claimed: tuple[str, ...]
@@ -32,7 +32,7 @@ class Scope:
 
 
 def incomplete(
-    document: Document, scope: Scope, places: Mapping[str, str], prints: Prints
+    document: EvidenceDocument, scope: ComparisonScope, places: Mapping[str, str], prints: Prints
 ) -> Iterator[Recheck]:
     """All items that are missing, duplicated, or contradict the lock.
 
@@ -52,7 +52,7 @@ def incomplete(
         yield from _reviewed(document, scope, scope.lock, prints_of)
 
 
-def _requirements(document: Document, scope: Scope) -> Iterator[Recheck]:
+def _requirements(document: EvidenceDocument, scope: ComparisonScope) -> Iterator[Recheck]:
     named = Counter(requirement.id for requirement in document.requirements)
     for id in scope.claimed:
         if not named[id]:
@@ -62,7 +62,7 @@ def _requirements(document: Document, scope: Scope) -> Iterator[Recheck]:
             yield differs(FILE, id, "it appears twice")
 
 
-def _results(document: Document, scope: Scope) -> Iterator[Recheck]:
+def _results(document: EvidenceDocument, scope: ComparisonScope) -> Iterator[Recheck]:
     """Check that each run has exactly one result for each requirement."""
     counts = Counter((result.run, result.requirement) for result in document.results)
     named = {requirement.id for requirement in document.requirements}
@@ -80,7 +80,7 @@ def _results(document: Document, scope: Scope) -> Iterator[Recheck]:
                 yield differs(run, id, "the file does not name it among its requirements")
 
 
-def _is_of(selection: Selection, document: Document) -> bool:
+def _is_of(selection: Selection, document: EvidenceDocument) -> bool:
     """Whether the recorded selection is a valid selection of exactly these runs."""
     runs = len({result.run for result in document.results})
     sample = selection.sample_of
@@ -102,7 +102,7 @@ _PrintsOf = Mapping[str, Callable[[], Collection[str]]]
 
 
 def _reviewed(
-    document: Document, scope: Scope, lock: Lock, prints_of: _PrintsOf
+    document: EvidenceDocument, scope: ComparisonScope, lock: Lock, prints_of: _PrintsOf
 ) -> Iterator[Recheck]:
     for id, review in lock.reviews.items():
         if id in scope.claimed:

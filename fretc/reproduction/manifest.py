@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from compiler.files.text_files import file_sha256
 from compiler.files.text_files import read as read_text
-from fretc.audit.evidence.schema import Document
+from fretc.audit.evidence.schema import EvidenceDocument
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
 from fretc.logs.storage.log_names import is_url, name_of
 from fretc.logs.storage.splits import split
@@ -97,7 +97,9 @@ class Match:
     """The differences; empty if the hashes agree."""
 
 
-def matches(document: Document, manifest: Manifest, places: Mapping[str, str]) -> tuple[Match, ...]:
+def matches(
+    document: EvidenceDocument, manifest: Manifest, places: Mapping[str, str]
+) -> tuple[Match, ...]:
     """Compare each run of evidence with the manifest; then list the logs without a run.
 
     Logs are matched by name. A log whose name matches no run is matched by its hash.

@@ -14,7 +14,7 @@ FILE, ALL_RUNS, PROOFS, TOGETHER = "the file", "all runs", "proofs", "all togeth
 """Names that are used instead of the name of a run."""
 
 
-class Finding(StrEnum):
+class ItemOutcome(StrEnum):
     """The outcome for one item."""
 
     STANDS = "stands"
@@ -22,10 +22,10 @@ class Finding(StrEnum):
     UNKNOWN = "not checked"
 
 
-SIGNS: Mapping[Finding, StatusSymbol] = {
-    Finding.STANDS: signs.GOOD,
-    Finding.DIFFERS: signs.BAD,
-    Finding.UNKNOWN: signs.UNKNOWN,
+SIGNS: Mapping[ItemOutcome, StatusSymbol] = {
+    ItemOutcome.STANDS: signs.GOOD,
+    ItemOutcome.DIFFERS: signs.BAD,
+    ItemOutcome.UNKNOWN: signs.UNKNOWN,
 }
 
 
@@ -36,7 +36,7 @@ class Recheck:
     run: str
     requirement: str
     """The requirement; "" if the item is about all of them."""
-    finding: Finding
+    finding: ItemOutcome
     reasons: tuple[str, ...]
     """The reasons; empty if the item is reproduced."""
     claim: str = ""
@@ -45,15 +45,15 @@ class Recheck:
 
 def differs(run: str, requirement: str, *reasons: str, claim: str = "") -> Recheck:
     """An item that differs."""
-    return Recheck(run, requirement, Finding.DIFFERS, reasons, claim)
+    return Recheck(run, requirement, ItemOutcome.DIFFERS, reasons, claim)
 
 
 def unknown(run: str, requirement: str, *reasons: str, claim: str = "") -> Recheck:
     """An item that could not be computed again."""
-    return Recheck(run, requirement, Finding.UNKNOWN, reasons, claim)
+    return Recheck(run, requirement, ItemOutcome.UNKNOWN, reasons, claim)
 
 
-def counts(rechecks: Iterable[Recheck]) -> Mapping[Finding, int]:
+def counts(rechecks: Iterable[Recheck]) -> Mapping[ItemOutcome, int]:
     """The number of items by finding."""
     number = Counter(recheck.finding for recheck in rechecks)
-    return {finding: number[finding] for finding in Finding}
+    return {finding: number[finding] for finding in ItemOutcome}

@@ -13,13 +13,13 @@ from dataclasses import replace
 
 from compiler.files.build_id import __version__
 from compiler.files.records import plain
-from compiler.logic.claims import ALL, METHODS, PROVERS, Layer, Proof, Result
+from compiler.logic.claims import ALL, METHODS, PROVERS, ClaimResult, Layer, Proof
 from compiler.project.project import Project
 from compiler.targets.python import monitor
-from fretc.reproduction.outcome import PROOFS, Finding, Recheck, differs, unknown
+from fretc.reproduction.outcome import PROOFS, ItemOutcome, Recheck, differs, unknown
 from fretc.reproduction.texts import other_build, remade
 from fretc.verification.ajpf_results import ajpf_proofs, default_paths
-from fretc.verification.engines.sandbox import Limits
+from fretc.verification.engines.sandbox import CallLimits
 from fretc.verification.layers.request import Progress, Request
 from fretc.verification.reader import Proofs
 from fretc.verification.verify import prove
@@ -30,7 +30,11 @@ AGENT = "agent"
 
 
 def prove_again(
-    project: Project, proofs: Proofs, limits: Limits, claimed: Collection[str], progress: Progress
+    project: Project,
+    proofs: Proofs,
+    limits: CallLimits,
+    claimed: Collection[str],
+    progress: Progress,
 ) -> tuple[Recheck, ...] | Diagnostic:
     """Prove every claim of a file again.
 
@@ -95,7 +99,7 @@ def _is_asked_for(record: Proof, project: Project, claimed: Collection[str]) -> 
 
 
 def _prove(
-    project: Project, records: Sequence[Proof], limits: Limits, progress: Progress
+    project: Project, records: Sequence[Proof], limits: CallLimits, progress: Progress
 ) -> Sequence[Proof] | Diagnostic:
     """Prove the requirements again, with the layers and provers that the file names."""
     named = {record.requirement for record in records}
@@ -151,20 +155,20 @@ def _compared(record: Proof, proofs_now: Sequence[Proof]) -> Recheck:
     if others:
         why = f"it is about `{min(others)}`, which this check does not generate"
         return unknown(PROOFS, requirement, why, claim=claim)
-    if now.result is Result.NOT_CHECKED:
+    if now.result is ClaimResult.NOT_CHECKED:
         return unknown(PROOFS, requirement, now.detail, claim=claim)
     other = other_build(record, now) if record.result is now.result else ""
     if other:
         return unknown(PROOFS, requirement, other, claim=claim)
     reasons = tuple(_differences(record, now))
-    if record.result is Result.NOT_CHECKED and now.result is not Result.COUNTEREXAMPLE:
+    if record.result is ClaimResult.NOT_CHECKED and now.result is not ClaimResult.COUNTEREXAMPLE:
         why = f"the file says that it was not checked; now it is {now.result}"
         return unknown(PROOFS, requirement, why, claim=claim)
     if reasons:
         return differs(PROOFS, requirement, *reasons, claim=claim)
     if record.layer == Layer.AJPF:
         return unknown(PROOFS, requirement, "AJPF itself was not run again", claim=claim)
-    return Recheck(PROOFS, requirement, Finding.STANDS, (), claim)
+    return Recheck(PROOFS, requirement, ItemOutcome.STANDS, (), claim)
 
 
 def _absence(record: Proof, claim: str) -> Recheck:
@@ -203,6 +207,6 @@ def _twice(records: Sequence[Proof]) -> Iterator[Recheck]:
 def _left_out(records: Sequence[Proof], proofs_now: Sequence[Proof]) -> Iterator[Recheck]:
     keys = {_key(record) for record in records}
     for record in proofs_now:
-        if _key(record) not in keys and record.result is not Result.NOT_APPLICABLE:
+        if _key(record) not in keys and record.result is not ClaimResult.NOT_APPLICABLE:
             claim = f"{record.layer}: {record.claim}"
             yield differs(PROOFS, record.requirement, "it is missing from the file", claim=claim)

@@ -23,17 +23,17 @@ from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.estimates import estimates
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import brief
-from fretc.audit.evidence.schema import Document, Requirement, Result
-from fretc.audit.evidence.schema import Finding as OfLog
+from fretc.audit.evidence.schema import EvidenceDocument, RequirementRecord, Result
+from fretc.audit.evidence.schema import LogFinding as OfLog
 from fretc.audit.many_logs import Engine, audit_logs, named_situations
 from fretc.audit.plan import Plan, monitored_requirements
 from fretc.logs.labels import path_label
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.storage.log_names import name_of, path_of
-from fretc.reproduction.completeness import Scope, incomplete
+from fretc.reproduction.completeness import ComparisonScope, incomplete
 from fretc.reproduction.manifest import Manifest, matches
-from fretc.reproduction.outcome import ALL_RUNS, FILE, Finding, Recheck, differs, unknown
+from fretc.reproduction.outcome import ALL_RUNS, FILE, ItemOutcome, Recheck, differs, unknown
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.parser import parse
@@ -71,11 +71,11 @@ def _common_parts(path: Path, log: Path) -> int:
 
 
 def recheck(
-    document: Document,
+    document: EvidenceDocument,
     plan: Plan,
     places: Mapping[str, str],
     engine: Engine,
-    scope: Scope,
+    scope: ComparisonScope,
     manifest: Manifest | None = None,
 ) -> tuple[Recheck, ...] | Diagnostic:
     """Compute every result of evidence again and compare.
@@ -109,7 +109,7 @@ def recheck(
     )
 
 
-def _part(document: Document, scope: Scope) -> Document:
+def _part(document: EvidenceDocument, scope: ComparisonScope) -> EvidenceDocument:
     """The part of the evidence about the selected requirements."""
     ids = {*scope.claimed}
     return replace(
@@ -126,7 +126,7 @@ def _part(document: Document, scope: Scope) -> Document:
     )
 
 
-def _probabilities(document: Document) -> tuple[Estimated, ...]:
+def _probabilities(document: EvidenceDocument) -> tuple[Estimated, ...]:
     return document.probabilities or ()
 
 
@@ -176,7 +176,7 @@ _DOUBT = (0.5, 0.999)
 """Confidence levels that an audit accepts: above the first, up to the second."""
 
 
-def _beginning(document: Document, plan: Plan, *, part: bool) -> Iterator[Recheck]:
+def _beginning(document: EvidenceDocument, plan: Plan, *, part: bool) -> Iterator[Recheck]:
     """Compare the head of the file; also check that there are results."""
     claims = {claim.id: claim for claim in plan.claims}
     named = [requirement.id for requirement in document.requirements]
@@ -197,7 +197,7 @@ def _beginning(document: Document, plan: Plan, *, part: bool) -> Iterator[Rechec
             yield differs(FILE, requirement.id, "its situations have changed")
 
 
-def _same_sentence(before: Requirement, now: AuditedRequirement) -> bool:
+def _same_sentence(before: RequirementRecord, now: AuditedRequirement) -> bool:
     """Whether wording and hash of the sentence are equivalent to the present ones."""
     return before.sha256 == now.basis[SENTENCE] and _wording(before.sentence) == _wording(
         now.sentence
@@ -210,7 +210,9 @@ def _wording(sentence: str) -> str:
     return sentence if isinstance(tree, Diagnostic) else canonical(tree)
 
 
-def _estimates_again(document: Document, now: _Now, ids: Collection[str]) -> Iterator[Recheck]:
+def _estimates_again(
+    document: EvidenceDocument, now: _Now, ids: Collection[str]
+) -> Iterator[Recheck]:
     """Compute the estimate of each requirement with a probability again, from the same runs."""
     estimates_before = {
         probability.requirement: probability for probability in _probabilities(document)
@@ -231,7 +233,7 @@ def _estimates_again(document: Document, now: _Now, ids: Collection[str]) -> Ite
         else:
             results = [now.results[run, claim.id] for run in runs]
             why = _estimate_difference(one, claim, results)
-            finding = Finding.DIFFERS if why else Finding.STANDS
+            finding = ItemOutcome.DIFFERS if why else ItemOutcome.STANDS
             yield Recheck(ALL_RUNS, claim.id, finding, (why,) if why else ())
     for id in estimates_before:
         yield differs(ALL_RUNS, id, "a probability is no longer claimed for it")
@@ -279,7 +281,7 @@ def _result(before: Result, now: _Now) -> Recheck:
     if reasons:
         return differs(run, requirement, *reasons)
     if "log" in before.hashes or run in now.hashed:
-        return Recheck(run, requirement, Finding.STANDS, ())
+        return Recheck(run, requirement, ItemOutcome.STANDS, ())
     if "log_summary" in before.hashes:
         return unknown(run, requirement, "its log was read by its index and was not hashed")
     return unknown(run, requirement, "its log cannot be identified: the evidence has no hash of it")
@@ -362,7 +364,7 @@ def _written_defaults(plan: Plan) -> Mapping[str, frozenset[str]]:
 # Findings of a log ------------------------------------------------------------------------------
 
 
-def _log_findings(document: Document, now: _Now) -> Iterator[Recheck]:
+def _log_findings(document: EvidenceDocument, now: _Now) -> Iterator[Recheck]:
     """Compare the findings about each run, over all requirements."""
     results_of: dict[str, list[Result]] = {}
     for result in document.results:

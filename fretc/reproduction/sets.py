@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from compiler.files.build_id import __version__
-from fretc.analysis.evidence import Document
-from fretc.analysis.findings import Analysis, Component, Conflict, Verdict
-from fretc.reproduction.outcome import TOGETHER, Finding, Recheck, differs, unknown
+from fretc.analysis.evidence import AnalysisDocument
+from fretc.analysis.findings import Analysis, Component, Conflict, RealizabilityVerdict
+from fretc.reproduction.outcome import TOGETHER, ItemOutcome, Recheck, differs, unknown
 
 _REST = (
     "verdict", "repairs", "redundant", "removable", "vacuous", "consistent", "inconsistent",
@@ -21,7 +21,7 @@ _OF_TIME = ("why", "complete", "open")
 """Fields that may differ if a question timed out."""
 
 
-def compared(document: Document, now: Analysis) -> Iterator[Recheck]:
+def compared(document: AnalysisDocument, now: Analysis) -> Iterator[Recheck]:
     """Compare each component, each conflict and the other findings with a present analysis.
 
     Args:
@@ -55,7 +55,7 @@ def compared(document: Document, now: Analysis) -> Iterator[Recheck]:
         why = f"the open questions are now: {_questions(now)}; they were: {_questions(before)}"
         yield unknown(TOGETHER, "", why, claim=claim)
     else:
-        yield Recheck(TOGETHER, "", Finding.STANDS, (), claim)
+        yield Recheck(TOGETHER, "", ItemOutcome.STANDS, (), claim)
 
 
 def _questions(analysis: Analysis) -> str:
@@ -68,16 +68,19 @@ def _component(before: Component, now: Component | None) -> Recheck:
     claim = ", ".join(before.requirements)
     if now is None or before.outputs != now.outputs:
         return differs(TOGETHER, "", "these requirements are not a component now", claim=claim)
-    if now.verdict is Verdict.NOT_CHECKED:
+    if now.verdict is RealizabilityVerdict.NOT_CHECKED:
         return unknown(TOGETHER, "", now.why, claim=claim)
     if before.verdict is now.verdict and before.why != now.why:
         return unknown(
             TOGETHER, "", f"the reason is now `{now.why}`, and was `{before.why}`", claim=claim
         )
     if before.verdict is now.verdict:
-        return Recheck(TOGETHER, "", Finding.STANDS, (), f"{claim}: {now.verdict}")
+        return Recheck(TOGETHER, "", ItemOutcome.STANDS, (), f"{claim}: {now.verdict}")
     why = f"they are {now.verdict} now, and the file says {before.verdict}"
-    if before.verdict is Verdict.NOT_CHECKED and now.verdict is Verdict.REALIZABLE:
+    if (
+        before.verdict is RealizabilityVerdict.NOT_CHECKED
+        and now.verdict is RealizabilityVerdict.REALIZABLE
+    ):
         return unknown(TOGETHER, "", why, claim=claim)
     return differs(TOGETHER, "", why, claim=claim)
 
@@ -88,7 +91,7 @@ def _conflicts(before: Analysis, now: Analysis) -> Iterator[Recheck]:
         claim = f"conflict of {', '.join(ids)}"
         old, new = then.get(ids), found.get(ids)
         if old == new:
-            yield Recheck(TOGETHER, "", Finding.STANDS, (), claim)
+            yield Recheck(TOGETHER, "", ItemOutcome.STANDS, (), claim)
         elif old is None:
             judge = differs if before.complete else unknown
             yield judge(TOGETHER, "", "it is missing from the file", claim=claim)

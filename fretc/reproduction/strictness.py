@@ -12,7 +12,7 @@ from compiler.files.text_files import file_sha256
 from fretc.attestation import statement
 from fretc.attestation.signatures import SignatureBook
 from fretc.audit.evidence.reader import EvidenceFile
-from fretc.reproduction.completeness import Scope
+from fretc.reproduction.completeness import ComparisonScope
 from fretc.reproduction.outcome import FILE, Recheck, differs
 
 SIGNATURES = "signatures"
@@ -21,7 +21,7 @@ SIGNATURES = "signatures"
 
 def unmet_demands(
     evidence: EvidenceFile,
-    scope: Scope,
+    scope: ComparisonScope,
     of_files: SignatureBook,
     of_reviews: SignatureBook,
     others: Mapping[str, str],

@@ -9,8 +9,8 @@ from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof
-from compiler.targets.target import Options
-from fretc.verification.layers.languages import Row, language_of
+from compiler.targets.target import TargetOptions
+from fretc.verification.layers.languages import LanguageRow, language_of
 from fretish.diagnostics.source import Source
 
 
@@ -54,7 +54,7 @@ def _texts(record: Proof) -> Mapping[str, str]:
 
 
 def _written(
-    language: Row, records: Sequence[Proof], requirements: Sequence[FormalizedRequirement]
+    language: LanguageRow, records: Sequence[Proof], requirements: Sequence[FormalizedRequirement]
 ) -> Iterator[Mapping[str, str]]:
     """Candidate file sets: one monitor for all requirements, for the proved ones, and for each."""
     target, ids = TARGETS[language.emit], {record.requirement for record in records}
@@ -64,5 +64,5 @@ def _written(
         (named, True),
         *(([requirement], False) for requirement in named),
     ):
-        files = target.emit(group, Options(one_file=one_file))
+        files = target.emit(group, TargetOptions(one_file=one_file))
         yield {file.path.name: file.text for file in reversed(files)}  # The first `lib.rs` wins.

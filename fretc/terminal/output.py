@@ -15,7 +15,7 @@ import click
 
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
-from fretish.diagnostics.rendering import Part, plain, render_all, visible
+from fretish.diagnostics.rendering import RenderedPart, plain, render_all, visible
 from fretish.reading.natural_order import by_place
 
 Piece = tuple[str, str | None]
@@ -88,17 +88,17 @@ def print_diagnostic_groups(*groups: Sequence[Diagnostic]) -> None:
         print_status("\n\n".join(blocks))
 
 
-_STYLES: Mapping[Part, Mapping[str, Any]] = {
-    Part.ERROR: {"fg": "red", "bold": True},
-    Part.WARNING: {"fg": "yellow", "bold": True},
-    Part.NOTE: {"fg": "blue", "bold": True},
-    Part.MESSAGE: {"bold": True},
-    Part.FRAME: {"fg": "blue"},
-    Part.HELP: {"fg": "cyan", "bold": True},
+_STYLES: Mapping[RenderedPart, Mapping[str, Any]] = {
+    RenderedPart.ERROR: {"fg": "red", "bold": True},
+    RenderedPart.WARNING: {"fg": "yellow", "bold": True},
+    RenderedPart.NOTE: {"fg": "blue", "bold": True},
+    RenderedPart.MESSAGE: {"bold": True},
+    RenderedPart.FRAME: {"fg": "blue"},
+    RenderedPart.HELP: {"fg": "cyan", "bold": True},
 }
 
 
-def _painted(text: str, part: Part) -> str:
+def _painted(text: str, part: RenderedPart) -> str:
     return click.style(text, **_STYLES[part])
 
 

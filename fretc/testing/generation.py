@@ -14,7 +14,7 @@ from compiler.targets.python import monitor as emitted
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.testing.cover import cover
 from fretc.testing.requirement_model import Ids
-from fretc.testing.runs import Absence, Answer, Need, Run, Runs
+from fretc.testing.runs import Absence, Answer, FoundRuns, Need, TestRun
 from fretc.testing.suite import (
     GoalResult,
     GoalStatus,
@@ -55,7 +55,7 @@ def batch(
         seconds: CPU seconds.
     """
     try:
-        return _Generation(Runs(requirement, others, seconds)).batch()
+        return _Generation(FoundRuns(requirement, others, seconds)).batch()
     except UnsupportedError as error:
         return lost(requirement, str(error))
 
@@ -140,7 +140,7 @@ class _Purpose:
 class _Generation:
     """Generation of a batch from the runs of one requirement."""
 
-    def __init__(self, runs: Runs) -> None:
+    def __init__(self, runs: FoundRuns) -> None:
         self._runs, self._rule = runs, runs.requirement
         self._situations, self._wrong = runs.situations, runs.mutants
         self._monitor = load(f"{self._rule.id}.py", emitted.text(self._rule))
@@ -166,9 +166,9 @@ class _Generation:
 
     # Choices
 
-    def _meeting_all(self, met: Mapping[Need, Answer]) -> dict[Run, _Purpose]:
+    def _meeting_all(self, met: Mapping[Need, Answer]) -> dict[TestRun, _Purpose]:
         """Runs as short as the found ones, one for several goals; each with its goals."""
-        found = {need: run for need, run in met.items() if isinstance(run, Run)}
+        found = {need: run for need, run in met.items() if isinstance(run, TestRun)}
         shown = {
             run: [need for need, shortest in found.items() if _serves(run, need, shortest)]
             for run in found.values()
@@ -183,14 +183,14 @@ class _Generation:
         return _Purpose(key if polarity is Polarity.UNKNOWN else f"{key}-{polarity}", words)
 
     def _telling_apart(
-        self, told: Mapping[str, Answer], runs: Collection[Run]
-    ) -> dict[Run, _Purpose]:
+        self, told: Mapping[str, Answer], runs: Collection[TestRun]
+    ) -> dict[TestRun, _Purpose]:
         """Runs for the mutants that the given runs do not kill."""
         alive = {mutant.key for mutant in self._wrong}.difference(*(run.kills for run in runs))
         shown = {
             run: [mutant.key for mutant in self._wrong if mutant.key in run.kills & alive]
             for run in told.values()
-            if isinstance(run, Run)
+            if isinstance(run, TestRun)
         }
         chosen = cover(shown, {run: run.rank for run in shown})
         words = {mutant.key: mutant.words for mutant in self._wrong}
@@ -203,7 +203,7 @@ class _Generation:
 
     # Records
 
-    def _test(self, run: Run, purpose: _Purpose, names: set[str]) -> Test:
+    def _test(self, run: TestRun, purpose: _Purpose, names: set[str]) -> Test:
         name = re.sub("[^a-z0-9]+", "-", f"{self._rule.id} {purpose.key}".lower()).strip("-")
         says = self._expected(run)
         return Test(
@@ -230,7 +230,7 @@ class _Generation:
         elif polarity is not Polarity.UNKNOWN:
             yield f"{self._rule.id} is {polarity}"
 
-    def _expected(self, run: Run) -> Expected:
+    def _expected(self, run: TestRun) -> Expected:
         requirement, monitor = self._rule, self._monitor
         if run.polarity is Polarity.UNKNOWN:
             atom = next(
@@ -245,12 +245,12 @@ class _Generation:
         return found
 
     def _obligations(
-        self, met: Mapping[Need, Answer], made: Mapping[Run, Test]
+        self, met: Mapping[Need, Answer], made: Mapping[TestRun, Test]
     ) -> Iterator[GoalResult]:
         for situation in self._situations:
             for polarity in _polarities(situation):
                 found = met[situation.key, polarity]
-                if isinstance(found, Run):
+                if isinstance(found, TestRun):
                     runs = [run for run in made if run.polarity is polarity]
                     tests = _names(made, [run for run in runs if situation.key in run.situations])
                     yield _obligation(self._rule, situation, polarity, GoalStatus.MET, tests=tests)
@@ -263,7 +263,7 @@ class _Generation:
                     )
 
     def _mutants(
-        self, told: Mapping[str, Answer], made: Mapping[Run, Test]
+        self, told: Mapping[str, Answer], made: Mapping[TestRun, Test]
     ) -> Iterator[MutantResult]:
         for mutant in self._wrong:
             found = told.get(mutant.key)
@@ -277,19 +277,19 @@ class _Generation:
                 assert tests
                 yield _mutated(self._rule, mutant, MutantStatus.KILLED, tests=tests)
 
-    def _telling(self, chosen: Iterable[Run]) -> dict[str, Answer]:
+    def _telling(self, chosen: Iterable[TestRun]) -> dict[str, Answer]:
         """A shortest run for each mutant that no selected run kills, one for several mutants."""
         found: dict[str, Answer] = {}
         runs = list(chosen)
         for mutant in self._wrong:
             if not any(mutant.key in run.kills for run in runs):
                 answer = found[mutant.key] = self._runs.telling(mutant)
-                if isinstance(answer, Run):
+                if isinstance(answer, TestRun):
                     runs.append(answer)
         return found
 
 
-def _serves(run: Run, need: Need, shortest: Run) -> bool:
+def _serves(run: TestRun, need: Need, shortest: TestRun) -> bool:
     """Whether a run serves a goal as well as the run that was found for it."""
     key, polarity = need
     met = run.early if key in shortest.early else run.situations
@@ -297,6 +297,6 @@ def _serves(run: Run, need: Need, shortest: Run) -> bool:
     return same and key in met
 
 
-def _names(made: Mapping[Run, Test], runs: Iterable[Run]) -> Ids:
+def _names(made: Mapping[TestRun, Test], runs: Iterable[TestRun]) -> Ids:
     """Names of the tests of some runs, the shortest first."""
     return tuple(made[run].name for run in sorted(runs, key=lambda run: run.rank))

@@ -20,13 +20,13 @@ from compiler.logic.formula import Formula, atoms
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import counter
-from fretc.analysis.arena.memory import Bit, Counter, Memory, Past, side_by_side
+from fretc.analysis.arena.memory import Bit, Memory, PastMemory, RequirementCounter, side_by_side
 from fretc.analysis.arena.product import Fixed, near_each_other
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
-from fretc.analysis.games.runs import Runs
+from fretc.analysis.games.runs import SatisfyingRuns
 from fretc.analysis.realizability_problem import alphabet_of
-from fretc.testing.search import Endings, Letter, Words
+from fretc.testing.search import Endings, Letter, RunSearch
 from fretc.testing.suite import Polarity
 from fretish.bindings.declarations import Role
 
@@ -34,7 +34,7 @@ Ids = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Judgement:
+class StepResult:
     """Signals of a sentence for the run up to a tick, over a state and a valuation."""
 
     breaks: Function
@@ -78,7 +78,7 @@ class RequirementModel:
         alphabet = alphabet_of(every, roles, self._fresh, Role.OUTPUT, of_moments=True)
         self.beyond: dict[str, str] = {}
         """Id of another requirement without a counter → the reason."""
-        self._counters: dict[str, Counter] = {}
+        self._counters: dict[str, RequirementCounter] = {}
         for each in near_each_other([requirement, *others]):
             try:
                 self._counters[each.id] = counter(each, alphabet, self._fresh, self._shared)
@@ -101,7 +101,7 @@ class RequirementModel:
         self._quiet = frozenset(self._asked(requirement))
         self.others: Ids = tuple(other.id for other in others if other.id in self._counters)
         self._memory = Memory(self._fresh, self._shared)
-        self._past = Past(self.alphabet.atom, self._memory)
+        self._past = PastMemory(self.alphabet.atom, self._memory)
         self._own = self._judged(
             self._counters[requirement.id], requirement, self._past, self._memory
         )
@@ -231,33 +231,37 @@ class RequirementModel:
 
     def _beside(
         self, requirement: FormalizedRequirement, alphabet: Alphabet, memory: Memory
-    ) -> tuple[Judgement, Counter]:
+    ) -> tuple[StepResult, RequirementCounter]:
         """Signals of another sentence for a run, and its bits."""
         theirs = counter(requirement, alphabet, self._fresh, memory.shared)
-        judged = self._judged(theirs, requirement, Past(alphabet.atom, memory), memory)
+        judged = self._judged(theirs, requirement, PastMemory(alphabet.atom, memory), memory)
         bits = _of_memory(memory)
         return judged, replace(bits, bits=bits.bits + theirs.bits, steps=bits.steps + theirs.steps)
 
     # Both
 
     def _judged(
-        self, counter: Counter, requirement: FormalizedRequirement, past: Past, memory: Memory
-    ) -> Judgement:
+        self,
+        counter: RequirementCounter,
+        requirement: FormalizedRequirement,
+        past: PastMemory,
+        memory: Memory,
+    ) -> StepResult:
         bit = memory.bit()
         was = bdd.variable(bit.now)
         broken = was | -counter.safe
         memory.steps[bit] = broken
         accepts = -(broken | past.value(requirement.watch.fails))
-        return Judgement(broken - was, broken, accepts, past.value(requirement.watch.owed))
+        return StepResult(broken - was, broken, accepts, past.value(requirement.watch.owed))
 
     def _built(
         self,
         kept: Ids,
         with_rule: bool,
-        *more: Counter,
+        *more: RequirementCounter,
         letters: tuple[int, ...] = (),
         safe: Function | None = None,
-    ) -> tuple[Words, Function]:
+    ) -> tuple[RunSearch, Function]:
         """Runs that satisfy some counters, and the ticks after which this can last for ever."""
         runs, lasting = self._kept(kept, with_rule)
         counters = [self._counters[id] for id in (self.requirement.id, *kept)]
@@ -265,14 +269,14 @@ class RequirementModel:
         transition = Transition([*counters, *self._always, memory, *more])
         safe = runs.safe if safe is None else runs.safe & safe
         every, quiet = (*self._letters, *letters), {*self._quiet, *letters}
-        words = Words(transition, every, quiet, safe, self.budget)
+        words = RunSearch(transition, every, quiet, safe, self.budget)
         return words, transition.moved(lasting)
 
-    def _keeping(self, kept: Ids, with_rule: bool) -> tuple[Runs, Function]:
+    def _keeping(self, kept: Ids, with_rule: bool) -> tuple[SatisfyingRuns, Function]:
         """Runs that satisfy some counters, and the states from which this can last for ever."""
         ids = (*kept, self.requirement.id) if with_rule else kept
         counters = [*(self._counters[id] for id in ids), *self._always]
-        runs = Runs(self.alphabet, counters, self.budget)
+        runs = SatisfyingRuns(self.alphabet, counters, self.budget)
         return runs, runs.lasting()
 
     @property
@@ -286,9 +290,9 @@ def demands(requirement: FormalizedRequirement) -> Obligation:
     return obligation(requirement.sentence, requirement.ticks or 0, PastWords())
 
 
-def _of_memory(memory: Memory) -> Counter:
+def _of_memory(memory: Memory) -> RequirementCounter:
     """The bits of a memory, as a counter that forbids nothing."""
     bits = tuple(dict.fromkeys(memory.bits))
     steps = tuple(memory.steps[bit] for bit in bits)
     yes = bdd.true()
-    return Counter("", bits, steps, yes, None, (), yes, yes)
+    return RequirementCounter("", bits, steps, yes, None, (), yes, yes)

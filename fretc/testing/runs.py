@@ -21,7 +21,7 @@ from fretc.testing.places import Places
 from fretc.testing.requirement_model import Ids, RequirementModel, demands
 from fretc.testing.search import Letter
 from fretc.testing.suite import Polarity
-from fretc.testing.words import Naming, Word, blotted, is_killed, judged, word
+from fretc.testing.words import Naming, RunColumns, blotted, is_killed, judged, word
 from fretish import expressions as e
 
 T = TypeVar("T")
@@ -29,10 +29,10 @@ F = TypeVar("F")
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class TestRun:
     """A run, with its results for the sentence, the situations and the mutants."""
 
-    word: Word
+    word: RunColumns
     polarity: Polarity
     early: frozenset[str]
     """Situations that it covers up to the first violation."""
@@ -61,7 +61,7 @@ class Absence:
         return excluded if self.by else none
 
 
-Answer = Run | Absence
+Answer = TestRun | Absence
 Find = Callable[[Ids], F | None]
 """Search among the runs that satisfy some other requirements."""
 Need = tuple[str, Polarity]
@@ -69,7 +69,7 @@ _LONG = 64
 """Bound in ticks from which a better variable order is built."""
 
 
-class Runs:
+class FoundRuns:
     """Runs of one requirement that were found so far.
 
     Raises:
@@ -101,7 +101,7 @@ class Runs:
         if (requirement.ticks or 0) >= _LONG:
             self.bench = RequirementModel(requirement, others, more, budget, self.bench.order())
             self._goals = {key: self._goal(formula) for key, formula in self._formulas.items()}
-        self._found: dict[tuple[int, ...], Run] = {}
+        self._found: dict[tuple[int, ...], TestRun] = {}
 
     def _goal(self, formula: Formula | Absence) -> Function | Absence:
         if isinstance(formula, Absence):
@@ -129,7 +129,7 @@ class Runs:
             lambda kept: self.bench.shortest(goal, polarity, kept, at_end=situation.at_end),
             self._run,
         )
-        if isinstance(found, Run):
+        if isinstance(found, TestRun):
             assert situation.key in found.situations
             assert found.polarity is polarity
         return found
@@ -137,11 +137,11 @@ class Runs:
     def telling(self, mutant: Mutant) -> Answer:
         """A shortest run that kills a mutant."""
         found = self._answer(partial(self.bench.difference, mutant.requirement), self._run)
-        if isinstance(found, Run):
+        if isinstance(found, TestRun):
             assert mutant.key in found.kills
         return found
 
-    def _answer(self, find: Find[F], run: Callable[[F], Run]) -> Answer:
+    def _answer(self, find: Find[F], run: Callable[[F], TestRun]) -> Answer:
         try:
             found = find(self.bench.others)
             if found is not None:
@@ -158,7 +158,7 @@ class Runs:
 
     # Judgements
 
-    def _run(self, letters: Sequence[Letter]) -> Run:
+    def _run(self, letters: Sequence[Letter]) -> TestRun:
         """The run of some valuations.
 
         Raises:
@@ -171,18 +171,18 @@ class Runs:
             self._found[key] = self._judged(made)
         return self._found[key]
 
-    def _check_others(self, made: Word) -> None:
+    def _check_others(self, made: RunColumns) -> None:
         for each in self.others:
             if judged(each, made).breach:
                 why = self.bench.beyond[each.id]  # All other requirements are satisfied.
                 raise UnsupportedError(f"the shortest run violates {each.id}, and {why}")
 
-    def _judged(self, made: Word) -> Run:
+    def _judged(self, made: RunColumns) -> TestRun:
         own = judged(self.requirement, made)
         columns = {situation.key: self._column(situation, made) for situation in self.situations}
         first = own.breach & -own.breach
         early = (first << 1) - 1 if first else -1
-        return Run(
+        return TestRun(
             made,
             Polarity.KEPT if own.accepted >> made.ticks - 1 else Polarity.BROKEN,
             frozenset(key for key, column in columns.items() if column & early),
@@ -194,7 +194,7 @@ class Runs:
             ),
         )
 
-    def _column(self, situation: Situation, made: Word) -> int:
+    def _column(self, situation: Situation, made: RunColumns) -> int:
         """Ticks at which a run with known values covers a situation."""
         formula = self._formulas[situation.key]
         if isinstance(formula, Absence) or situation.unknown is not None:
@@ -204,13 +204,13 @@ class Runs:
 
     def _doubtful(
         self, situation: Situation, atom: str, letters: Sequence[Letter], tick: int
-    ) -> Run:
+    ) -> TestRun:
         """The run with an atom unknown at a tick, and all atoms that read the same names."""
         made = word(letters, self.bench.alphabet, self._naming)
         self._check_others(made)
         blank = blotted(made, tick, {atom, *self._linked(atom)})
         met = frozenset({situation.key})
-        return Run(blank, Polarity.UNKNOWN, met, met, frozenset())
+        return TestRun(blank, Polarity.UNKNOWN, met, met, frozenset())
 
     def _linked(self, atom: str) -> set[str]:
         """Names that an atom reads, and the other atoms that read some of them."""
@@ -220,17 +220,17 @@ class Runs:
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class DistinguishingRun:
     """A shortest run with different verdicts of two sentences."""
 
-    word: Word
+    word: RunColumns
     doubt: str
     """Why its values may be impossible; empty: they are possible."""
 
 
 def difference(
     requirement: FormalizedRequirement, other: FormalizedRequirement, seconds: float
-) -> Difference | Absence:
+) -> DistinguishingRun | Absence:
     """A run that distinguishes two sentences, or proof that they agree on all finite runs.
 
     Args:
@@ -250,7 +250,7 @@ def difference(
     signals = {name: read for name, read in _read(both).items() if name not in read}
     made = word(letters, bench.alphabet, Naming(atoms, atoms, signals, {}))
     assert is_killed(judged(requirement, made), judged(other, made), made.ticks)
-    return Difference(made, bench.doubt)
+    return DistinguishingRun(made, bench.doubt)
 
 
 def _read(requirements: Iterable[FormalizedRequirement]) -> dict[str, frozenset[str]]:

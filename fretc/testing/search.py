@@ -22,7 +22,7 @@ Letter = Mapping[int, bool]
 
 
 @dataclass
-class Layers:
+class RunLayers:
     """States with shortest runs of 0, 1, 2 ... ticks."""
 
     fresh: list[Function] = field(default_factory=lambda: [bdd.false()])
@@ -44,9 +44,9 @@ class Layers:
 class Endings:
     """Shortest ways to an end, from any state; layers are computed on demand."""
 
-    def __init__(self, words: Words, end: Function) -> None:
+    def __init__(self, words: RunSearch, end: Function) -> None:
         self._words, self.end = words, end
-        self._layers = Layers()
+        self._layers = RunLayers()
         self._ways: list[Function] = []
 
     def way(self, length: int) -> Function:
@@ -74,7 +74,7 @@ class Endings:
         layers.add(self._words.pre_image(self._ways[-1]))
 
 
-class Words:
+class RunSearch:
     """Runs of some counters without a violation."""
 
     def __init__(
@@ -132,7 +132,7 @@ class Words:
         Raises:
             OutOfTimeError: it takes too long.
         """
-        layers = Layers()
+        layers = RunLayers()
         while not self._begins(layers.fresh[-1]):
             length = len(layers.fresh) - 1
             if layers.is_complete and endings.is_over(length):
@@ -144,7 +144,7 @@ class Words:
     def _begins(self, states: Function) -> bool:
         return bool(bdd.at(states, self._start) == bdd.true())
 
-    def _descent(self, layers: Layers, goal: Function, endings: Endings) -> Iterator[Letter]:
+    def _descent(self, layers: RunLayers, goal: Function, endings: Endings) -> Iterator[Letter]:
         """Valuations from the initial state to the end, with as few changes as possible."""
         transition = self.transition.needed(self._safe, goal, endings.end)
         state: State = transition.start

@@ -30,7 +30,7 @@ Row = TypeVar("Row")
 
 
 @dataclass(frozen=True)
-class Word:
+class RunColumns:
     """A run, stored as columns."""
 
     rows: tuple[Repeat, ...]
@@ -74,7 +74,7 @@ class Naming:
         }
 
 
-def word(letters: Sequence[Letter], alphabet: Alphabet, naming: Naming) -> Word:
+def word(letters: Sequence[Letter], alphabet: Alphabet, naming: Naming) -> RunColumns:
     """The run of some valuations."""
     functions = {name: alphabet.atom(name) for name in naming.atoms}
     columns = dict.fromkeys(functions, 0)
@@ -90,14 +90,14 @@ def word(letters: Sequence[Letter], alphabet: Alphabet, naming: Naming) -> Word:
         values |= {name: name in true for name in naming.shown}
         rows.append(Repeat(count, {name: values[name] for name in sorted(values)}))
         ticks += count
-    return Word(tuple(rows), columns, ticks)
+    return RunColumns(tuple(rows), columns, ticks)
 
 
 def _holds(function: Function, letter: Function) -> bool:
     return bool(bdd.at(function, letter) == bdd.true())
 
 
-def blotted(word: Word, tick: int, names: Collection[str]) -> Word:
+def blotted(word: RunColumns, tick: int, names: Collection[str]) -> RunColumns:
     """The run with some values unknown at one tick, which has a row of its own."""
     rows: list[Repeat] = []
     start = 0
@@ -115,7 +115,7 @@ def blotted(word: Word, tick: int, names: Collection[str]) -> Word:
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class RunSignals:
     """Signals of a sentence for a run, tick by tick."""
 
     breach: int
@@ -124,16 +124,16 @@ class Judged:
     """FRET's verdict if the run ended here."""
 
 
-def judged(requirement: FormalizedRequirement, word: Word) -> Judged:
+def judged(requirement: FormalizedRequirement, word: RunColumns) -> RunSignals:
     """Signals by the formulas of the monitor, as columns."""
     every = (1 << word.ticks) - 1
     first = evaluate(requirement.watch.breach, word.columns, word.ticks)
     breach = every & -(first & -first) if first else 0
     fails = evaluate(requirement.watch.fails, word.columns, word.ticks)
-    return Judged(breach, every & ~(breach | fails))
+    return RunSignals(breach, every & ~(breach | fails))
 
 
-def is_killed(own: Judged, mutant: Judged, ticks: int) -> bool:
+def is_killed(own: RunSignals, mutant: RunSignals, ticks: int) -> bool:
     """Whether a test with the run distinguishes a mutant from the requirement.
 
     Either they disagree on the whole run, or one is violated at a tick where the other accepts.
@@ -146,7 +146,7 @@ def is_killed(own: Judged, mutant: Judged, ticks: int) -> bool:
 # By the definition ------------------------------------------------------------------------------
 
 
-def letters(requirement: FormalizedRequirement, word: Word) -> tuple[Parts, ...]:
+def letters(requirement: FormalizedRequirement, word: RunColumns) -> tuple[Parts, ...]:
     """Mode, condition, response and stop condition of a sentence at each tick of a run."""
     sentence = requirement.sentence
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
@@ -174,7 +174,7 @@ class Expected:
     because: str
 
 
-def expected(requirement: FormalizedRequirement, monitor: Monitor, word: Word) -> Expected:
+def expected(requirement: FormalizedRequirement, monitor: Monitor, word: RunColumns) -> Expected:
     """The verdict of a run with known values; definition, monitor and explanation must agree.
 
     Args:
@@ -193,7 +193,7 @@ def expected(requirement: FormalizedRequirement, monitor: Monitor, word: Word) -
 
 
 def undecided(
-    requirement: FormalizedRequirement, monitor: Monitor, word: Word, atom: str
+    requirement: FormalizedRequirement, monitor: Monitor, word: RunColumns, atom: str
 ) -> Expected:
     """The verdict of a run with an atom unknown at one tick; None unless both values differ."""
     at, own = word.unknown[atom], word.columns[atom]
@@ -214,7 +214,7 @@ def undecided(
     return found
 
 
-def _monitored(monitor: Monitor, word: Word, because: str) -> Expected:
+def _monitored(monitor: Monitor, word: RunColumns, because: str) -> Expected:
     rows = (_row(monitor, word, tick) for tick in range(word.ticks))
     return outcome(monitor, monitor.advance, rows, because)
 
@@ -234,7 +234,7 @@ def outcome(
     return Expected(standing.finite, verdict, decided, standing.first_violation, because)
 
 
-def _row(monitor: Monitor, word: Word, tick: int) -> tuple[Truth, ...]:
+def _row(monitor: Monitor, word: RunColumns, tick: int) -> tuple[Truth, ...]:
     columns = (
         Column(word.columns[name] & ~doubt, doubt)
         for name in monitor.PROPOSITIONS

@@ -9,7 +9,7 @@ from compiler.project.acceptances import unused_acceptances
 from compiler.project.project import Project
 from compiler.project.refusals import unreviewable
 from fretc.audit.evidence.result_summaries import EvidenceSource
-from fretc.audit.evidence.schema import Finding
+from fretc.audit.evidence.schema import LogFinding
 from fretc.traceability.checks import checks, unreviewed
 from fretc.traceability.lock import Lock, ReviewedRequirement
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors
@@ -54,7 +54,7 @@ def warnings(
     )
 
 
-def as_diagnostic(finding: Finding) -> Diagnostic:
+def as_diagnostic(finding: LogFinding) -> Diagnostic:
     """A finding of the evidence as a diagnostic, without its line."""
     return Diagnostic(
         _CODES.get(finding.code, Code.BAD_EVIDENCE),

@@ -15,15 +15,15 @@ from compiler.project.project import Project
 from fretc.analysis.arena.roles import roles
 from fretc.analysis.assumptions import assumptions
 from fretc.analysis.components import by_outputs
-from fretc.analysis.evidence import AnalyzedSet, Member, members
-from fretc.analysis.findings import Analysis, Verdict
+from fretc.analysis.evidence import AnalyzedRequirement, AnalyzedSet, members
+from fretc.analysis.findings import Analysis, RealizabilityVerdict
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class Realizability:
     """Whether one requirement is realizable together with the others of its component."""
 
-    verdict: Verdict
+    verdict: RealizabilityVerdict
     findings: tuple[str, ...]
     """A sentence for each conflict of the requirement, then for each assumption of the analysis."""
     differing: tuple[str, ...]
@@ -35,7 +35,7 @@ class Answer:
         return (str(self.verdict), *self.findings)
 
 
-def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Answer]:
+def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Realizability]:
     """Requirement id → answer, for each requirement that was analyzed and still exists.
 
     Args:
@@ -50,7 +50,7 @@ def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Answ
     old = _differences(document.requirements, members(requirements))
     promises = _differences(document.assumptions, members(assumed))
     now = _components(requirements, assumed, document.requirements)
-    found: dict[str, Answer] = {}
+    found: dict[str, Realizability] = {}
     for requirement in requirements:
         if requirement.id in document.requirements:
             then = _component(document.analysis, requirement.id)
@@ -62,10 +62,12 @@ def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Answ
     return found
 
 
-def _answer(analysis: Analysis, id: str, differing: tuple[str, ...], as_fret: bool) -> Answer:
+def _answer(
+    analysis: Analysis, id: str, differing: tuple[str, ...], as_fret: bool
+) -> Realizability:
     own = [component for component in analysis.components if id in component.requirements]
-    verdict = own[0].verdict if own else Verdict.NOT_CHECKED
-    return Answer(verdict, tuple(_findings(analysis, id, as_fret)), differing)
+    verdict = own[0].verdict if own else RealizabilityVerdict.NOT_CHECKED
+    return Realizability(verdict, tuple(_findings(analysis, id, as_fret)), differing)
 
 
 def _findings(analysis: Analysis, id: str, as_fret: bool) -> Iterator[str]:
@@ -88,7 +90,7 @@ def _component(analysis: Analysis, id: str) -> tuple[str, ...]:
 def _components(
     requirements: Sequence[FormalizedRequirement],
     assumed: Sequence[FormalizedRequirement],
-    analyzed: Mapping[str, Member],
+    analyzed: Mapping[str, AnalyzedRequirement],
 ) -> Mapping[str, tuple[str, ...]]:
     """Requirement id → ids in its present component; all ids if the roles are unknown."""
     systems = {
@@ -110,7 +112,9 @@ def _components(
     )
 
 
-def _differences(then: Mapping[str, Member], now: Mapping[str, Member]) -> tuple[str, ...]:
+def _differences(
+    then: Mapping[str, AnalyzedRequirement], now: Mapping[str, AnalyzedRequirement]
+) -> tuple[str, ...]:
     return tuple(
         id
         for id in dict.fromkeys((*then, *now))

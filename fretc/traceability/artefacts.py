@@ -12,7 +12,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Proof
 from compiler.targets.interceptor_options import ASSUMED, assumptions_digest
 from compiler.targets.python import interceptor, monitor
-from compiler.targets.target import Options, Target
+from compiler.targets.target import Target, TargetOptions
 from fretish.bindings.declarations import Declarations
 from fretish.documents import RequirementEntry
 
@@ -114,7 +114,7 @@ def _of_joint(file: str, requirements: Sequence[FormalizedRequirement]) -> str:
     """SHA-256 of one monitor for all requirements, or "" if the target refuses all of them."""
     target = TARGETS[_JOINT[file]]
     accepted = [requirement for requirement in requirements if target.refuse(requirement) is None]
-    made = target.emit(accepted, Options(one_file=True)) if accepted else ()
+    made = target.emit(accepted, TargetOptions(one_file=True)) if accepted else ()
     return next((sha256(product.text) for product in made if product.path.name == file), "")
 
 

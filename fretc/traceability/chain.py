@@ -26,7 +26,7 @@ from fretc.audit.evidence import basis
 from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.result_summaries import Recorded, ResultSummaries, ResultSummary
 from fretc.traceability import texts
-from fretc.traceability.analyses import Answer, answers
+from fretc.traceability.analyses import Realizability, answers
 from fretc.traceability.artefacts import Product, monitors, shared_products
 from fretc.traceability.artefacts import products as products_of
 from fretc.traceability.texts import ReviewedTexts
@@ -47,7 +47,7 @@ _READINGS = ("ltl", "json")
 """Targets that only print formulas; formulas have nodes of their own."""
 
 
-class Node(NamedTuple):
+class ChainItem(NamedTuple):
     """One item of the chain: `hazard` HAZ-001, `artefact` r1_monitor.py, `log` traces/a.mcap."""
 
     kind: str
@@ -61,8 +61,8 @@ class Node(NamedTuple):
 class Link(NamedTuple):
     """A dependency: the target depends on the source."""
 
-    source: Node
-    target: Node
+    source: ChainItem
+    target: ChainItem
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,41 +73,41 @@ class Chain:
     """
 
     requirement: str
-    definition: Mapping[Node, str]
+    definition: Mapping[ChainItem, str]
     """SHA-256 of each node, except the review and the nodes of runs."""
     steps: tuple[Link, ...]
     """All links except those of runs, sorted."""
     results: Sequence[ResultSummary] = ()
     """The result of the requirement in each run."""
-    sources: tuple[Node, ...] = ()
+    sources: tuple[ChainItem, ...] = ()
     """The nodes that each verdict depends on, except its log."""
-    differences: Mapping[Recorded, tuple[Node, ...]] = field(default_factory=dict)
+    differences: Mapping[Recorded, tuple[ChainItem, ...]] = field(default_factory=dict)
     """Outdated inputs of verdicts → the nodes that differ."""
-    outdated_proofs: Mapping[Node, tuple[Node, ...]] = field(default_factory=dict)
+    outdated_proofs: Mapping[ChainItem, tuple[ChainItem, ...]] = field(default_factory=dict)
     """Each outdated proof or analysis → the nodes that differ."""
     texts: ReviewedTexts | None = None
     """The texts that the fingerprints are computed from."""
-    answer: Answer | None = None
+    answer: Realizability | None = None
     """The result of the analysis of all requirements; None if there is none."""
 
     @property
-    def prints(self) -> Mapping[Node, str]:
+    def prints(self) -> Mapping[ChainItem, str]:
         """SHA-256 of each node except the review; white space, comments and order are ignored."""
         prints = dict(self.definition)
         for result in self.results:
-            prints[Node(LOG, result.run)] = _print_of_log(result)
+            prints[ChainItem(LOG, result.run)] = _print_of_log(result)
             prints[_verdict(result)] = result.judgement
         return prints
 
     @property
     def links(self) -> tuple[Link, ...]:
         """All links, sorted."""
-        review = Node(REVIEW, self.requirement)
+        review = ChainItem(REVIEW, self.requirement)
         links = dict.fromkeys(self.steps)
         for result in self.results:
             verdict = _verdict(result)
             links |= dict.fromkeys(Link(source, verdict) for source in self.sources)
-            links[Link(Node(LOG, result.run), verdict)] = None
+            links[Link(ChainItem(LOG, result.run), verdict)] = None
             links[Link(verdict, review)] = None
         return tuple(sorted(links))
 
@@ -117,7 +117,7 @@ class Chain:
         return {result.run: result.verdict for result in self.results}
 
     @property
-    def outdated(self) -> Mapping[Node, tuple[Node, ...]]:
+    def outdated(self) -> Mapping[ChainItem, tuple[ChainItem, ...]]:
         """Each outdated verdict, proof or analysis → the nodes that differ."""
         if not self.differences:
             return self.outdated_proofs
@@ -132,8 +132,8 @@ class Chain:
         return tuple(result.run for result in self.results if not _print_of_log(result))
 
 
-def _verdict(result: ResultSummary) -> Node:
-    return Node(VERDICT, f"{result.requirement} {result.run}")
+def _verdict(result: ResultSummary) -> ChainItem:
+    return ChainItem(VERDICT, f"{result.requirement} {result.run}")
 
 
 def chains(
@@ -188,7 +188,7 @@ class _Common:
     """Topics that an audit of the project reads."""
     written: Mapping[str, Any]
     """The tables of the bindings."""
-    answers: Mapping[str, Answer]
+    answers: Mapping[str, Realizability]
     """Requirement id → result of the analysis of all requirements."""
 
 
@@ -230,9 +230,9 @@ class _ChainBuilder:
     def __init__(self, common: _Common, requirement: RequirementEntry) -> None:
         self._common, self._project, self._id = common, common.project, requirement.id
         self._basis = common.bases[requirement]
-        self._prints: dict[Node, str] = {}
+        self._prints: dict[ChainItem, str] = {}
         self._links: dict[Link, None] = {}
-        self._outdated_proofs: dict[Node, tuple[Node, ...]] = {}
+        self._outdated_proofs: dict[ChainItem, tuple[ChainItem, ...]] = {}
         self._accept: dict[str, str] = {}
         self._hazards: dict[str, texts.HazardTexts] = {}
         self._elsewhere: dict[str, texts.ExternalParent] = {}
@@ -249,9 +249,9 @@ class _ChainBuilder:
         self._add_parents(entry, {entry.id})
         self._add_status_and_plans(entry)
         self._accepted(entry, requirement)
-        sentence = Node(basis.SENTENCE, entry.id)
+        sentence = ChainItem(basis.SENTENCE, entry.id)
         self._add(sentence, self._basis[basis.SENTENCE])
-        self._link(Node(TEXT, entry.id), sentence)
+        self._link(ChainItem(TEXT, entry.id), sentence)
         nodes = (
             self._add_artefacts(requirement, sentence, artefacts) if requirement is not None else {}
         )
@@ -262,7 +262,7 @@ class _ChainBuilder:
             self._add_proofs(requirement, proofs)
         if answer is not None:
             self._add_answer(answer)
-        review = Node(REVIEW, entry.id)
+        review = ChainItem(REVIEW, entry.id)
         followed = {*of_verdicts, *(link.source for link in self._links)}
         for node in [node for node in self._prints if node not in followed]:
             self._link(node, review)
@@ -283,7 +283,7 @@ class _ChainBuilder:
         entry: RequirementEntry,
         requirement: FormalizedRequirement | None,
         proofs: Sequence[Proof],
-        answer: Answer | None,
+        answer: Realizability | None,
         *,
         audited: bool,
     ) -> ReviewedTexts:
@@ -317,7 +317,7 @@ class _ChainBuilder:
         """Add status and planned methods; only the review depends on them, no verdict."""
         self._add(status_node(self._id), print_of_status(requirement.status))
         for method in requirement.verify:
-            self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
+            self._add(ChainItem(PLAN, f"{self._id} {method}"), digest(method))
 
     def _accepted(self, entry: RequirementEntry, requirement: FormalizedRequirement | None) -> None:
         """Add the warnings that a reviewer accepts; no verdict depends on them."""
@@ -326,35 +326,35 @@ class _ChainBuilder:
         for acceptance in (*known.get(entry, ()), *known.get(None, ())):
             if acceptance.about != TOPIC or acceptance.subject in ("", *topics):
                 self._accept[acceptance.name] = acceptance.reason
-                self._add(Node(ACCEPTANCE, acceptance.name), print_of_words(acceptance.reason))
+                self._add(ChainItem(ACCEPTANCE, acceptance.name), print_of_words(acceptance.reason))
 
     def _add_parents(self, requirement: RequirementEntry, visited: set[str]) -> None:
         """Add all hazards and requirements above the requirement."""
-        text = Node(TEXT, requirement.id)
+        text = ChainItem(TEXT, requirement.id)
         self._add(text, print_of_header(texts.above(requirement)))
         for parent in requirement.parents:
             hazard, above = self._project.hazards.get(parent), self._common.texts.get(parent)
             if hazard is not None:
                 self._hazards[parent] = texts.hazard_texts(hazard)
-                self._add(Node(HAZARD, parent), print_of_hazard(hazard))
-                self._link(Node(HAZARD, parent), text)
+                self._add(ChainItem(HAZARD, parent), print_of_hazard(hazard))
+                self._link(ChainItem(HAZARD, parent), text)
             elif parent in self._project.parents:
                 outside = self._project.parents[parent]
                 self._elsewhere[parent] = texts.elsewhere(outside)
-                self._add(Node(PARENT, parent), print_of_words([outside.title, outside.text]))
-                self._link(Node(PARENT, parent), text)
+                self._add(ChainItem(PARENT, parent), print_of_words([outside.title, outside.text]))
+                self._link(ChainItem(PARENT, parent), text)
             elif above is not None and parent not in visited:
                 visited.add(parent)
                 self._above[parent] = texts.above(above)
                 self._add_parents(above, visited)
-                self._link(Node(TEXT, parent), text)
+                self._link(ChainItem(TEXT, parent), text)
 
     def _add_artefacts(
-        self, requirement: FormalizedRequirement, sentence: Node, artefacts: Iterable[Product]
-    ) -> Mapping[str, Node]:
+        self, requirement: FormalizedRequirement, sentence: ChainItem, artefacts: Iterable[Product]
+    ) -> Mapping[str, ChainItem]:
         """Add formulas, meanings and artefacts; return target → artefact."""
-        formulas, words = Node(FORMULAS, requirement.id), Node(WORDS, requirement.id)
-        clock, fretc = self._add_clock(), Node(basis.FRETC, _VERSION)
+        formulas, words = ChainItem(FORMULAS, requirement.id), ChainItem(WORDS, requirement.id)
+        clock, fretc = self._add_clock(), ChainItem(basis.FRETC, _VERSION)
         self._add(formulas, _formulas(requirement))
         self._add(fretc, digest(__version__))
         self._link(sentence, formulas)
@@ -367,33 +367,33 @@ class _ChainBuilder:
         for product in artefacts:
             if product.refusal or product.target in _READINGS:
                 continue
-            node = nodes[product.target] = Node(ARTEFACT, product.file)
+            node = nodes[product.target] = ChainItem(ARTEFACT, product.file)
             self._add(node, product.sha256)
             for source in (formulas, fretc, *([clock] if product.target == "monitor" else ())):
                 self._link(source, node)
         return nodes
 
-    def _add_clock(self) -> Node:
-        node = Node(basis.CLOCK, "clock")
+    def _add_clock(self) -> ChainItem:
+        node = ChainItem(basis.CLOCK, "clock")
         self._add(node, self._basis[basis.CLOCK])
         return node
 
-    def _add_sources(self, monitor: Node | None, *, audited: bool) -> Mapping[str, Node]:
+    def _add_sources(self, monitor: ChainItem | None, *, audited: bool) -> Mapping[str, ChainItem]:
         """Add the inputs of a verdict; return kind → node."""
         nodes = {
-            basis.FRETC: Node(basis.FRETC, _VERSION),
-            basis.SENTENCE: Node(basis.SENTENCE, self._id),
-            basis.PARAMS: Node(basis.PARAMS, self._id),
+            basis.FRETC: ChainItem(basis.FRETC, _VERSION),
+            basis.SENTENCE: ChainItem(basis.SENTENCE, self._id),
+            basis.PARAMS: ChainItem(basis.PARAMS, self._id),
             basis.CLOCK: self._add_clock(),
-            basis.TOPICS: Node(basis.TOPICS, "audited"),
-            basis.BINDINGS: Node(basis.BINDINGS, self._id),
-            basis.MONITOR: monitor or Node(basis.MONITOR, self._id),
+            basis.TOPICS: ChainItem(basis.TOPICS, "audited"),
+            basis.BINDINGS: ChainItem(basis.BINDINGS, self._id),
+            basis.MONITOR: monitor or ChainItem(basis.MONITOR, self._id),
         }
         for kind in (basis.PARAMS, basis.BINDINGS, *([basis.TOPICS] if audited else ())):
             self._add(nodes[kind], self._basis[kind])
         return nodes
 
-    def _sources_of_verdicts(self, sources: Mapping[str, Node]) -> tuple[Node, ...]:
+    def _sources_of_verdicts(self, sources: Mapping[str, ChainItem]) -> tuple[ChainItem, ...]:
         """The direct inputs of each verdict; the monitor takes the place of the sentence."""
         has_monitor = sources[basis.MONITOR] in self._prints
         return tuple(
@@ -403,8 +403,8 @@ class _ChainBuilder:
         )
 
     def _differences(
-        self, results: Sequence[ResultSummary], sources: Mapping[str, Node]
-    ) -> Mapping[Recorded, tuple[Node, ...]]:
+        self, results: Sequence[ResultSummary], sources: Mapping[str, ChainItem]
+    ) -> Mapping[Recorded, tuple[ChainItem, ...]]:
         """Outdated inputs of results → the nodes that differ."""
         kinds_of = {
             recorded: outdated(recorded, self._common.audited_by, self._basis)
@@ -420,11 +420,11 @@ class _ChainBuilder:
         """Add each proof, with its files and assumptions."""
         now = self._common.shared
         for proof in proofs:
-            node = Node(PROOF, f"{requirement.id} {_claim(proof)}")
+            node = ChainItem(PROOF, f"{requirement.id} {_claim(proof)}")
             self._add(node, print_of_proof(proof.result, proof.assumptions))
-            self._link(Node(FORMULAS, requirement.id), node)
+            self._link(ChainItem(FORMULAS, requirement.id), node)
             for name, fingerprint in proof.artefacts.items():
-                source = Node(SHARED, name) if name in now else Node(ARTEFACT, name)
+                source = ChainItem(SHARED, name) if name in now else ChainItem(ARTEFACT, name)
                 if name in now:
                     self._add(source, now[name])
                 if source not in self._prints:
@@ -434,18 +434,18 @@ class _ChainBuilder:
                     before = self._outdated_proofs.get(node, ())
                     self._outdated_proofs[node] = (*before, source)
 
-    def _add_answer(self, answer: Answer) -> None:
+    def _add_answer(self, answer: Realizability) -> None:
         """Add the result of the analysis, with the members that have changed since."""
-        node = Node(ANALYSIS, self._id)
+        node = ChainItem(ANALYSIS, self._id)
         self._add(node, print_of_proof(answer.verdict, answer.findings))
-        self._link(Node(FORMULAS, self._id), node)
+        self._link(ChainItem(FORMULAS, self._id), node)
         if answer.differing:
-            self._outdated_proofs[node] = tuple(Node(MEMBER, id) for id in answer.differing)
+            self._outdated_proofs[node] = tuple(ChainItem(MEMBER, id) for id in answer.differing)
 
-    def _add(self, node: Node, fingerprint: str) -> None:
+    def _add(self, node: ChainItem, fingerprint: str) -> None:
         self._prints[node] = fingerprint
 
-    def _link(self, source: Node, target: Node) -> None:
+    def _link(self, source: ChainItem, target: ChainItem) -> None:
         self._links[Link(source, target)] = None
 
 
@@ -461,9 +461,9 @@ def print_of_status(status: str) -> str:
     return digest("retired") if status == "retired" else IN_FORCE
 
 
-def status_node(requirement: str) -> Node:
+def status_node(requirement: str) -> ChainItem:
     """The node of the status of a requirement."""
-    return Node(STATUS, requirement)
+    return ChainItem(STATUS, requirement)
 
 
 def outdated(recorded: Recorded, audited_by: str, now: Basis) -> tuple[str, ...]:
@@ -536,18 +536,20 @@ class Suspect:
     """A link that depends on an item that has changed since the review."""
 
     link: Link
-    causes: tuple[Node, ...]
+    causes: tuple[ChainItem, ...]
     """The original changes upstream of the link, without changes that follow from them."""
 
 
-def changed(prints: Mapping[Node, str], locked: Mapping[Node, str]) -> tuple[Node, ...]:
+def changed(
+    prints: Mapping[ChainItem, str], locked: Mapping[ChainItem, str]
+) -> tuple[ChainItem, ...]:
     """The nodes that were changed, added or removed since the lock, sorted."""
     return tuple(
         sorted(node for node in {*prints, *locked} if prints.get(node) != locked.get(node))
     )
 
 
-def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
+def suspects(chain: Chain, locked: Mapping[ChainItem, str]) -> tuple[Suspect, ...]:
     """The links downstream of changes since the lock, those nearest to a change first.
 
     An outdated verdict or proof is suspect too, whatever the lock records: a verdict on changed
@@ -565,7 +567,7 @@ def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
     if not changed_nodes and not late:
         return ()
     upstream = upstream_of(prints, links)
-    causes_of: dict[Link, set[Node]] = {}
+    causes_of: dict[Link, set[ChainItem]] = {}
     for link in links:
         above = {link.source, *upstream[link.source]}
         causes_of[link] = changed_nodes & above
@@ -580,12 +582,14 @@ def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
         if causes_of[link]
     ]
     gone = tuple(sorted(node for node in locked if node not in prints))
-    review = Node(REVIEW, chain.requirement)
+    review = ChainItem(REVIEW, chain.requirement)
     suspect.extend(Suspect(Link(node, review), (node,)) for node in gone)
     return tuple(suspect)
 
 
-def _first(causes: set[Node], upstream: Mapping[Node, frozenset[Node]]) -> Iterator[Node]:
+def _first(
+    causes: set[ChainItem], upstream: Mapping[ChainItem, frozenset[ChainItem]]
+) -> Iterator[ChainItem]:
     """The causes that do not follow from another cause."""
     return (
         cause
@@ -594,15 +598,17 @@ def _first(causes: set[Node], upstream: Mapping[Node, frozenset[Node]]) -> Itera
     )
 
 
-def upstream_of(nodes: Iterable[Node], links: Sequence[Link]) -> dict[Node, frozenset[Node]]:
+def upstream_of(
+    nodes: Iterable[ChainItem], links: Sequence[Link]
+) -> dict[ChainItem, frozenset[ChainItem]]:
     """Each node → all nodes that lead to it."""
-    above: dict[Node, set[Node]] = {node: set() for link in links for node in link}
+    above: dict[ChainItem, set[ChainItem]] = {node: set() for link in links for node in link}
     above |= {node: set() for node in nodes if node not in above}
     for link in links:
         above[link.target].add(link.source)
-    upstream: dict[Node, frozenset[Node]] = {}
+    upstream: dict[ChainItem, frozenset[ChainItem]] = {}
 
-    def reach(node: Node) -> frozenset[Node]:
+    def reach(node: ChainItem) -> frozenset[ChainItem]:
         if node not in upstream:
             upstream[node] = frozenset()  # A requirement may be its own ancestor.
             upstream[node] = frozenset(above[node]).union(

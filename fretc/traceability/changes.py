@@ -27,21 +27,21 @@ from fretc.traceability.chain import (
     VERDICT,
     WORDS,
     Chain,
-    Node,
+    ChainItem,
     Suspect,
     changed,
     upstream_of,
 )
-from fretc.traceability.meanings import Key, Leaf, leaves
-from fretc.traceability.texts import Bindings, ReviewedTexts
+from fretc.traceability.meanings import Key, ReviewText, leaves
+from fretc.traceability.texts import BindingsTexts, ReviewedTexts
 from fretc.traceability.word_diff import Segment
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class ReviewChange:
     """One change since a review."""
 
-    node: Node
+    node: ChainItem
     """The node that the changed text is part of."""
     what: str
     """Name of the changed text, such as `title` or `max_age of vx`."""
@@ -118,11 +118,11 @@ _WITH_DEFAULTS = (basis.BINDINGS, basis.CLOCK, WORDS, FORMULAS, ARTEFACT)
 
 def changes(
     chain: Chain,
-    prints: Mapping[Node, str],
+    prints: Mapping[ChainItem, str],
     verdicts: Mapping[str, str],
     texts: ReviewedTexts | None,
-    causes: Collection[Node],
-) -> tuple[Change, ...]:
+    causes: Collection[ChainItem],
+) -> tuple[ReviewChange, ...]:
     """Each change of a requirement since its review, without changes that follow from others.
 
     Args:
@@ -137,7 +137,7 @@ def changes(
     return (*found, *comparison.of_causes(causes, found))
 
 
-def in_words(changes: Sequence[Change]) -> str:
+def in_words(changes: Sequence[ReviewChange]) -> str:
     """One sentence with the first changes, changes of requirements before changes of evidence."""
     own = [change.brief for change in changes if not change.is_of_evidence]
     named = own or [change.brief for change in changes]
@@ -155,7 +155,7 @@ class _Comparison:
     def __init__(
         self,
         chain: Chain,
-        prints: Mapping[Node, str],
+        prints: Mapping[ChainItem, str],
         verdicts: Mapping[str, str],
         texts: ReviewedTexts | None,
     ) -> None:
@@ -164,11 +164,11 @@ class _Comparison:
         self._verdicts_now = chain.verdicts
         self._nodes = frozenset(changed(self._now, prints))
         self._texts = texts
-        self._explained: set[Node] = set()
+        self._explained: set[ChainItem] = set()
 
     # Texts
 
-    def of_texts(self) -> Iterator[Change]:
+    def of_texts(self) -> Iterator[ReviewChange]:
         """Changes of texts whose meaning has changed."""
         now = self._chain.texts
         if self._texts is None or now is None or not self._nodes:
@@ -184,7 +184,7 @@ class _Comparison:
         self._explained |= {*texts, *(node for node in self._nodes if node.kind in kinds)}
         yield from _merged(different, before, after)
 
-    def _differs(self, before: Leaf | None, after: Leaf | None) -> bool:
+    def _differs(self, before: ReviewText | None, after: ReviewText | None) -> bool:
         leaf = before or after
         assert leaf is not None
         kinds = {node.kind for node in self._nodes}
@@ -197,7 +197,7 @@ class _Comparison:
 
     # Things without a text
 
-    def of_nodes(self) -> Iterator[Change]:
+    def of_nodes(self) -> Iterator[ReviewChange]:
         """Changes of nodes that no text shows and that do not follow from another change."""
         above = upstream_of(self._now, self._chain.links) if self._nodes - self._explained else {}
         for node in sorted(self._nodes - self._explained):
@@ -207,7 +207,7 @@ class _Comparison:
             if not (is_new or is_gone or derived or self._follows(node)):
                 yield self._named(node)
 
-    def _follows(self, node: Node) -> bool:
+    def _follows(self, node: ChainItem) -> bool:
         """Whether the change of the node follows from a changed node to which it has no link."""
         id = self._chain.requirement
         kinds = {each.kind for each in self._nodes if each.kind != TEXT or each.name == id}
@@ -217,34 +217,36 @@ class _Comparison:
         sources = _SOURCES if self._texts is None else {**_SOURCES, **_SOURCES_OF_TEXTS}
         return bool(kinds & sources.get(node.kind, frozenset()))
 
-    def _named(self, node: Node) -> Change:
+    def _named(self, node: ChainItem) -> ReviewChange:
         """The change of a node of which only the fingerprint is recorded."""
         run = node.name.removeprefix(f"{self._chain.requirement} ")
         before, after = self._prints.get(node, ""), self._now.get(node, "")
         if node.kind == LOG and node not in self._now:
-            return Change(node, f"verdict of {run}", self._verdicts.get(run, ""), "")
+            return ReviewChange(node, f"verdict of {run}", self._verdicts.get(run, ""), "")
         if node.kind == VERDICT:
             then, now = self._verdicts.get(run, ""), self._verdicts_now.get(run, "")
             if then != now:
-                return Change(node, f"verdict of {run}", then, now)
-            return Change(node, f"what was found in {run}", None, None)
+                return ReviewChange(node, f"verdict of {run}", then, now)
+            return ReviewChange(node, f"what was found in {run}", None, None)
         if node.kind in (LOG, ARTEFACT, SHARED):
-            return Change(node, f"{node.kind} {run}", _digest(before), _digest(after))
-        return Change(node, thing(node), None, None)
+            return ReviewChange(node, f"{node.kind} {run}", _digest(before), _digest(after))
+        return ReviewChange(node, thing(node), None, None)
 
-    def of_causes(self, causes: Collection[Node], found: Collection[Change]) -> Iterator[Change]:
+    def of_causes(
+        self, causes: Collection[ChainItem], found: Collection[ReviewChange]
+    ) -> Iterator[ReviewChange]:
         """Causes of suspect links that no change in `found` reports."""
-        own = Node(MEMBER, self._chain.requirement)
+        own = ChainItem(MEMBER, self._chain.requirement)
         for cause in causes:
             if cause == own and found:
                 continue
             if cause not in self._nodes:
-                yield Change(cause, thing(cause), None, None, is_of_evidence=True)
+                yield ReviewChange(cause, thing(cause), None, None, is_of_evidence=True)
             elif not found:
                 yield self._named(cause)
 
 
-def thing(node: Node) -> str:
+def thing(node: ChainItem) -> str:
     """The name of a node for a reader: `artefact r1_monitor.py`, `the clock`."""
     if node.kind in (basis.CLOCK, basis.TOPICS):
         return f"the {node.kind}"
@@ -276,7 +278,7 @@ _SOURCES_OF_TEXTS: Mapping[str, frozenset[str]] = {
 
 # One change of many texts ----------------------------------------------------------------------
 
-_Pairs = Mapping[Key, tuple[Leaf | None, Leaf | None]]
+_Pairs = Mapping[Key, tuple[ReviewText | None, ReviewText | None]]
 _ABOVE = (HAZARD, PARENT, TEXT)
 
 
@@ -287,21 +289,21 @@ def _without_equal_tables(
     before, after = then.bindings, now.bindings
     if before is None or after is None:
         return then, now
-    kept: list[Bindings | None] = [before, after]
+    kept: list[BindingsTexts | None] = [before, after]
     if before == after:
         kept = [None, None]
     elif _tables(before) == _tables(after):
-        kept = [Bindings(before.clock), Bindings(after.clock)]
+        kept = [BindingsTexts(before.clock), BindingsTexts(after.clock)]
     return replace(then, bindings=kept[0]), replace(now, bindings=kept[1])
 
 
-def _tables(bindings: Bindings) -> tuple[Any, ...]:
+def _tables(bindings: BindingsTexts) -> tuple[Any, ...]:
     return bindings.signal, bindings.proposition, bindings.variable
 
 
 def _merged(
-    different: _Pairs, before: Mapping[Key, Leaf], after: Mapping[Key, Leaf]
-) -> Iterator[Change]:
+    different: _Pairs, before: Mapping[Key, ReviewText], after: Mapping[Key, ReviewText]
+) -> Iterator[ReviewChange]:
     """A change for each text, or for each added or removed table that follows from no other."""
     owners = [{leaf.owner for leaf in side.values()} for side in (before, after)]
     lone = {owner for owner in owners[0] ^ owners[1] if owner}
@@ -323,11 +325,13 @@ def _is_repetition(key: Key, different: _Pairs) -> bool:
     return key == ("", "", "topics") and own
 
 
-def _change(what: str, then: Leaf | None, now: Leaf | None, *, is_table: bool = False) -> Change:
+def _change(
+    what: str, then: ReviewText | None, now: ReviewText | None, *, is_table: bool = False
+) -> ReviewChange:
     leaf = now or then
     assert leaf is not None
     before, after = then.text if then else "", now.text if now else ""
-    return Change(leaf.node, what, before, after, is_table=is_table)
+    return ReviewChange(leaf.node, what, before, after, is_table=is_table)
 
 
 _SENTENCE, _WORDING = ("", "", "sentence"), ("", "", "wording")
@@ -338,7 +342,7 @@ _FACE = {
 """Kind of a table → the field that represents an added or removed table."""
 
 
-def _name(key: Key, leaf: Leaf) -> str:
+def _name(key: Key, leaf: ReviewText) -> str:
     kind, name, _ = key
     return f"{kind} {name}" if kind in ("signal", *_ABOVE) else leaf.what
 

@@ -15,7 +15,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import METHODS
 from compiler.project.hazards import without_hazard
 from compiler.project.project import Project
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretc.traceability.changes import in_words
 from fretc.traceability.lock import ReviewedRequirement
 from fretish.bindings.declarations import Role
@@ -47,7 +47,7 @@ def checks(project: Project, standings: Sequence[ReviewedRequirement]) -> tuple[
             *_planned(requirement),
         )
     ]
-    options = Options(declarations=project.declarations)
+    options = TargetOptions(declarations=project.declarations)
     interceptor = TARGETS["interceptor"].remarks(options)
     is_whole = not has_errors(project.general) and not any(r.mistakes for r in project.requirements)
     links = _links(project) if is_whole else ()  # they are asked of all headers and hazards

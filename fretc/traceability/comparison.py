@@ -11,7 +11,7 @@ from compiler.project.project import Project
 from compiler.project.stated_numbers import drifted
 from fretc.audit.evidence.verdicts import VERDICTS, severity
 from fretc.traceability.chain import ANALYSIS, VERDICT, Suspect
-from fretc.traceability.changes import Change
+from fretc.traceability.changes import ReviewChange
 from fretc.traceability.lock import Lock, Review, ReviewedRequirement
 from fretish.diagnostics.diagnostic import Code
 from monitors import kernel
@@ -23,14 +23,14 @@ _NAMED = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class ReviewDifference:
     """The difference between a requirement and its review."""
 
     requirement: str
     state: str
     """`same`, `changed`, `new` (only now) or `gone` (only in the baseline)."""
     review: Review | None
-    changes: tuple[Change, ...]
+    changes: tuple[ReviewChange, ...]
     contradictions: tuple[str, ...]
     """Unchanged texts that contradict the changed ones."""
     verdicts: tuple[tuple[str, str, str], ...]
@@ -66,7 +66,7 @@ class Difference:
         return suspicion_of([self])
 
 
-def suspicion_of(differences: Sequence[Difference]) -> str:
+def suspicion_of(differences: Sequence[ReviewDifference]) -> str:
     """The number of suspect links of all these requirements, with the causes."""
     suspects = [suspect for each in differences for suspect in each.suspects]
     reasons = (
@@ -105,14 +105,14 @@ def _runs(count: int) -> str:
 
 def differences(
     standings: tuple[ReviewedRequirement, ...], baseline: Lock, project: Project | None = None
-) -> tuple[Difference, ...]:
+) -> tuple[ReviewDifference, ...]:
     """The difference of each requirement, in the order of the project; removed ones come last."""
     now = tuple(difference(standing, project) for standing in standings)
     ids = {standing.chain.requirement for standing in standings}
     return (*now, *(_removed(id, baseline) for id in baseline.reviews if id not in ids))
 
 
-def difference(standing: ReviewedRequirement, project: Project | None = None) -> Difference:
+def difference(standing: ReviewedRequirement, project: Project | None = None) -> ReviewDifference:
     """The difference between a requirement and its review; `new` if it has no review.
 
     Args:
@@ -122,10 +122,10 @@ def difference(standing: ReviewedRequirement, project: Project | None = None) ->
     chain, review = standing.chain, standing.review
     if review is None:
         verdicts = _different({}, chain.verdicts)
-        return Difference(chain.requirement, "new", None, (), (), verdicts, 0, ())
+        return ReviewDifference(chain.requirement, "new", None, (), (), verdicts, 0, ())
     verdicts = _different(review.verdicts, chain.verdicts)
     is_changed = bool(standing.changes or verdicts or standing.suspects)
-    return Difference(
+    return ReviewDifference(
         chain.requirement,
         "changed" if is_changed else "same",
         review,
@@ -139,9 +139,9 @@ def difference(standing: ReviewedRequirement, project: Project | None = None) ->
     )
 
 
-def _removed(id: str, baseline: Lock) -> Difference:
+def _removed(id: str, baseline: Lock) -> ReviewDifference:
     review = baseline.reviews[id]
-    return Difference(id, "gone", review, (), (), _different(review.verdicts, {}), 0, ())
+    return ReviewDifference(id, "gone", review, (), (), _different(review.verdicts, {}), 0, ())
 
 
 def _different(
@@ -198,7 +198,7 @@ def _statement(fields: Sequence[str], words: str, still: bool) -> str:
 # Plain values and text -------------------------------------------------------------------------
 
 
-def as_record(difference: Difference) -> dict[str, Any]:
+def as_record(difference: ReviewDifference) -> dict[str, Any]:
     """The difference as plain values, in a fixed order of keys."""
     return {
         "requirement": difference.requirement,
@@ -223,16 +223,16 @@ def as_record(difference: Difference) -> dict[str, Any]:
     }
 
 
-def text(differences: Sequence[Difference]) -> Iterator[str]:
+def text(differences: Sequence[ReviewDifference]) -> Iterator[str]:
     """Lines for a person: changed requirements, each change once, then unchanged ones."""
-    alike: dict[object, list[Difference]] = {}
+    alike: dict[object, list[ReviewDifference]] = {}
     for each in differences:
         alike.setdefault(_likeness(each), []).append(each)
     for group in sorted(alike.values(), key=lambda group: group[0].state == "same"):
         yield from _text(group)
 
 
-def _likeness(difference: Difference) -> object:
+def _likeness(difference: ReviewDifference) -> object:
     """A key that is equal for requirements with equal changes and no changed verdict."""
     if difference.state == "same":
         return "same"
@@ -244,7 +244,7 @@ def _likeness(difference: Difference) -> object:
     return (by, changes, difference.has_old_analysis, *others)
 
 
-def _text(group: Sequence[Difference]) -> Iterator[str]:
+def _text(group: Sequence[ReviewDifference]) -> Iterator[str]:
     first, review = group[0], group[0].review
     by = f"the review of {review.date} by {review.reviewer}" if review else ""
     states = {
@@ -273,7 +273,7 @@ def _text(group: Sequence[Difference]) -> Iterator[str]:
 OTHER_TEXTS = "the texts in its review do not match its fingerprints, and are ignored"
 
 
-def _verdict_lines(difference: Difference) -> Iterator[str]:
+def _verdict_lines(difference: ReviewDifference) -> Iterator[str]:
     """Lines about changed verdicts, then the runs; violated runs that are not named are counted."""
     for line in difference.consequences:
         yield f"  {line}"

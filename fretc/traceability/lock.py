@@ -16,23 +16,23 @@ import tomli_w
 
 from compiler.files.dates import is_date, is_in_future
 from compiler.files.text_files import read as read_text
-from fretc.analysis.findings import Verdict
+from fretc.analysis.findings import RealizabilityVerdict
 from fretc.audit.evidence.basis import SENTENCE
 from fretc.audit.evidence.reader import VERDICTS
-from fretc.traceability.analyses import Answer
+from fretc.traceability.analyses import Realizability
 from fretc.traceability.chain import (
     ACCEPTANCE,
     FORMULAS,
     IN_FORCE,
     REVIEW,
     Chain,
-    Node,
+    ChainItem,
     Suspect,
     changed,
     status_node,
     suspects,
 )
-from fretc.traceability.changes import Change, changes
+from fretc.traceability.changes import ReviewChange, changes
 from fretc.traceability.meanings import agree
 from fretc.traceability.texts import ReviewedTexts, as_table
 from fretc.traceability.texts import read as read_texts
@@ -64,7 +64,7 @@ class Review:
     date: str
     """ISO 8601, as `2026-11-22`."""
     comment: str
-    prints: Mapping[Node, str]
+    prints: Mapping[ChainItem, str]
     """Node upstream of the review → SHA-256."""
     verdicts: Mapping[str, str]
     """Run → its verdict."""
@@ -79,7 +79,7 @@ class Review:
     @property
     def was_claimed(self) -> bool:
         """Whether the requirement was in force and formalized, so that runs were judged."""
-        return self.was_in_force and Node(FORMULAS, self.requirement) in self.prints
+        return self.was_in_force and ChainItem(FORMULAS, self.requirement) in self.prints
 
     @property
     def verdict_summary(self) -> str:
@@ -163,7 +163,7 @@ def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tup
     violations = {
         c.requirement: _together(c.answer.texts)
         for c in chosen
-        if c.answer is not None and c.answer.verdict is Verdict.UNREALIZABLE
+        if c.answer is not None and c.answer.verdict is RealizabilityVerdict.UNREALIZABLE
     } | violations
     return tuple(
         diagnostic("violation_not_named", id=id, verdicts=verdicts)
@@ -172,7 +172,7 @@ def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tup
 
 
 @dataclass(frozen=True, slots=True)
-class Acceptance:
+class AcceptedVerdicts:
     """Summary of the verdicts on the requirements that one `fretc lock` accepts."""
 
     verdicts: Mapping[str, Mapping[str, str]]
@@ -181,11 +181,11 @@ class Acceptance:
     """Requirements that a run violates, or that the estimate over all runs refutes."""
     not_shown: tuple[str, ...]
     """Other requirements that were not audited, or are not satisfied in each run."""
-    answers: Mapping[str, Answer]
+    answers: Mapping[str, Realizability]
     """Requirement → result of the analysis; without requirements that were not analyzed."""
 
     @classmethod
-    def of(cls, subjects: Sequence[Chain], refuted: Collection[str]) -> Acceptance:
+    def of(cls, subjects: Sequence[Chain], refuted: Collection[str]) -> AcceptedVerdicts:
         """The summary for some requirements; `refuted` as in `unnamed_violations`."""
         verdicts = {chain.requirement: chain.verdicts for chain in subjects}
         violated = [
@@ -207,7 +207,7 @@ class Acceptance:
         together = Counter(answer.verdict for answer in self.answers.values())
         with_others = (
             f", {together[word]} {word} with the others"
-            for word in (Verdict.UNREALIZABLE, Verdict.NOT_CHECKED)
+            for word in (RealizabilityVerdict.UNREALIZABLE, RealizabilityVerdict.NOT_CHECKED)
             if together[word]
         )
         return (
@@ -357,9 +357,9 @@ def _texts(fields: Mapping[str, Any]) -> ReviewedTexts | None:
     return texts
 
 
-def _node(text: str) -> Node:
+def _node(text: str) -> ChainItem:
     kind, _, name = text.partition(":")
-    return Node(kind, name)
+    return ChainItem(kind, name)
 
 
 # Comparing -------------------------------------------------------------------------------------
@@ -375,7 +375,7 @@ class ReviewedRequirement:
 
     suspects: tuple[Suspect, ...]
     """The suspect links; empty if there is no review."""
-    changes: tuple[Change, ...]
+    changes: tuple[ReviewChange, ...]
     """Changes since the review, without changes that follow from others."""
     has_other_texts: bool = False
     """Whether the texts of the review do not match its fingerprints, and are ignored."""
@@ -386,7 +386,7 @@ class ReviewedRequirement:
         return any(suspect.link.target.kind == REVIEW for suspect in self.suspects)
 
     @property
-    def causes(self) -> tuple[Node, ...]:
+    def causes(self) -> tuple[ChainItem, ...]:
         """The changes that make links suspect, without duplicates."""
         return tuple(dict.fromkeys(cause for suspect in self.suspects for cause in suspect.causes))
 
@@ -437,7 +437,7 @@ def withdrawn_requirements(
         return ()
     status = {requirement.id: requirement.status for requirement in requirements}
     new = {
-        chain.prints.get(Node(SENTENCE, chain.requirement)): chain.requirement
+        chain.prints.get(ChainItem(SENTENCE, chain.requirement)): chain.requirement
         for chain in chains
         if chain.requirement not in lock.reviews
     }
@@ -445,7 +445,7 @@ def withdrawn_requirements(
         WithdrawnRequirement(
             review,
             id in status,
-            new.get(review.prints.get(Node(SENTENCE, id)), "") if id not in status else "",
+            new.get(review.prints.get(ChainItem(SENTENCE, id)), "") if id not in status else "",
         )
         for id, review in lock.reviews.items()
         if review.was_in_force and status.get(id, "retired") == "retired"

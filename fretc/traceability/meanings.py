@@ -27,7 +27,7 @@ from fretc.traceability.chain import (
     STATUS,
     TEXT,
     WORDS,
-    Node,
+    ChainItem,
     print_of_hazard,
     print_of_header,
     print_of_proof,
@@ -36,7 +36,7 @@ from fretc.traceability.chain import (
     status_node,
 )
 from fretc.traceability.texts import (
-    Bindings,
+    BindingsTexts,
     ReviewedTexts,
     Table,
     canonical_text,
@@ -52,10 +52,10 @@ from fretish.reading.recursion import with_recursion_limit
 
 
 @dataclass(frozen=True, slots=True)
-class Leaf:
+class ReviewText:
     """One text of a review."""
 
-    node: Node
+    node: ChainItem
     """The node whose fingerprint covers the text."""
     what: str
     """Name of the text for a reader, such as `title` or `max_age of vx`."""
@@ -73,7 +73,7 @@ Key = tuple[str, str, str]
 # Each text -------------------------------------------------------------------------------------
 
 
-def leaves(id: str, texts: ReviewedTexts) -> Mapping[Key, Leaf]:
+def leaves(id: str, texts: ReviewedTexts) -> Mapping[Key, ReviewText]:
     """Each text of a requirement, in the order in which changes are listed."""
     found = dict(_of_sentence(id, texts))
     declarations = _declarations(texts.bindings) if texts.bindings else None
@@ -83,79 +83,87 @@ def leaves(id: str, texts: ReviewedTexts) -> Mapping[Key, Leaf]:
     return found | dict(chain.from_iterable(parts))
 
 
-def _of_sentence(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
+def _of_sentence(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, ReviewText]]:
     written = _line(texts.sentence)
     sentence = texts.canonical or written
-    yield ("", "", "sentence"), Leaf(Node(basis.SENTENCE, id), "sentence", written, sentence)
+    yield (
+        ("", "", "sentence"),
+        ReviewText(ChainItem(basis.SENTENCE, id), "sentence", written, sentence),
+    )
     # A monitor quotes its sentence: another wording changes its text and not its meaning.
-    wording = Leaf(Node(ARTEFACT, id), "wording", written, (sentence, written))
+    wording = ReviewText(ChainItem(ARTEFACT, id), "wording", written, (sentence, written))
     yield ("", "", "wording"), wording
     for name, text in texts.params.items():
         meaning = canonical.parameter(text)
-        node, what = Node(basis.PARAMS, id), f"number stated for {name}"
-        yield ("params", name, ""), Leaf(node, what, text, meaning, f"params {name}")
+        node, what = ChainItem(basis.PARAMS, id), f"number stated for {name}"
+        yield ("params", name, ""), ReviewText(node, what, text, meaning, f"params {name}")
 
 
-def _of_header(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
-    node = Node(TEXT, id)
+def _of_header(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, ReviewText]]:
+    node = ChainItem(TEXT, id)
     for name in ("title", "text", "rationale"):
         text = _line(getattr(texts, name))
-        yield ("", "", name), Leaf(node, name, text, text)
-    yield ("", "", "parents"), Leaf(node, "parents", ", ".join(texts.parents), {*texts.parents})
+        yield ("", "", name), ReviewText(node, name, text, text)
+    yield (
+        ("", "", "parents"),
+        ReviewText(node, "parents", ", ".join(texts.parents), {*texts.parents}),
+    )
     retired = texts.status == "retired"
-    yield ("", "", "status"), Leaf(status_node(id), "status", texts.status, retired)
-    plan = Node(PLAN, id)
-    yield ("", "", "verify"), Leaf(plan, "verify", ", ".join(texts.verify), {*texts.verify})
+    yield ("", "", "status"), ReviewText(status_node(id), "status", texts.status, retired)
+    plan = ChainItem(PLAN, id)
+    yield ("", "", "verify"), ReviewText(plan, "verify", ", ".join(texts.verify), {*texts.verify})
     for name, reason in texts.accept.items():
         what, why = f"reason to accept {name}", _line(reason)
-        leaf = Leaf(Node(ACCEPTANCE, name), what, why, why, f"accept {name}")
+        leaf = ReviewText(ChainItem(ACCEPTANCE, name), what, why, why, f"accept {name}")
         yield (ACCEPTANCE, name, ""), leaf
 
 
-def _of_parents(texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
+def _of_parents(texts: ReviewedTexts) -> Iterator[tuple[Key, ReviewText]]:
     """The texts of hazards and of the requirements between them and this one."""
     tables: list[tuple[str, str, Mapping[str, str]]] = []
     for id, header in texts.above.items():
         texts_of = {name: text for name, text in _fields(header).items() if name != "parents"}
         tables.append((TEXT, id, texts_of))
-        node, parents = Node(TEXT, id), header.parents
-        leaf = Leaf(node, f"parents of {id}", ", ".join(parents), {*parents}, f"text {id}")
+        node, parents = ChainItem(TEXT, id), header.parents
+        leaf = ReviewText(node, f"parents of {id}", ", ".join(parents), {*parents}, f"text {id}")
         yield (TEXT, id, "parents"), leaf
     tables += [(HAZARD, id, _fields(each)) for id, each in texts.hazards.items()]
     tables += [(PARENT, id, _fields(each)) for id, each in texts.elsewhere.items()]
     for kind, id, words in tables:
         for name, text in words.items():
             line = _line(text)
-            leaf = Leaf(Node(kind, id), f"{name} of {id}", line, line, f"{kind} {id}")
+            leaf = ReviewText(ChainItem(kind, id), f"{name} of {id}", line, line, f"{kind} {id}")
             yield (kind, id, name), leaf
 
 
-def _of_audit(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
+def _of_audit(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, ReviewText]]:
     if texts.topics is not None:
-        node, names = Node(basis.TOPICS, "audited"), ", ".join(texts.topics)
-        yield ("", "", "topics"), Leaf(node, "topics that are read", names, texts.topics)
+        node, names = ChainItem(basis.TOPICS, "audited"), ", ".join(texts.topics)
+        yield ("", "", "topics"), ReviewText(node, "topics that are read", names, texts.topics)
     for claim, (result, *assumptions) in texts.proofs.items():
-        node, owner = Node(PROOF, f"{id} {claim}"), f"proof {claim}"
+        node, owner = ChainItem(PROOF, f"{id} {claim}"), f"proof {claim}"
         under = {*assumptions}
-        yield (PROOF, claim, "result"), Leaf(node, f"proof of {claim}", result, result, owner)
+        yield (PROOF, claim, "result"), ReviewText(node, f"proof of {claim}", result, result, owner)
         text = "; ".join(assumptions)
-        leaf = Leaf(node, f"assumptions of the proof of {claim}", text, under, owner)
+        leaf = ReviewText(node, f"assumptions of the proof of {claim}", text, under, owner)
         yield (PROOF, claim, "assumptions"), leaf
     if texts.analysis:
-        (verdict, *findings), node = texts.analysis, Node(ANALYSIS, id)
-        yield (ANALYSIS, "", "verdict"), Leaf(node, "analysis", verdict, verdict, ANALYSIS)
-        leaf = Leaf(node, "findings of the analysis", "; ".join(findings), {*findings}, ANALYSIS)
+        (verdict, *findings), node = texts.analysis, ChainItem(ANALYSIS, id)
+        yield (ANALYSIS, "", "verdict"), ReviewText(node, "analysis", verdict, verdict, ANALYSIS)
+        leaf = ReviewText(
+            node, "findings of the analysis", "; ".join(findings), {*findings}, ANALYSIS
+        )
         yield (ANALYSIS, "", "findings"), leaf
     for table, fields in texts.loop.items():
         for name, value in fields.items():
             text = _in_toml(value)
-            leaf = Leaf(
-                Node(SHARED, table), f"{name} of [{table}]", text, canonical.parameter(text)
+            leaf = ReviewText(
+                ChainItem(SHARED, table), f"{name} of [{table}]", text, canonical.parameter(text)
             )
             yield (SHARED, table, name), leaf
     if texts.fretc:
-        node = Node(basis.FRETC, "version")
-        yield ("", "", "fretc"), Leaf(node, "version of fretc", texts.fretc, texts.fretc)
+        node = ChainItem(basis.FRETC, "version")
+        yield ("", "", "fretc"), ReviewText(node, "version of fretc", texts.fretc, texts.fretc)
 
 
 def _fields(record: Record) -> dict[str, Any]:
@@ -172,10 +180,10 @@ _CLOCK = ("tick", "time", "end", "phase", "rounding")
 
 
 def _of_bindings(
-    id: str, bindings: Bindings, declarations: Declarations | None
-) -> Mapping[Key, Leaf]:
+    id: str, bindings: BindingsTexts, declarations: Declarations | None
+) -> Mapping[Key, ReviewText]:
     """The texts of clock and tables; if they cannot be read, a text is its own meaning."""
-    found: dict[Key, Leaf] = {}
+    found: dict[Key, ReviewText] = {}
     for name, table in bindings.proposition.items():
         found |= _of_table(id, "proposition", name, table, _proposition(name, declarations))
     for name, table in bindings.signal.items():
@@ -184,22 +192,22 @@ def _of_bindings(
         found |= _of_table(id, "variable", name, table, _variable(name, declarations))
     clock = declarations.clock if declarations else None
     for name in _CLOCK:
-        node = Node(FORMULAS, id) if name == "rounding" else Node(basis.CLOCK, "clock")
+        node = ChainItem(FORMULAS, id) if name == "rounding" else ChainItem(basis.CLOCK, "clock")
         meaning = (clock.period or clock.topic) if clock and name == "tick" else None
         meaning = getattr(clock, name) if clock and name != "tick" else meaning
         text = str(bindings.clock.get(name, ""))
-        leaf = Leaf(node, f"{name} of the clock", text, text if clock is None else meaning)
+        leaf = ReviewText(node, f"{name} of the clock", text, text if clock is None else meaning)
         found["clock", "", name] = leaf
     return found
 
 
 def _of_table(
     id: str, kind: str, name: str, table: Table, meanings: Mapping[str, Any]
-) -> Mapping[Key, Leaf]:
+) -> Mapping[Key, ReviewText]:
     """The fields of a table that are written or have a meaning of their own."""
     return {
-        (kind, name, field): Leaf(
-            Node(_covered_by(kind, field), id),
+        (kind, name, field): ReviewText(
+            ChainItem(_covered_by(kind, field), id),
             name if field in ("expr", "value") else f"{field} of {name}",
             _in_toml(table[field]) if field in table else "",
             meanings.get(field, _in_toml(table.get(field, ""))),
@@ -270,7 +278,7 @@ def _line(text: str) -> str:
 
 
 @with_recursion_limit
-def _declarations(bindings: Bindings) -> Declarations | None:
+def _declarations(bindings: BindingsTexts) -> Declarations | None:
     """The declarations of the tables, or None if the tables are not valid bindings."""
     tables = {"clock": bindings.clock, "signal": bindings.signal}
     tables |= {"proposition": bindings.proposition, "variable": bindings.variable}
@@ -281,7 +289,7 @@ def _declarations(bindings: Bindings) -> Declarations | None:
 # All of them -----------------------------------------------------------------------------------
 
 
-def agree(id: str, texts: ReviewedTexts, prints: Mapping[Node, str]) -> bool:
+def agree(id: str, texts: ReviewedTexts, prints: Mapping[ChainItem, str]) -> bool:
     """Whether the texts of a review match its fingerprints.
 
     A lock may be untrusted, so texts that do not match the fingerprints are never shown as
@@ -292,7 +300,7 @@ def agree(id: str, texts: ReviewedTexts, prints: Mapping[Node, str]) -> bool:
     return own.keys() == ours and all(own[node] == prints[node] for node in ours)
 
 
-_VERSION = Node(basis.FRETC, "version")
+_VERSION = ChainItem(basis.FRETC, "version")
 _COVERED = (
     basis.SENTENCE, basis.PARAMS, basis.CLOCK, basis.TOPICS, basis.BINDINGS, basis.FRETC,
     TEXT, HAZARD, PARENT, STATUS, PLAN, ACCEPTANCE, WORDS,
@@ -305,32 +313,32 @@ def _of(value: Any) -> str:
     return canonical.digest(value)
 
 
-def _fingerprints(id: str, texts: ReviewedTexts) -> Iterator[tuple[Node, str]]:
+def _fingerprints(id: str, texts: ReviewedTexts) -> Iterator[tuple[ChainItem, str]]:
     """The fingerprints that fretc computes from these texts."""
     yield status_node(id), print_of_status(texts.status)
     for method in texts.verify:
-        yield Node(PLAN, f"{id} {method}"), _of(method)
+        yield ChainItem(PLAN, f"{id} {method}"), _of(method)
     for name, reason in texts.accept.items():
-        yield Node(ACCEPTANCE, name), print_of_words(reason)
-    yield Node(TEXT, id), print_of_header(header_of(texts))
+        yield ChainItem(ACCEPTANCE, name), print_of_words(reason)
+    yield ChainItem(TEXT, id), print_of_header(header_of(texts))
     for above, header in texts.above.items():
-        yield Node(TEXT, above), print_of_header(header)
+        yield ChainItem(TEXT, above), print_of_header(header)
     for hazard, words in texts.hazards.items():
-        yield Node(HAZARD, hazard), print_of_hazard(Hazard(hazard, **_fields(words)))
+        yield ChainItem(HAZARD, hazard), print_of_hazard(Hazard(hazard, **_fields(words)))
     for parent, other in texts.elsewhere.items():
-        yield Node(PARENT, parent), print_of_words([other.title, other.text])
+        yield ChainItem(PARENT, parent), print_of_words([other.title, other.text])
     for claim, (result, *assumptions) in texts.proofs.items():
-        yield Node(PROOF, f"{id} {claim}"), print_of_proof(result, assumptions)
+        yield ChainItem(PROOF, f"{id} {claim}"), print_of_proof(result, assumptions)
     if texts.analysis:
-        yield Node(ANALYSIS, id), print_of_proof(texts.analysis[0], texts.analysis[1:])
+        yield ChainItem(ANALYSIS, id), print_of_proof(texts.analysis[0], texts.analysis[1:])
     if texts.topics is not None:
-        yield Node(basis.TOPICS, "audited"), _of(sorted(set(texts.topics)))
+        yield ChainItem(basis.TOPICS, "audited"), _of(sorted(set(texts.topics)))
     if texts.fretc:
         yield _VERSION, _of(texts.fretc)
     yield from _of_meaning(id, texts)
 
 
-def _of_meaning(id: str, texts: ReviewedTexts) -> Iterator[tuple[Node, str]]:
+def _of_meaning(id: str, texts: ReviewedTexts) -> Iterator[tuple[ChainItem, str]]:
     """Fingerprints of the sentence, its numbers, the clock and the bindings, parsed again."""
     declarations = _declarations(texts.bindings) if texts.bindings is not None else None
     wording = Source("fretc.lock", texts.sentence).span()
@@ -339,14 +347,14 @@ def _of_meaning(id: str, texts: ReviewedTexts) -> Iterator[tuple[Node, str]]:
     )
     sentence = requirement.fingerprint if requirement else sha256(_line(texts.sentence))
     is_canonical = canonical_text(requirement) == texts.canonical
-    yield Node(basis.SENTENCE, id), sentence if is_canonical else ""
+    yield ChainItem(basis.SENTENCE, id), sentence if is_canonical else ""
     params = {name: canonical.parameter(text) for name, text in texts.params.items()}
-    yield Node(basis.PARAMS, id), _of(params)
+    yield ChainItem(basis.PARAMS, id), _of(params)
     clock = _of(canonical.clock(declarations.clock)) if declarations else ""
-    yield Node(basis.CLOCK, "clock"), clock
+    yield ChainItem(basis.CLOCK, "clock"), clock
     known = requirement.declarations or declarations if requirement else None
     bound = _of(canonical.bound(known, requirement.watched)) if requirement and known else ""
-    yield Node(basis.BINDINGS, id), bound
+    yield ChainItem(basis.BINDINGS, id), bound
     words = canonical.described(known, requirement.watched) if requirement else {}
     if words:
-        yield Node(WORDS, id), _of(words)
+        yield ChainItem(WORDS, id), _of(words)

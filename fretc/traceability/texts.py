@@ -50,7 +50,7 @@ class ExternalParent(Record, frozen=True, omit_defaults=True):
     text: str = ""
 
 
-class Bindings(Record, frozen=True, omit_defaults=True):
+class BindingsTexts(Record, frozen=True, omit_defaults=True):
     """The tables of `bindings.toml` that the requirement reads, by kind and name."""
 
     clock: Table = field(default_factory=dict)
@@ -78,7 +78,7 @@ class ReviewedTexts(Record, frozen=True, omit_defaults=True):
     """Id → hazard, for each hazard above the requirement."""
     elsewhere: dict[str, ExternalParent] = field(default_factory=dict)
     above: dict[str, ParentRequirement] = field(default_factory=dict)
-    bindings: Bindings | None = None
+    bindings: BindingsTexts | None = None
     """None if the project has no bindings."""
     topics: tuple[str, ...] | None = None
     """The topics that the audit of the whole project reads; None if there was no audit."""
@@ -138,7 +138,7 @@ def written_tables(declarations: Declarations | None) -> Mapping[str, Any]:
 
 def bindings(
     requirement: FormalizedRequirement | None, project: Declarations, written: Mapping[str, Any]
-) -> Bindings:
+) -> BindingsTexts:
     """The tables that a requirement reads.
 
     Args:
@@ -148,13 +148,13 @@ def bindings(
     """
     clock = dict(written.get("clock", {}))
     if requirement is None:
-        return Bindings(clock)
+        return BindingsTexts(clock)
     known = requirement.declarations or project
     named = tuple(dict.fromkeys((*requirement.watched, *requirement.propositions)))
     own = [name for name in named if name in known.propositions]
     read = {signal for name in own for signal in known.propositions[name].signals}
     names = {*requirement.variables, *requirement.definitions}
-    return Bindings(
+    return BindingsTexts(
         clock,
         _chosen(written, "signal", read & known.signals.keys()),
         _chosen(written, "proposition", own),

@@ -23,7 +23,7 @@ class RoundOutcome(StrEnum):
     OPEN = "open"
 
 
-class Change(StrEnum):
+class VerdictChange(StrEnum):
     """The change of a requirement in a scenario; the worst first."""
 
     NEW = "new"
@@ -42,7 +42,7 @@ class Change(StrEnum):
     STEADY = "shown as before"
 
 
-RED = (Change.NEW, Change.FIRST_VIOLATED)
+RED = (VerdictChange.NEW, VerdictChange.FIRST_VIOLATED)
 """The changes to violated."""
 _NEUTRAL = (kernel.VACUOUS, "not exercised", "retired")
 """Verdicts that do not count beside others."""
@@ -57,7 +57,7 @@ def round_outcome(verdicts: Iterable[str]) -> RoundOutcome:
     return RoundOutcome.SHOWN if words & {*SHOWN} and not left_open else RoundOutcome.OPEN
 
 
-def change(rounds: Sequence[Sequence[str]]) -> Change:
+def change(rounds: Sequence[Sequence[str]]) -> VerdictChange:
     """The change of a requirement.
 
     Args:
@@ -69,17 +69,17 @@ def change(rounds: Sequence[Sequence[str]]) -> Change:
     last = last_known(rounds)
     if now is None:
         assert judged, "it was never judged"
-        return Change.GONE
+        return VerdictChange.GONE
     if not judged:
-        return Change.FIRST_VIOLATED if now is RoundOutcome.VIOLATED else Change.FIRST
+        return VerdictChange.FIRST_VIOLATED if now is RoundOutcome.VIOLATED else VerdictChange.FIRST
     was_violated = last is not None and before[last] is RoundOutcome.VIOLATED
     match now:
         case RoundOutcome.VIOLATED:
-            return Change.STILL if was_violated else Change.NEW
+            return VerdictChange.STILL if was_violated else VerdictChange.NEW
         case RoundOutcome.SHOWN:
-            return Change.FIXED if was_violated else Change.STEADY
+            return VerdictChange.FIXED if was_violated else VerdictChange.STEADY
         case RoundOutcome.OPEN:
-            return Change.LOST if last is not None else Change.NEVER_SHOWN
+            return VerdictChange.LOST if last is not None else VerdictChange.NEVER_SHOWN
 
 
 def last_known(rounds: Sequence[Sequence[str]]) -> int | None:

@@ -14,7 +14,13 @@ from typing import Any
 from fretc.report.model import phrases
 from fretc.report.pictures.scales import RIGHT, WIDTH, Scale, frame, places, step
 from fretc.trends.changes import RoundOutcome
-from fretc.trends.comparisons import Comparison, Finding, Measure, Value, amount
+from fretc.trends.comparisons import (
+    ComparedMeasure,
+    ComparisonFinding,
+    Value,
+    VersionComparison,
+    amount,
+)
 
 _CELL, _TALL = 9, 16
 MOST_CELLS = 60
@@ -60,7 +66,7 @@ def _in_words(round_outcomes: Sequence[RoundOutcome | None], first: int) -> str:
 # Numbers over rounds ----------------------------------------------------------------------------
 
 
-def chart(one: Comparison, rounds: int, is_after: Sequence[bool], id: str) -> dict[str, Any]:
+def chart(one: VersionComparison, rounds: int, is_after: Sequence[bool], id: str) -> dict[str, Any]:
     """The numbers of all runs over the rounds, with the median of each round.
 
     Args:
@@ -102,7 +108,7 @@ def chart(one: Comparison, rounds: int, is_after: Sequence[bool], id: str) -> di
     )
 
 
-def _chosen(values: Sequence[Value], measure: Measure) -> Sequence[Value]:
+def _chosen(values: Sequence[Value], measure: ComparedMeasure) -> Sequence[Value]:
     """The worst values and others in order: no worse value is left out for a better one."""
     if len(values) <= _MOST_DOTS:
         return values
@@ -118,7 +124,7 @@ def _spread(values: Sequence[Value]) -> Iterator[tuple[float, Value]]:
         yield 0.2 + 0.6 * (i + 0.5) / len(values), value
 
 
-def _text(one: Comparison, of_round: dict[int, list[Value]]) -> str:
+def _text(one: VersionComparison, of_round: dict[int, list[Value]]) -> str:
     unit = one.measure.unit
     ends = [
         f"round {number + 1} {amount(median(v.number for v in of_round[number]), unit)}"
@@ -126,6 +132,6 @@ def _text(one: Comparison, of_round: dict[int, list[Value]]) -> str:
     ]
     medians = f"Median of {' and of '.join(ends)}"
     runs = phrases.times(len(one.values), "run")
-    if one.finding is Finding.REGRESSED:
+    if one.finding is ComparisonFinding.REGRESSED:
         return f"Significantly worse, by medians: {one.worse}. {medians}; {runs} in all."
     return f"{medians}; {runs} in all: {one.finding}."

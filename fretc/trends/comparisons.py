@@ -13,16 +13,16 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from statistics import median
 
-from fretc.audit.evidence.schema import Threshold
+from fretc.audit.evidence.schema import ThresholdRecord
 from fretc.report.model.phrases import some, value
-from fretc.trends.histories import Histories, Run, RunOutcome, Scenario
+from fretc.trends.histories import ComparableRuns, Histories, HistoryRun, RunOutcome
 from fretc.trends.rank_test import RankTest, decidable, fewer, holm, larger
 
 LEVEL = 0.05
 """The probability of even one false regression among all that are reported."""
 
 
-class Kind(StrEnum):
+class MeasureKind(StrEnum):
     """The kind of number of a run."""
 
     LONGEST = "longest latency"
@@ -30,7 +30,7 @@ class Kind(StrEnum):
     MARGIN = "margin"
 
 
-class Finding(StrEnum):
+class ComparisonFinding(StrEnum):
     """The finding of a comparison; the worst first."""
 
     REGRESSED = "regressed"
@@ -39,11 +39,11 @@ class Finding(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Measure:
+class ComparedMeasure:
     """A compared number: a latency of a requirement, or the margin of some to one threshold."""
 
     requirements: tuple[str, ...]
-    kind: Kind
+    kind: MeasureKind
     unit: str
     threshold: str = ""
     """`clearance < 0.05 m (too_close)`; empty for a latency."""
@@ -51,7 +51,7 @@ class Measure:
     @property
     def is_better_larger(self) -> bool:
         """Whether a larger number is better."""
-        return self.kind is Kind.MARGIN
+        return self.kind is MeasureKind.MARGIN
 
     @property
     def ids(self) -> str:
@@ -68,17 +68,17 @@ class Value:
     """The number of one run."""
 
     run: int
-    scenario: Scenario
+    scenario: ComparableRuns
     round: int
     number: float
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class VersionComparison:
     """A measure of the newest version compared with the version before it."""
 
-    measure: Measure
-    finding: Finding
+    measure: ComparedMeasure
+    finding: ComparisonFinding
     before: float | None
     """Medians of the compared runs; None: there are none."""
     after: float | None
@@ -105,8 +105,8 @@ class ComparedRuns:
 
     after: str
     before: str
-    is_after: Callable[[Run], bool]
-    is_before: Callable[[Run], bool]
+    is_after: Callable[[HistoryRun], bool]
+    is_before: Callable[[HistoryRun], bool]
 
 
 def compared_runs(histories: Histories) -> ComparedRuns:
@@ -139,7 +139,7 @@ def compared_runs(histories: Histories) -> ComparedRuns:
 
 def comparisons(
     histories: Histories, compared: ComparedRuns, level: float = LEVEL
-) -> tuple[Comparison, ...]:
+) -> tuple[VersionComparison, ...]:
     """All comparisons, the regressions first.
 
     Only comparisons that could be significant among all others are tested (Tarone): this depends on
@@ -158,13 +158,13 @@ def comparisons(
         _comparison(measure, values, tested[i][1], adjusted.get(i), level)
         for i, (measure, values) in enumerate(measured)
     ]
-    order = list(Finding)
+    order = list(ComparisonFinding)
     return tuple(sorted(all_comparisons, key=lambda one: (order.index(one.finding), one.p or 1.0)))
 
 
-def _measured(histories: Histories) -> list[tuple[Measure, tuple[Value, ...]]]:
+def _measured(histories: Histories) -> list[tuple[ComparedMeasure, tuple[Value, ...]]]:
     """Each measure with its values; a measure that several requirements share is one."""
-    shared: dict[tuple[object, ...], tuple[Measure, tuple[Value, ...]]] = {}
+    shared: dict[tuple[object, ...], tuple[ComparedMeasure, tuple[Value, ...]]] = {}
     for requirement in histories.requirements:
         for measure, values in _measures(histories, requirement):
             of_latency = () if measure.threshold else measure.requirements
@@ -182,10 +182,13 @@ _Strata = Sequence[tuple[Sequence[float], Sequence[float]]]
 
 
 def _tested(
-    runs: Sequence[Run], compared: ComparedRuns, measure: Measure, values: Sequence[Value]
+    runs: Sequence[HistoryRun],
+    compared: ComparedRuns,
+    measure: ComparedMeasure,
+    values: Sequence[Value],
 ) -> tuple[RankTest, _Strata]:
     """The test, and its numbers: each log once, the newest ones first."""
-    strata: dict[Scenario, tuple[list[float], list[float]]] = defaultdict(lambda: ([], []))
+    strata: dict[ComparableRuns, tuple[list[float], list[float]]] = defaultdict(lambda: ([], []))
     passed: set[str] = set()
     for run_value in values:  # from the oldest round on, so that copies in later rounds are skipped
         run = runs[run_value.run]
@@ -200,20 +203,20 @@ def _tested(
 
 
 def _comparison(
-    measure: Measure,
+    measure: ComparedMeasure,
     values: tuple[Value, ...],
     strata: _Strata,
     p: float | None,
     level: float,
-) -> Comparison:
+) -> VersionComparison:
     before = [number for side, _ in strata for number in side]
     after = [number for _, side in strata for number in side]
     constant = len({*before, *after}) == 1
     if p is None:
-        finding = Finding.CHANCE if constant else Finding.TOO_FEW
+        finding = ComparisonFinding.CHANCE if constant else ComparisonFinding.TOO_FEW
     else:
-        finding = Finding.REGRESSED if p <= level else Finding.CHANCE
-    return Comparison(
+        finding = ComparisonFinding.REGRESSED if p <= level else ComparisonFinding.CHANCE
+    return VersionComparison(
         measure,
         finding,
         median(before) if before else None,
@@ -230,7 +233,7 @@ def _comparison(
 
 def _measures(
     histories: Histories, requirement: str
-) -> Iterator[tuple[Measure, tuple[Value, ...]]]:
+) -> Iterator[tuple[ComparedMeasure, tuple[Value, ...]]]:
     """The measures of a requirement, with the values of all comparable runs."""
     judged = [
         one
@@ -244,16 +247,16 @@ def _measures(
     judged.sort(key=lambda one: (one.round, histories.runs[one.run].time or -1, one.run))
     basis = judged[-1].basis
     same = [outcome for outcome in judged if outcome.basis == basis]
-    for kind in (Kind.LONGEST, Kind.MEDIAN):
-        numbers = [one.longest if kind is Kind.LONGEST else one.median for one in same]
+    for kind in (MeasureKind.LONGEST, MeasureKind.MEDIAN):
+        numbers = [one.longest if kind is MeasureKind.LONGEST else one.median for one in same]
         values = [_value(histories.runs, *pair) for pair in zip(same, numbers, strict=True)]
         known_values = tuple(value for value in values if value is not None)
         if known_values:
-            yield Measure((requirement,), kind, "s"), known_values
+            yield ComparedMeasure((requirement,), kind, "s"), known_values
     yield from _margins(histories, requirement, same)
 
 
-def _value(runs: Sequence[Run], one: RunOutcome, number: float | None) -> Value | None:
+def _value(runs: Sequence[HistoryRun], one: RunOutcome, number: float | None) -> Value | None:
     if number is None:
         return None
     return Value(one.run, runs[one.run].scenario, one.round, float(number))
@@ -261,10 +264,10 @@ def _value(runs: Sequence[Run], one: RunOutcome, number: float | None) -> Value 
 
 def _margins(
     histories: Histories, requirement: str, same: Sequence[RunOutcome]
-) -> Iterator[tuple[Measure, tuple[Value, ...]]]:
+) -> Iterator[tuple[ComparedMeasure, tuple[Value, ...]]]:
     """The least margin of each run to each threshold; 0 for a crossed one."""
     known = {one.run: one for one in same}
-    found: dict[Measure, dict[int, float]] = defaultdict(dict)
+    found: dict[ComparedMeasure, dict[int, float]] = defaultdict(dict)
     for source, places in zip(histories.sources, histories.places, strict=True):
         for place, thresholds in source.thresholds([requirement]):
             run = places[place]
@@ -278,10 +281,10 @@ def _margins(
         yield measure, tuple(value for value in values if value is not None)
 
 
-def _threshold(requirement: str, each: Threshold) -> Measure:
+def _threshold(requirement: str, each: ThresholdRecord) -> ComparedMeasure:
     bound = f"{each.bound:.9g}{f' {each.unit}' if each.unit else ''}"
     text = f"{each.signal} {each.operator} {bound} ({each.proposition})"
-    return Measure((requirement,), Kind.MARGIN, each.unit, text)
+    return ComparedMeasure((requirement,), MeasureKind.MARGIN, each.unit, text)
 
 
 def amount(number: float, unit: str) -> str:
@@ -289,6 +292,6 @@ def amount(number: float, unit: str) -> str:
     return value(float(f"{number:.3g}"), unit)
 
 
-def by_finding(found: Sequence[Comparison]) -> Mapping[Finding, int]:
+def by_finding(found: Sequence[VersionComparison]) -> Mapping[ComparisonFinding, int]:
     """The number of comparisons with each finding."""
-    return {kind: sum(one.finding is kind for one in found) for kind in Finding}
+    return {kind: sum(one.finding is kind for one in found) for kind in ComparisonFinding}

@@ -29,7 +29,7 @@ _BASIS = (SENTENCE, PARAMS, CLOCK, TOPICS, BINDINGS)
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Scenario:
+class ComparableRuns:
     """Comparable runs: those of a scenario, or of a log name, or all runs of an evidence."""
 
     name: str
@@ -41,18 +41,18 @@ class Scenario:
 
 
 NAME, ALL = "name", "all"
-ALL_RUNS = Scenario("", ALL)
+ALL_RUNS = ComparableRuns("", ALL)
 """The scenario of a requirement with a probability, which all runs decide together."""
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class HistoryRun:
     """A run of an evidence."""
 
     name: str
     content: str
     """Hash of the content of the log, to detect copies of it."""
-    scenario: Scenario
+    scenario: ComparableRuns
     round: int
     version: str
     """The version of the software from a label; empty: there is none."""
@@ -106,10 +106,10 @@ class Histories:
 
     by: str
     rounds: tuple[Round, ...]
-    runs: tuple[Run, ...]
+    runs: tuple[HistoryRun, ...]
     requirements: Mapping[str, str]
     """Id → the sentence in the newest evidence."""
-    judged: Mapping[tuple[str, Scenario], Sequence[RunOutcome]]
+    judged: Mapping[tuple[str, ComparableRuns], Sequence[RunOutcome]]
     order: str
     """The order of rounds, in words."""
     sources: tuple[EvidenceSource, ...] = field(repr=False)
@@ -159,10 +159,14 @@ _ROSBAG = re.compile(r"(\d{4})_(\d\d)_(\d\d)-(\d\d)_(\d\d)_(\d\d)", re.ASCII)
 """The format of times in folder names of rosbag2."""
 
 
-def scenario_of(facts: RunFacts) -> Scenario:
+def scenario_of(facts: RunFacts) -> ComparableRuns:
     """The scenario of a run."""
     named = facts.labels.get(SCENARIO)
-    return Scenario(named) if named else Scenario(PurePosixPath(facts.run).name or facts.run, NAME)
+    return (
+        ComparableRuns(named)
+        if named
+        else ComparableRuns(PurePosixPath(facts.run).name or facts.run, NAME)
+    )
 
 
 # Reading ----------------------------------------------------------------------------------------
@@ -184,7 +188,7 @@ def histories(sources: Sequence[EvidenceSource], by: str | None = None) -> Histo
     ordered = [sources[i] for i in order]
     facts_of = [facts_of[i] for i in order]
     rounds, round_of = _rounds(by, ordered, facts_of)
-    reader = _Reader(by, round_of)
+    reader = _HistoryReader(by, round_of)
     for i, (source, facts) in enumerate(zip(ordered, facts_of, strict=True)):
         reader.read(i, source, facts)
     return Histories(
@@ -269,13 +273,13 @@ def _round_name(by: str, key: str, sources: Sequence[EvidenceSource]) -> str:
     return key or f"without {'a date' if by == DAY else by}"
 
 
-class _Reader:
+class _HistoryReader:
     """The histories while evidence is read."""
 
     def __init__(self, by: str, round_of: Mapping[str, int]) -> None:
-        self.runs: list[Run] = []
+        self.runs: list[HistoryRun] = []
         self.requirements: dict[str, str] = {}
-        self.judged: dict[tuple[str, Scenario], list[RunOutcome]] = defaultdict(list)
+        self.judged: dict[tuple[str, ComparableRuns], list[RunOutcome]] = defaultdict(list)
         self.places: list[Sequence[int]] = []
         self.bases: list[Sequence[int]] = []
         self._by, self._round_of = by, round_of
@@ -302,9 +306,9 @@ class _Reader:
         self.bases.append(bases)
         self._add_estimates(source, number, [self.runs[i].round for i in run_of.values()])
 
-    def _run(self, facts: RunFacts, round_: int) -> Run:
+    def _run(self, facts: RunFacts, round_: int) -> HistoryRun:
         labels = facts.labels
-        return Run(
+        return HistoryRun(
             facts.run,
             facts.log or facts.log_summary or facts.run,
             scenario_of(facts),

@@ -7,7 +7,7 @@ from typing import Any
 from compiler.files.build_id import __version__
 from compiler.files.records import plain
 from compiler.files.templating import to_json
-from fretc.trends.comparisons import Comparison, by_finding
+from fretc.trends.comparisons import VersionComparison, by_finding
 from fretc.trends.histories import Round, counted
 from fretc.trends.trends import Item, Trends
 
@@ -61,7 +61,7 @@ def _item(each: Item) -> dict[str, Any]:
     }
 
 
-def _comparison(each: Comparison) -> dict[str, Any]:
+def _comparison(each: VersionComparison) -> dict[str, Any]:
     return {
         "requirements": list(each.measure.requirements),
         "measure": str(each.measure),

@@ -10,12 +10,12 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from fretc.audit.evidence.schema import Selection
-from fretc.trends.changes import Change, RoundOutcome, round_outcome
-from fretc.trends.histories import Histories, Run, RunOutcome
+from fretc.trends.changes import RoundOutcome, VerdictChange, round_outcome
+from fretc.trends.histories import Histories, HistoryRun, RunOutcome
 
 
 def is_left_out(
-    histories: Histories, requirement: str, judged: Sequence[RunOutcome], change: Change
+    histories: Histories, requirement: str, judged: Sequence[RunOutcome], change: VerdictChange
 ) -> bool:
     """Whether the selection of logs may be the reason for a change.
 
@@ -35,7 +35,7 @@ def is_left_out(
     before = [
         outcome for outcome in judged if outcome.round < histories.newest and outcome.run >= 0
     ]
-    if change is Change.GONE and requirement in newest.requirements:
+    if change is VerdictChange.GONE and requirement in newest.requirements:
         last = max((one.round for one in before), default=-1)
         return any(
             _may_leave_out(selection, runs[one.run])
@@ -43,7 +43,7 @@ def is_left_out(
             if one.round == last
             for selection in newest.selections
         )
-    if change is Change.FIXED:
+    if change is VerdictChange.FIXED:
         violated = [one for one in before if round_outcome([one.verdict]) is RoundOutcome.VIOLATED]
         last = max((outcome.round for outcome in violated), default=-1)
         names, logs = {run.name for run in now}, {run.content for run in now}
@@ -59,7 +59,7 @@ def is_left_out(
     return False
 
 
-def _may_leave_out(selection: Selection, run: Run, *, by_date: bool = True) -> bool:
+def _may_leave_out(selection: Selection, run: HistoryRun, *, by_date: bool = True) -> bool:
     """Whether the selection may be the reason why the log of a run was not audited.
 
     Args:

@@ -12,9 +12,9 @@ from fretc.audit.evidence.verdicts import severity
 from fretc.audit.selection.choice import in_words
 from fretc.report.model import phrases
 from fretc.report.page.html import hash_source, visible_texts
-from fretc.trends.changes import RED, Change
+from fretc.trends.changes import RED, VerdictChange
 from fretc.trends.charts import chart, strip
-from fretc.trends.comparisons import Comparison, Finding
+from fretc.trends.comparisons import ComparisonFinding, VersionComparison
 from fretc.trends.trends import Group, Item, Trends, arrived, gone, not_selected
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.status_symbols import StatusSymbol
@@ -31,24 +31,25 @@ class _List:
     anchor: str
     title: str
     about: str
-    kinds: tuple[Change, ...]
+    kinds: tuple[VerdictChange, ...]
     sign: StatusSymbol
 
 
 _LISTS = (
     _List("new", "Newly violated",
-          "Violated now, but not in the last round with a known outcome.", (Change.NEW,),
+          "Violated now, but not in the last round with a known outcome.", (VerdictChange.NEW,),
           signs.BAD),
     _List("first-violated", "Violated, and never judged before",
-          "The newest round is the first that judges them.", (Change.FIRST_VIOLATED,), signs.BAD),
+          "The newest round is the first that judges them.", (VerdictChange.FIRST_VIOLATED,),
+          signs.BAD),
     _List("still", "Still violated",
-          "Violated now, and in the last round with a known outcome.", (Change.STILL,),
+          "Violated now, and in the last round with a known outcome.", (VerdictChange.STILL,),
           signs.BAD),
     _List("lost", "Known before, open now",
           "Violated or shown before; the newest round leaves it open, so nothing is fixed.",
-          (Change.LOST,), signs.UNKNOWN),
+          (VerdictChange.LOST,), signs.UNKNOWN),
     _List("fixed", "Fixed",
-          "Violated in the last round with a known outcome, shown now.", (Change.FIXED,),
+          "Violated in the last round with a known outcome, shown now.", (VerdictChange.FIXED,),
           signs.GOOD),
 )  # fmt: skip
 
@@ -58,11 +59,11 @@ def html(trends: Trends) -> str:
     style = render("report/style.css.j2") + render("trends/style.css.j2")
     lists = [_listed(change_list, trends.of(*change_list.kinds)) for change_list in _LISTS]
     flaky = [item for item in trends.items if item.flaky]
-    regressed = trends.with_finding(Finding.REGRESSED)
+    regressed = trends.with_finding(ComparisonFinding.REGRESSED)
     others = [
         comparison
         for comparison in trends.comparisons
-        if comparison.finding is not Finding.REGRESSED
+        if comparison.finding is not ComparisonFinding.REGRESSED
     ]
     moving = [
         comparison
@@ -88,11 +89,11 @@ def html(trends: Trends) -> str:
                     "left": _left(flaky[_MOST_RED:]),
                     "count": phrases.whole(len(flaky)),
                 },
-                "gone_count": phrases.whole(len(trends.of(Change.GONE))),
+                "gone_count": phrases.whole(len(trends.of(VerdictChange.GONE))),
                 "arrived_count": phrases.whole(sum(len(group.items) for group in arrived(trends))),
                 "regressions": phrases.whole(len(regressed)) if regressed else "",
                 "gone": _groups(gone(trends)),
-                "not_selected_count": phrases.whole(len(trends.of(Change.NOT_SELECTED))),
+                "not_selected_count": phrases.whole(len(trends.of(VerdictChange.NOT_SELECTED))),
                 "not_selected": _groups(not_selected(trends)),
                 "arrived": _groups(arrived(trends)),
                 "compared": {"before": trends.compared.before, "after": trends.compared.after},
@@ -103,8 +104,8 @@ def html(trends: Trends) -> str:
                     for one in regressed[_MOST_CHARTS:]
                 ],
                 "others": _charts(trends, pictured, "other"),
-                "few": len(trends.with_finding(Finding.TOO_FEW)),
-                "chance": len(trends.with_finding(Finding.CHANCE)),
+                "few": len(trends.with_finding(ComparisonFinding.TOO_FEW)),
+                "chance": len(trends.with_finding(ComparisonFinding.CHANCE)),
                 "pictured": len(pictured),
                 "moving": len(moving),
             }
@@ -124,11 +125,11 @@ def _mark(trends: Trends) -> dict[str, Any]:
 def _headline(trends: Trends) -> str:
     counts = (
         (len(trends.of(*RED)), "new violation", ""),
-        (len(trends.with_finding(Finding.REGRESSED)), "regression", ""),
-        (len(trends.of(Change.STILL)), "requirement still violated in a scenario",
+        (len(trends.with_finding(ComparisonFinding.REGRESSED)), "regression", ""),
+        (len(trends.of(VerdictChange.STILL)), "requirement still violated in a scenario",
          "requirements still violated in scenarios"),
         (len(trends.lost), "verdict lost", "verdicts lost"),
-        (len(trends.of(Change.FIXED)), "fixed", "fixed"),
+        (len(trends.of(VerdictChange.FIXED)), "fixed", "fixed"),
     )  # fmt: skip
     parts = [phrases.times(count, one, many) for count, one, many in counts if count]
     return f"{phrases.joined(parts) or 'Nothing has changed'}."
@@ -138,7 +139,7 @@ def _facts(trends: Trends) -> list[str]:
     newest = trends.rounds[-1]
     versions = phrases.some([f"version {version}" for version in newest.versions], 3)
     about = ", ".join(filter(None, [newest.days, versions, phrases.times(newest.runs, "run")]))
-    steady, never = len(trends.of(Change.STEADY)), len(trends.of(Change.NEVER_SHOWN))
+    steady, never = len(trends.of(VerdictChange.STEADY)), len(trends.of(VerdictChange.NEVER_SHOWN))
     return [
         f"Newest round: {phrases.place(newest.name)} ({about}).",
         f"{phrases.times(len(trends.rounds), 'round')}, {phrases.times(trends.runs, 'run')}, "
@@ -206,7 +207,7 @@ def _now(item: Item) -> str:
     return "; ".join([verdicts or "not judged", *notes])
 
 
-def _charts(trends: Trends, some: Sequence[Comparison], kind: str) -> list[dict[str, Any]]:
+def _charts(trends: Trends, some: Sequence[VersionComparison], kind: str) -> list[dict[str, Any]]:
     after = trends.is_after
     return [
         chart(one, len(trends.rounds), after, f"{kind}-{number}")

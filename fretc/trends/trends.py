@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.trends.changes import (
     RED,
-    Change,
     RoundOutcome,
+    VerdictChange,
     change,
     is_flaky,
     last_known,
@@ -19,18 +19,18 @@ from fretc.trends.changes import (
 from fretc.trends.comparisons import (
     LEVEL,
     ComparedRuns,
-    Comparison,
-    Finding,
+    ComparisonFinding,
+    VersionComparison,
     compared_runs,
     comparisons,
 )
 from fretc.trends.histories import (
     DAY,
     EVIDENCE,
+    ComparableRuns,
     Histories,
     Round,
     RunOutcome,
-    Scenario,
     histories,
     verdicts_of_rounds,
 )
@@ -45,8 +45,8 @@ class Item:
     """A requirement in a scenario, with its change."""
 
     requirement: str
-    scenario: Scenario
-    change: Change
+    scenario: ComparableRuns
+    change: VerdictChange
     flaky: bool
     changed: bool
     """Whether the requirement or its bindings differ from those of an earlier round."""
@@ -67,7 +67,7 @@ class Item:
     @property
     def last(self) -> RoundOutcome:
         """The verdicts of the last round that judged it."""
-        if self.change is Change.NOT_SELECTED and self.was_violated:
+        if self.change is VerdictChange.NOT_SELECTED and self.was_violated:
             return RoundOutcome.VIOLATED
         return next(filter(None, reversed(self.round_outcomes)))
 
@@ -83,7 +83,7 @@ class Trends:
     items: tuple[Item, ...]
     """Items, the worst first."""
     compared: ComparedRuns
-    comparisons: tuple[Comparison, ...]
+    comparisons: tuple[VersionComparison, ...]
     level: float
     is_after: tuple[bool, ...]
     """For each run, whether it belongs to the newer side of the comparison."""
@@ -95,18 +95,18 @@ class Trends:
         """The number of runs."""
         return len(self.is_after)
 
-    def of(self, *kinds: Change) -> tuple[Item, ...]:
+    def of(self, *kinds: VerdictChange) -> tuple[Item, ...]:
         """The items of some kinds."""
         return tuple(item for item in self.items if item.change in kinds)
 
-    def with_finding(self, kind: Finding) -> tuple[Comparison, ...]:
+    def with_finding(self, kind: ComparisonFinding) -> tuple[VersionComparison, ...]:
         """The comparisons with a finding."""
         return tuple(comparison for comparison in self.comparisons if comparison.finding is kind)
 
     @property
     def is_worse(self) -> bool:
         """Whether a requirement is newly violated, or a number has regressed."""
-        return bool(self.of(*RED) or self.with_finding(Finding.REGRESSED))
+        return bool(self.of(*RED) or self.with_finding(ComparisonFinding.REGRESSED))
 
     @property
     def has_pairs(self) -> bool:
@@ -125,8 +125,8 @@ class Trends:
     @property
     def lost(self) -> tuple[Item, ...]:
         """Items known before and not now, except those not selected and not violated."""
-        left_out = (item for item in self.of(Change.NOT_SELECTED) if item.was_violated)
-        return (*self.of(Change.LOST, Change.GONE), *left_out)
+        left_out = (item for item in self.of(VerdictChange.NOT_SELECTED) if item.was_violated)
+        return (*self.of(VerdictChange.LOST, VerdictChange.GONE), *left_out)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +145,7 @@ class Group:
         return f"{self.name}: {', '.join(counts)}"
 
 
-def grouped(trends: Trends, *kinds: Change) -> tuple[Group, ...]:
+def grouped(trends: Trends, *kinds: VerdictChange) -> tuple[Group, ...]:
     """Items of some kinds: whole scenarios, whole requirements, then the others one by one."""
     others = [item for item in trends.items if item.change not in kinds]
     scenarios, requirements = {i.scenario for i in others}, {i.requirement for i in others}
@@ -162,17 +162,17 @@ def grouped(trends: Trends, *kinds: Change) -> tuple[Group, ...]:
 
 def gone(trends: Trends) -> tuple[Group, ...]:
     """Items that were judged before, and are not in the newest round."""
-    return grouped(trends, Change.GONE)
+    return grouped(trends, VerdictChange.GONE)
 
 
 def not_selected(trends: Trends) -> tuple[Group, ...]:
     """Items that were judged before, in logs that the selection may have left out."""
-    return grouped(trends, Change.NOT_SELECTED)
+    return grouped(trends, VerdictChange.NOT_SELECTED)
 
 
 def arrived(trends: Trends) -> tuple[Group, ...]:
     """Items that were never judged before; violated ones are also reported one by one."""
-    return grouped(trends, Change.FIRST, Change.FIRST_VIOLATED)
+    return grouped(trends, VerdictChange.FIRST, VerdictChange.FIRST_VIOLATED)
 
 
 def trends(
@@ -191,7 +191,7 @@ def trends(
         return diagnostic("no_run_with_label", by=by)
     read_histories = histories(sources, by)
     items = [_item(read_histories, *key, judged) for key, judged in read_histories.judged.items()]
-    order = list(Change)
+    order = list(VerdictChange)
     items.sort(
         key=lambda item: (
             order.index(item.change),
@@ -214,7 +214,7 @@ def trends(
 
 
 def _item(
-    known: Histories, requirement: str, scenario: Scenario, judged: Sequence[RunOutcome]
+    known: Histories, requirement: str, scenario: ComparableRuns, judged: Sequence[RunOutcome]
 ) -> Item:
     rounds = verdicts_of_rounds(judged, len(known.rounds))
     basis = max(judged, key=lambda one: one.round).basis
@@ -228,7 +228,7 @@ def _item(
     return Item(
         requirement,
         scenario,
-        Change.NOT_SELECTED if is_left_out(known, requirement, judged, became) else became,
+        VerdictChange.NOT_SELECTED if is_left_out(known, requirement, judged, became) else became,
         is_flaky(same, of_software),
         len(comparable) < len(judged),
         rounds,

@@ -18,11 +18,11 @@ from compiler.files.text_files import content, sha256
 from compiler.files.text_files import read as read_text
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import (
+    ClaimOutcome,
+    ClaimResult,
+    ClaimTrace,
     Layer,
-    Outcome,
     Proof,
-    Result,
-    Trace,
     not_checked,
     proof,
     proved,
@@ -32,7 +32,7 @@ from compiler.logic.claims import (
 from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.ajpf.runner import ERROR, HOLDS, SCHEMA, VIOLATED, verdict
-from compiler.targets.target import DEFAULT, Options
+from compiler.targets.target import DEFAULT, TargetOptions
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
@@ -67,7 +67,7 @@ class Check:
     log: str
     """Name of the file with the output of AJPF."""
     log_sha256: str
-    trace: Trace | None
+    trace: ClaimTrace | None
 
     @property
     def question(self) -> tuple[str, str, str, str, str]:
@@ -136,7 +136,7 @@ def merged(proofs: Sequence[Proof], present: Sequence[Proof]) -> tuple[Proof, ..
 
 
 def _unheld(one: Proof) -> Proof:
-    if one.result is Result.COUNTEREXAMPLE:
+    if one.result is ClaimResult.COUNTEREXAMPLE:
         return one
     reason = (
         "the file of AJPF's result is missing, so it cannot be compared with the present bundle"
@@ -212,7 +212,7 @@ def _check(at: JsonValue) -> Check:
     )
 
 
-def _trace(at: JsonValue) -> Trace:
+def _trace(at: JsonValue) -> ClaimTrace:
     names = tuple(name.text() for name in at.field("names").items())
     rows = tuple(
         tuple(None if cell.value is None else cell.flag() for cell in row.items())
@@ -225,7 +225,7 @@ def _trace(at: JsonValue) -> Trace:
     back = None if cycle.value is None else cycle.count()
     if back is not None and back >= len(rows):
         raise cycle.wrong("the number of a row")
-    return Trace(names, rows, actions, back)
+    return ClaimTrace(names, rows, actions, back)
 
 
 # What counts -----------------------------------------------------------------------------------
@@ -233,7 +233,7 @@ def _trace(at: JsonValue) -> Trace:
 
 @with_recursion_limit
 def _proof(requirement: FormalizedRequirement, result: AjpfResult) -> Proof:
-    options = Options(weaken=True) if result.weakened else DEFAULT
+    options = TargetOptions(weaken=True) if result.weakened else DEFAULT
     main = next((c for c in result.checks if c.role == "requirement"), None)
     stated = f": {main.text}" if main else ""
     which = "its bundle"
@@ -250,16 +250,18 @@ def _proof(requirement: FormalizedRequirement, result: AjpfResult) -> Proof:
     reason = _reason(requirement, result, options)
     outcome = _conclusion(result)
     if reason is not None:
-        was = "it was refuted; " if outcome.result is Result.COUNTEREXAMPLE else ""
+        was = "it was refuted; " if outcome.result is ClaimResult.COUNTEREXAMPLE else ""
         outcome = not_checked(f"{was}{reason}")
     loss = ajpf.weakened(requirement, options)
-    if outcome.result is Result.PROVED and loss is not None:
+    if outcome.result is ClaimResult.PROVED and loss is not None:
         outcome = not_checked(f"what AJPF shows is weaker than {requirement.id}: {loss}")
     claim = f"AJPF: every run of the agent of {which} keeps {requirement.id}{stated}"
     return proof(requirement.id, Layer.AJPF, claim, outcome, result.engine, _ASSUMED, hashes)
 
 
-def _reason(requirement: FormalizedRequirement, result: AjpfResult, options: Options) -> str | None:
+def _reason(
+    requirement: FormalizedRequirement, result: AjpfResult, options: TargetOptions
+) -> str | None:
     """Why the result is not about the present files; None: it is."""
     refused = bundle.refusal(requirement, options)
     if refused is not None:
@@ -324,7 +326,7 @@ def _changed(file: str, hashed: str) -> str | None:
     return None
 
 
-def _conclusion(result: AjpfResult) -> Outcome:
+def _conclusion(result: AjpfResult) -> ClaimOutcome:
     """The outcome of all checks together: a refutation first, then missing answers."""
     checks = result.checks
     for check in checks:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from compiler.files import records
 from compiler.files.text_files import sha256
-from compiler.logic.claims import Document, Proof, Result
+from compiler.logic.claims import ClaimResult, Proof, VerificationDocument
 from fretish.diagnostics.diagnostic import Diagnostic
 
 
@@ -20,7 +20,7 @@ class Proofs:
 
     file: str
     sha256: str
-    document: Document
+    document: VerificationDocument
 
     @property
     def fretc(self) -> str:
@@ -31,7 +31,7 @@ class Proofs:
     def proofs(self) -> tuple[Proof, ...]:
         """One proof for each claim that applies to its requirement."""
         evidence = self.document.evidence
-        return tuple(each for each in evidence if each.result is not Result.NOT_APPLICABLE)
+        return tuple(each for each in evidence if each.result is not ClaimResult.NOT_APPLICABLE)
 
 
 DEFAULT = "build/verification.json"
@@ -40,7 +40,9 @@ DEFAULT = "build/verification.json"
 
 def read(path: str) -> Proofs | Diagnostic:
     """Read and check a file of `fretc verify`."""
-    found = records.read(path, Document, "fretc verify", "verify again: `fretc verify FILE...`")
+    found = records.read(
+        path, VerificationDocument, "fretc verify", "verify again: `fretc verify FILE...`"
+    )
     if isinstance(found, Diagnostic):
         return found
     source, document = found

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import assert_never
 
-from compiler.logic.claims import Layer, Proof, Result, Trace
+from compiler.logic.claims import ClaimResult, ClaimTrace, Layer, Proof
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.status_symbols import StatusSymbol
 from monitors.kernel.verdicts import Truth
@@ -38,12 +38,12 @@ def lines(proofs: Sequence[Proof], *, every_claim: bool = False) -> Iterator[Lin
 
 # The table ------------------------------------------------------------------------------------
 
-_Cells = Mapping[tuple[str, Layer], Result]
+_Cells = Mapping[tuple[str, Layer], ClaimResult]
 """Worst result of each requirement at each layer, or of a shared part."""
 
 
 def _cells(proofs: Sequence[Proof]) -> _Cells:
-    cells: dict[tuple[str, Layer], Result] = {}
+    cells: dict[tuple[str, Layer], ClaimResult] = {}
     for proof in proofs:
         place = proof.requirement, proof.layer
         cells[place] = min(cells.get(place, proof.result), proof.result, key=_ORDER.index)
@@ -66,22 +66,22 @@ def _overview(cells: _Cells) -> Iterator[Line]:
 
 def _counts(proofs: Sequence[Proof], *, every_claim: bool) -> Iterator[Line]:
     """Number of proved claims, and of requirements to which each layer does not apply."""
-    proved = [proof for proof in proofs if proof.result is Result.PROVED]
+    proved = [proof for proof in proofs if proof.result is ClaimResult.PROVED]
     if proved:
         noun = "claim is" if len(proved) == 1 else "claims are"
         under = sum(bool(proof.assumptions) for proof in proved)
         assuming = f", {under} of them under assumptions" if under else ""
         hint = "" if every_claim else ": `--all` lists them"
-        sign = SIGNS[Result.PROVED]
+        sign = SIGNS[ClaimResult.PROVED]
         yield f"{sign.glyph} {len(proved)} {noun} proved{assuming}{hint}", sign.colour
-    absent = [each for each in proofs if each.result is Result.NOT_APPLICABLE]
+    absent = [each for each in proofs if each.result is ClaimResult.NOT_APPLICABLE]
     if absent:
         places = dict.fromkeys((each.layer, each.requirement) for each in absent)
         counts = Counter(layer for layer, requirement in places if requirement != layer)
         shared = [layer for layer, requirement in places if requirement == layer]
         parts = [f"{layer} to {_requirements(count)}" for layer, count in counts.items()]
         hint = "" if every_claim else ": `--all` lists why"
-        sign = SIGNS[Result.NOT_APPLICABLE]
+        sign = SIGNS[ClaimResult.NOT_APPLICABLE]
         yield f"{sign.glyph} does not apply: {', '.join([*parts, *shared])}{hint}", sign.colour
 
 
@@ -125,17 +125,17 @@ def _numbers(proofs: Sequence[Proof]) -> Mapping[str, int]:
     return {text: number for number, text in enumerate(texts, 1)}
 
 
-SIGNS: Mapping[Result, StatusSymbol] = {
-    Result.COUNTEREXAMPLE: signs.BAD,
-    Result.NOT_CHECKED: signs.UNKNOWN,
-    Result.VACUOUS: signs.EMPTY,
-    Result.PROVED: signs.GOOD,
-    Result.NOT_APPLICABLE: signs.RETIRED,
+SIGNS: Mapping[ClaimResult, StatusSymbol] = {
+    ClaimResult.COUNTEREXAMPLE: signs.BAD,
+    ClaimResult.NOT_CHECKED: signs.UNKNOWN,
+    ClaimResult.VACUOUS: signs.EMPTY,
+    ClaimResult.PROVED: signs.GOOD,
+    ClaimResult.NOT_APPLICABLE: signs.RETIRED,
 }
 """Symbols of results, the worst first."""
 _ORDER = tuple(SIGNS)
-_OPEN = (Result.COUNTEREXAMPLE, Result.NOT_CHECKED, Result.VACUOUS)
-_UNEXAMINED = {Result.NOT_CHECKED: "not checked", Result.NOT_APPLICABLE: "does not apply"}
+_OPEN = (ClaimResult.COUNTEREXAMPLE, ClaimResult.NOT_CHECKED, ClaimResult.VACUOUS)
+_UNEXAMINED = {ClaimResult.NOT_CHECKED: "not checked", ClaimResult.NOT_APPLICABLE: "does not apply"}
 
 
 def _outcome(proof: Proof, numbers: Mapping[str, int]) -> str:
@@ -144,15 +144,15 @@ def _outcome(proof: Proof, numbers: Mapping[str, int]) -> str:
     if proof.assumptions:
         under = f" under ({_listed([numbers[text] for text in proof.assumptions])})"
     match proof.result:
-        case Result.PROVED:
+        case ClaimResult.PROVED:
             return f"proved{under}: {proof.claim}; {proof.detail}"
-        case Result.COUNTEREXAMPLE:
+        case ClaimResult.COUNTEREXAMPLE:
             return f"counterexample{under}: not true that {proof.claim}; {proof.detail}"
-        case Result.VACUOUS:
+        case ClaimResult.VACUOUS:
             return f"vacuous{under}: {proof.claim}, but {proof.detail}"
-        case Result.NOT_CHECKED:
+        case ClaimResult.NOT_CHECKED:
             return f"not checked: {proof.claim}; {proof.detail}"
-        case Result.NOT_APPLICABLE:
+        case ClaimResult.NOT_APPLICABLE:
             return f"does not apply: {proof.claim}; {proof.detail}"
         case _:
             assert_never(proof.result)
@@ -170,7 +170,7 @@ def _listed(numbers: Sequence[int]) -> str:
 # Runs -----------------------------------------------------------------------------------------
 
 
-def table(trace: Trace) -> Iterator[str]:
+def table(trace: ClaimTrace) -> Iterator[str]:
     """The run as a table with headings; equal ticks share a row, and a repeated part is marked."""
     stretches = list(_stretches(trace))
     heads = ("tick", *trace.names)
@@ -187,7 +187,7 @@ def table(trace: Trace) -> Iterator[str]:
         yield f"the ticks from {trace.cycle} on repeat for ever"
 
 
-def _stretches(trace: Trace) -> Iterator[tuple[str, int, str]]:
+def _stretches(trace: ClaimTrace) -> Iterator[tuple[str, int, str]]:
     """`3` or `3..7`, its first tick, and the events of each of its ticks."""
     actions = trace.actions or ("",) * len(trace.rows)
     ticks = range(len(trace.rows))
@@ -206,7 +206,7 @@ def _value(value: Truth, name: str) -> str:
     return str(int(value))
 
 
-def as_csv(trace: Trace, propositions: Sequence[str]) -> str:
+def as_csv(trace: ClaimTrace, propositions: Sequence[str]) -> str:
     """The propositions of the run as CSV for the monitor's command line.
 
     Args:

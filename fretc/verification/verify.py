@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from compiler.files import records
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.claims import Proof, Result
+from compiler.logic.claims import ClaimResult, Proof
 from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.verification.layers.request import Request
@@ -43,11 +43,11 @@ def _open_where_demanded(proof: Proof, project: Project, request: Request) -> Pr
     by_id = {requirement.id: requirement.entry for requirement in project.formalized}
     shared = tuple(by_id.values())
     own = (by_id[proof.requirement],) if proof.requirement in by_id else shared
-    if proof.result is not Result.NOT_APPLICABLE or not any(
+    if proof.result is not ClaimResult.NOT_APPLICABLE or not any(
         request.demands(proof.layer, entry) for entry in own
     ):
         return proof
-    return records.replace(proof, result=Result.NOT_CHECKED)
+    return records.replace(proof, result=ClaimResult.NOT_CHECKED)
 
 
 def missing_prover(request: Request) -> Diagnostic | None:

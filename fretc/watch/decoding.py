@@ -16,7 +16,7 @@ from mcap.records import Schema
 
 from fretc.logs import log_diagnostics
 from fretc.logs.extraction import Extract, Extraction
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.payloads import Payloads
 from fretc.logs.messages.python_messages import Value
@@ -154,7 +154,7 @@ def _value(extract: Extract, name: str) -> Value:
     return (value, values.dtype, "") if not isnan(value) else _NOTHING
 
 
-def stream_of(channel: Channel, id: int = 1) -> Stream:
+def stream_of(channel: Channel, id: int = 1) -> ChannelDefinition:
     """A channel as a stream for the decoders of logs."""
     schema = None
     if channel.schema_name or channel.schema_encoding:
@@ -164,7 +164,7 @@ def stream_of(channel: Channel, id: int = 1) -> Stream:
             encoding=channel.schema_encoding,
             data=channel.schema,
         )
-    return Stream(
+    return ChannelDefinition(
         McapChannel(
             id=id,
             topic=channel.topic,

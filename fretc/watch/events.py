@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from fretc.watch.sources.source import Interrupted, Missed, Opened, Reconnected
+from fretc.watch.sources.source import ConnectionLost, Missed, Opened, Reconnected
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.guard import State
 
@@ -55,7 +55,7 @@ WatchEvent = (
     | DiagnosticEvent
     | RunEnded
     | Opened
-    | Interrupted
+    | ConnectionLost
     | Reconnected
     | Missed
 )

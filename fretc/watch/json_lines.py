@@ -15,7 +15,7 @@ from compiler.files.records import (
     plain,
 )
 from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, StateChange, WatchEvent
-from fretc.watch.sources.source import Interrupted, Missed, Opened, Reconnected
+from fretc.watch.sources.source import ConnectionLost, Missed, Opened, Reconnected
 
 _Time = Annotated[Whole | None, about("nanoseconds on the declared clock; null: there is none")]
 
@@ -138,7 +138,7 @@ def _line(event: WatchEvent) -> Line:
             )
         case Opened(name):
             return OpenedLine(name)
-        case Interrupted(since, problem):
+        case ConnectionLost(since, problem):
             return InterruptedLine(since, problem.code.number, problem.message)
         case Reconnected(since, until):
             return MissedLine(since, until, reconnected=True, count=None)

@@ -26,7 +26,7 @@ MOST_GAPS = 10_000
 """The most intervals of missed messages that are written one by one; more are merged into one."""
 
 
-class Recorder:
+class RunRecorder:
     """A writer of one run."""
 
     def __init__(self, path: Path, clock: Clock) -> None:

@@ -7,7 +7,7 @@ from functools import partial
 
 from fretc.audit.measurements.judgement import judge
 from fretc.audit.plan import Plan
-from fretc.logs.stream import Tick, Withdrawn
+from fretc.logs.stream import ClockTick, Withdrawn
 from monitors import kernel
 from monitors.kernel import Column, Monitor, Outcome
 from monitors.kernel.stepping import Standing
@@ -35,7 +35,7 @@ class RequirementMonitors:
         """The number of judged ticks."""
         return len(self.ledger)
 
-    def step(self, tick: Tick) -> None:
+    def step(self, tick: ClockTick) -> None:
         """Judge one more tick."""
         self.ledger.advance(tick.time, tick.truth)
 

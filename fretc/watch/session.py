@@ -15,7 +15,7 @@ from fretc.audit.plan import Plan
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.traces import trace
-from fretc.logs.stream import End, Stream, Tick, Withdrawn
+from fretc.logs.stream import ClockTick, SampleStream, StreamEnd, Withdrawn
 from fretc.watch.decoding import Decoder, Timed
 from fretc.watch.requirement_monitors import RequirementMonitors
 from fretc.watch.sources.source import Arrival
@@ -46,7 +46,7 @@ class EndedRun:
 
 
 @dataclass(slots=True)
-class Topic:
+class ArrivedMessages:
     """The messages of a topic that have arrived."""
 
     count: int = 0
@@ -78,7 +78,7 @@ class Session:
         assert patience is not None, "a clock by stamps has a lateness"
         self._patience = patience
         self._monitors = RequirementMonitors(plan)
-        self._stream = Stream(plan.declarations, self._monitors.propositions)
+        self._stream = SampleStream(plan.declarations, self._monitors.propositions)
         self._decoder = Decoder(plan.declarations)
         self._latest: dict[str, int] = {}
         self.now = 0
@@ -96,7 +96,7 @@ class Session:
         self._ahead: tuple[Truth, ...] | None = None
         self._final: Mapping[str, str] = {}
         """The verdicts of a run that has ended."""
-        self.topics = {name: Topic() for name in sorted(self._decoder.topics)}
+        self.topics = {name: ArrivedMessages() for name in sorted(self._decoder.topics)}
         self.problems: list[Diagnostic] = []
         """Diagnostics of the messages of topics, each once."""
 
@@ -291,7 +291,7 @@ class Session:
         if self._gap_from is not None:
             self._withdraw(self._stream.miss(self._gap_from, self.now))
         stream_end = self._stream.end()
-        if not isinstance(stream_end, End):
+        if not isinstance(stream_end, StreamEnd):
             return stream_end
         for tick in stream_end.ticks:
             self._monitors.step(tick)
@@ -314,6 +314,6 @@ class Session:
         self._monitors, self._ahead = RequirementMonitors(self._plan), None
         rows = rows_of([columns.columns[name] for name in names], len(times))
         for time, row in zip(times, rows, strict=True):
-            self._monitors.step(Tick(time, dict(zip(names, row, strict=True))))
+            self._monitors.step(ClockTick(time, dict(zip(names, row, strict=True))))
         self._final = self._monitors.verdicts(columns.cut, intact=recording.intact)
         return self._final

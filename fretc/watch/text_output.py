@@ -10,7 +10,7 @@ from fretc.terminal.output import Piece
 from fretc.terminal.screen import Screen, fitted, padded, titled, width
 from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, StateChange, WatchEvent
 from fretc.watch.session import Session
-from fretc.watch.sources.source import Interrupted, Missed, Opened, Reconnected
+from fretc.watch.sources.source import ConnectionLost, Missed, Opened, Reconnected
 from fretish.bindings.amounts import duration, seconds
 from monitors.guard import State
 from monitors.kernel.verdicts import Truth
@@ -90,7 +90,7 @@ def line(event: WatchEvent, start: int | None) -> str | None:
             return f"late messages ({of}): {ticks} judged ticks became unknown"
         case Opened(name):
             return f"watches {name}"
-        case Interrupted(_, problem):
+        case ConnectionLost(_, problem):
             return f"interrupted: {problem.message}"
         case Reconnected(since, until):
             return f"connected again: messages of {duration((until - since) / _S)} are lost"

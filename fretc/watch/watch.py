@@ -7,13 +7,13 @@ from pathlib import Path
 
 from fretc.audit.plan import Plan
 from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, StateChange, WatchEvent
-from fretc.watch.recording import Recorder
+from fretc.watch.recording import RunRecorder
 from fretc.watch.session import EndedRun, Jump, Session
 from fretc.watch.sources.source import (
     Arrival,
+    ConnectionLost,
     Event,
     Idle,
-    Interrupted,
     Missed,
     Opened,
     Problem,
@@ -77,13 +77,13 @@ class Watch:
         """The files of the runs that have ended."""
         return [run.recording for run in self.runs if run.recording is not None]
 
-    def _new_recorder(self) -> Recorder | None:
+    def _new_recorder(self) -> RunRecorder | None:
         if self._record is None:
             return None
         path = self._record
         if self.runs:
             path = path.with_name(f"{path.stem}-{len(self.runs) + 1}{path.suffix}")
-        return Recorder(path, self._plan.declarations.clock)
+        return RunRecorder(path, self._plan.declarations.clock)
 
     # Arrivals
 
@@ -103,7 +103,7 @@ class Watch:
                 self.session.miss(min(since, self._lost_since or since), until)
                 self._lost_since = None
                 yield item
-            case Interrupted(since):
+            case ConnectionLost(since):
                 self._lost_since = since
                 self.session.interrupt()
                 yield item

@@ -42,7 +42,7 @@ class _ComparisonError(DiagnosticError):
 
 
 @dataclass(frozen=True, slots=True)
-class _Measure:
+class _NumberUnit:
     """The unit of the numbers in an expression."""
 
     name: str
@@ -56,7 +56,7 @@ class _Measure:
     """Whether a bare number in this unit is implausible, as in cm/m."""
 
 
-_PLAIN = _Measure("", ONE, measured=False)
+_PLAIN = _NumberUnit("", ONE, measured=False)
 
 
 def is_measured(expression: e.Expression, signals: Mapping[str, Signal]) -> bool:
@@ -107,14 +107,14 @@ def in_own_units(
         signals: the declared signals.
         place: the span of a diagnostic about a part without a span.
     """
-    return _Writer(signals, place, bare=True).comparison(comparison)
+    return _ComparisonRewriter(signals, place, bare=True).comparison(comparison)
 
 
 def bound(
     comparison: e.Comparison, signals: Mapping[str, Signal], place: Span
 ) -> e.Comparison | Diagnostic:
     """The comparison as an expression of bindings, in which each number has its unit."""
-    rewritten = _Writer(signals, place, bare=False).comparison(comparison)
+    rewritten = _ComparisonRewriter(signals, place, bare=False).comparison(comparison)
     if isinstance(rewritten, Diagnostic):
         return rewritten
     kinds = {name: signal.unit.dimension for name, signal in signals.items()}
@@ -124,19 +124,19 @@ def bound(
 
 def is_mixed(comparison: e.Comparison, signals: Mapping[str, Signal], place: Span) -> bool:
     """Whether the comparison combines signals in different units of one dimension."""
-    return is_measured(comparison, signals) and _Writer(signals, place, bare=True).is_mixed(
-        comparison
-    )
+    return is_measured(comparison, signals) and _ComparisonRewriter(
+        signals, place, bare=True
+    ).is_mixed(comparison)
 
 
-class _Writer:
+class _ComparisonRewriter:
     """Rewrites the numbers of a comparison into the units that their operands require."""
 
     def __init__(self, signals: Mapping[str, Signal], place: Span, *, bare: bool) -> None:
         self._signals = signals
         self._place = place
         self._bare = bare
-        self._measures: dict[int, _Measure | None] = {}
+        self._measures: dict[int, _NumberUnit | None] = {}
         """`id(part)` → its unit. Hashing a tree would take time proportional to its size."""
 
     def comparison(self, comparison: e.Comparison) -> e.Comparison | Diagnostic:
@@ -157,21 +157,21 @@ class _Writer:
 
     # Units
 
-    def _measure(self, part: e.Expression) -> _Measure | None:
+    def _measure(self, part: e.Expression) -> _NumberUnit | None:
         """The unit of a part; None if it consists of bare numbers only."""
         if id(part) not in self._measures:
             self._measures[id(part)] = self._compute_measure(part)
         return self._measures[id(part)]
 
-    def _compute_measure(self, part: e.Expression) -> _Measure | None:
+    def _compute_measure(self, part: e.Expression) -> _NumberUnit | None:
         match part:
             case e.Number():
                 return None
             case e.Quantity(_, name, span):
-                return _Measure(name, self._unit(name, span), measured=False)
+                return _NumberUnit(name, self._unit(name, span), measured=False)
             case e.Name(id):
                 signal = self._signals[id]
-                return _Measure(signal.unit_name, signal.unit, measured=True)
+                return _NumberUnit(signal.unit_name, signal.unit, measured=True)
             case e.Arithmetic("*" | "/" as op, left, right):
                 return self._product(op, left, right)
             case e.Arithmetic("^", base, exponent):
@@ -191,7 +191,7 @@ class _Writer:
         assert known is not None, "the lexer knows all units"
         return known
 
-    def _product(self, op: str, left: e.Expression, right: e.Expression) -> _Measure | None:
+    def _product(self, op: str, left: e.Expression, right: e.Expression) -> _NumberUnit | None:
         first, second = self._measure(left), self._measure(right)
         if first is None and second is None:
             return None
@@ -200,9 +200,9 @@ class _Writer:
         name = unit_product(a.name, b.name) if op == "*" else unit_quotient(a.name, b.name)
         both = bool(a.name and b.name)
         vague = a.vague or b.vague or (both and is_vague(name))
-        return _Measure(name, combined, a.measured or b.measured, a.mixed or b.mixed, vague)
+        return _NumberUnit(name, combined, a.measured or b.measured, a.mixed or b.mixed, vague)
 
-    def _power(self, base: e.Expression, exponent: e.Expression) -> _Measure | None:
+    def _power(self, base: e.Expression, exponent: e.Expression) -> _NumberUnit | None:
         first, count = self._measure(base), _exponent(exponent)
         assert count is not None, "the comparison is measured"
         if first is None:
@@ -212,7 +212,7 @@ class _Writer:
             name, combined = unit_product(name, first.name), times(combined, first.unit)
         return replace(first, name=name, unit=combined)
 
-    def _common_measure(self, parts: Sequence[e.Expression]) -> _Measure:
+    def _common_measure(self, parts: Sequence[e.Expression]) -> _NumberUnit:
         """The common unit of parts that are compared or added: the unit of their signals."""
         measures = [(part, m) for part in parts if (m := self._measure(part)) is not None]
         if not measures:
@@ -231,7 +231,7 @@ class _Writer:
 
     # Numbers
 
-    def _rewrite(self, part: e.Expression, target: _Measure) -> e.Expression:
+    def _rewrite(self, part: e.Expression, target: _NumberUnit) -> e.Expression:
         """The part with its numbers converted into the target's unit."""
         if self._measure(part) is None:
             return self._constant(part, target)
@@ -255,7 +255,7 @@ class _Writer:
             case _:
                 return part
 
-    def _constant(self, part: e.Expression, target: _Measure) -> e.Expression:
+    def _constant(self, part: e.Expression, target: _NumberUnit) -> e.Expression:
         """A part of bare numbers only, with the target's unit attached where bindings need it."""
         for operand in e.parts(part):
             if isinstance(operand, e.Number) and not _is_number(operand.digits):
@@ -276,14 +276,14 @@ class _Writer:
             return replace(part, arg=self._constant(part.arg, target))
         return e.Arithmetic("*", part, e.Quantity("1", target.name))
 
-    def _quantity(self, quantity: e.Quantity, target: _Measure) -> e.Expression:
+    def _quantity(self, quantity: e.Quantity, target: _NumberUnit) -> e.Expression:
         if not self._bare or target.mixed:
             return quantity
         factor = self._unit(quantity.unit, quantity.span).factor / target.unit.factor
         return plain(number(quantity.digits) * factor, quantity.span)
 
     def _rewrite_product(
-        self, part: e.Arithmetic, left: e.Expression, right: e.Expression, target: _Measure
+        self, part: e.Arithmetic, left: e.Expression, right: e.Expression, target: _NumberUnit
     ) -> e.Expression:
         """A product or quotient: signals keep their units, quantities get base units.
 
@@ -298,12 +298,12 @@ class _Writer:
         )
         return self._convert(product, part, target)
 
-    def _keeps_units(self, part: e.Expression, target: _Measure) -> bool:
+    def _keeps_units(self, part: e.Expression, target: _NumberUnit) -> bool:
         """Whether quantities keep their units because signals with different units are combined."""
         own = self._measure(part)
         return self._bare and target.mixed and own is not None and not own.measured
 
-    def _rewrite_power(self, part: e.Arithmetic, target: _Measure) -> e.Expression:
+    def _rewrite_power(self, part: e.Arithmetic, target: _NumberUnit) -> e.Expression:
         """A power: the base keeps its unit, and the result is converted."""
         if self._keeps_units(part, target):
             return part
@@ -312,7 +312,9 @@ class _Writer:
             power = replace(power, right=e.Number(str(_exponent(part.right))))
         return self._convert(power, part, target)
 
-    def _convert(self, product: e.Arithmetic, part: e.Arithmetic, target: _Measure) -> e.Expression:
+    def _convert(
+        self, product: e.Arithmetic, part: e.Arithmetic, target: _NumberUnit
+    ) -> e.Expression:
         """The rewritten part, converted to the target's unit if it contains no signal."""
         own = self._measure(part)
         assert own is not None
@@ -329,7 +331,7 @@ class _Writer:
         return self._rewrite(part, replace(target, vague=target.vague or added))
 
 
-def _factor_measure(measure: _Measure | None) -> _Measure:
+def _factor_measure(measure: _NumberUnit | None) -> _NumberUnit:
     """The unit of a factor: quantities are in base units, so `50 %` is 0.5."""
     if measure is None:
         return _PLAIN
@@ -338,7 +340,7 @@ def _factor_measure(measure: _Measure | None) -> _Measure:
     dimension = measure.unit.dimension
     vague = measure.vague or (dimension != DIMENSIONLESS and measure.unit.factor != 1)
     base = Unit(dimension, Fraction(1))
-    return _Measure(str(base), base, measured=False, vague=vague)
+    return _NumberUnit(str(base), base, measured=False, vague=vague)
 
 
 def plain(exact: Fraction, span: Span | None = None) -> e.Expression:
@@ -377,17 +379,17 @@ def _is_number(digits: str) -> bool:
     return True
 
 
-def _describe(measure: _Measure) -> str:
+def _describe(measure: _NumberUnit) -> str:
     if measure.unit.dimension == DIMENSIONLESS:
         return "a number without a unit"
     return f"a quantity in {measure.name}"
 
 
-def _mismatch(left: _Measure, right: _Measure, place: Span) -> Diagnostic:
+def _mismatch(left: _NumberUnit, right: _NumberUnit, place: Span) -> Diagnostic:
     return diagnostic("quantities_differ", place, left=_describe(left), right=_describe(right))
 
 
-def _ambiguous_unit(place: Span, target: _Measure) -> Diagnostic:
+def _ambiguous_unit(place: Span, target: _NumberUnit) -> Diagnostic:
     plain = target.unit.dimension == DIMENSIONLESS
     return diagnostic(
         "ambiguous_number",

@@ -39,7 +39,7 @@ Kind = Dimension | None
 def parse(text: Span) -> e.Expression | Diagnostic:
     """Parse the whole text as one expression; spans of the tree refer to the text's source."""
     try:
-        return cast(e.Expression, _TreeBuilder(text).transform(_lark().parse(text.text)))
+        return cast(e.Expression, _ExpressionBuilder(text).transform(_lark().parse(text.text)))
     except UnexpectedInput as error:
         return _unexpected(error, text)
     except VisitError as error:
@@ -67,7 +67,7 @@ def _parts(children: list[Any]) -> list[Any]:
 
 
 @v_args(inline=False)
-class _TreeBuilder(Transformer_NonRecursive[Token, Any]):
+class _ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
     def __init__(self, text: Span) -> None:
         super().__init__()
         self._text = text

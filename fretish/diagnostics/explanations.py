@@ -15,7 +15,7 @@ from fretish.diagnostics.messages import code_tables
 
 
 @dataclass(frozen=True, slots=True)
-class Explanation:
+class CodeExplanation:
     """The cause of a code, its fix, and an example."""
 
     cause: str
@@ -45,22 +45,24 @@ ACCEPTANCES = {
 
 
 @cache
-def explanations() -> dict[str, Explanation]:
+def explanations() -> dict[str, CodeExplanation]:
     """Number of a code → its explanation."""
     kinds = dict.fromkeys(code.number[1] for code in Code)
     return {number: each for kind in kinds for number, each in _of_kind(kind).items()}
 
 
-def explanation(code: Code) -> Explanation:
+def explanation(code: Code) -> CodeExplanation:
     """The explanation of one code; only the file with this code is read."""
     return _of_kind(code.number[1])[code.number]
 
 
 @cache
-def _of_kind(kind: str) -> dict[str, Explanation]:
+def _of_kind(kind: str) -> dict[str, CodeExplanation]:
     """The explanations of the codes whose number begins with this digit."""
     return {
-        number: Explanation(**{name: text for name, text in table.items() if name != "messages"})
+        number: CodeExplanation(
+            **{name: text for name, text in table.items() if name != "messages"}
+        )
         for number, table in code_tables(kind).items()
     }
 

@@ -14,7 +14,7 @@ _WIDTH = 160
 """The largest width of a source line; of a longer line the part around the caret is shown."""
 
 
-class Part(StrEnum):
+class RenderedPart(StrEnum):
     """A part of a diagnostic that a terminal may display in its own colour."""
 
     ERROR = "error"
@@ -25,11 +25,11 @@ class Part(StrEnum):
     HELP = "help"
 
 
-Paint = Callable[[str, Part], str]
+Paint = Callable[[str, RenderedPart], str]
 """Function that adds the colour of a part to a text."""
 
 
-def plain(text: str, part: Part) -> str:
+def plain(text: str, part: RenderedPart) -> str:
     """The text without colour."""
     return text
 
@@ -38,14 +38,14 @@ def render(diagnostic: Diagnostic, paint: Paint = plain) -> str:
     """A diagnostic as several lines: code and message, position, source line with caret, help."""
     if diagnostic.accepted:
         return _accepted(diagnostic, paint)
-    part = Part(diagnostic.severity.value)
+    part = RenderedPart(diagnostic.severity.value)
     kind = "" if diagnostic.severity is Severity.ERROR else f" {diagnostic.severity.value}:"
     head = paint(f"{diagnostic.code.number}{kind}", part)
-    lines = [f"{head} {paint(visible(diagnostic.message), Part.MESSAGE)}"]
+    lines = [f"{head} {paint(visible(diagnostic.message), RenderedPart.MESSAGE)}"]
     if diagnostic.span is not None:
         lines.extend(_place(diagnostic.span, paint, part))
     if diagnostic.help:
-        lines.append(f"{paint('help:', Part.HELP)} {visible(diagnostic.help)}")
+        lines.append(f"{paint('help:', RenderedPart.HELP)} {visible(diagnostic.help)}")
     if diagnostic.paste:
         lines += ["", *map(visible, diagnostic.paste.rstrip("\n").split("\n"))]
     return "\n".join(lines)
@@ -53,10 +53,10 @@ def render(diagnostic: Diagnostic, paint: Paint = plain) -> str:
 
 def _accepted(diagnostic: Diagnostic, paint: Paint) -> str:
     """An accepted warning: with the reason instead of the help, and without the source line."""
-    head = paint(f"{diagnostic.code.number} accepted:", Part.NOTE)
+    head = paint(f"{diagnostic.code.number} accepted:", RenderedPart.NOTE)
     lines = [f"{head} {visible(diagnostic.message)}"]
     if diagnostic.span is not None:
-        lines.append(_place(diagnostic.span, paint, Part.NOTE)[0])
+        lines.append(_place(diagnostic.span, paint, RenderedPart.NOTE)[0])
     return "\n".join([*lines, f"reason: {visible(diagnostic.accepted)}"])
 
 
@@ -83,9 +83,9 @@ def as_json(diagnostic: Diagnostic) -> dict[str, Any]:
     }
 
 
-def _place(span: Span, paint: Paint, part: Part) -> list[str]:
+def _place(span: Span, paint: Paint, part: RenderedPart) -> list[str]:
     name = visible(span.source.name)
-    arrow, bar = paint("  -->", Part.FRAME), paint("   |", Part.FRAME)
+    arrow, bar = paint("  -->", RenderedPart.FRAME), paint("   |", RenderedPart.FRAME)
     if not span.source.text:
         return [f"{arrow} {name}"]
     line, column = span.line_text, span.column

@@ -6,10 +6,10 @@ from typing import Any
 from simulation.nodes import messages
 from simulation.nodes.bus import Bus
 from simulation.nodes.navigation import Navigator
-from simulation.nodes.recovery import Operator
+from simulation.nodes.recovery import OperatorNode
 from simulation.nodes.safety import outline_clearance
 from simulation.world.lidar import Lidar, Points
-from simulation.world.motion import STANDSTILL, Pose, Velocity
+from simulation.world.motion import STANDSTILL, BodyVelocity, Pose
 from simulation.world.scenario import Scenario
 from simulation.world.scene import ROBOT, Scene
 
@@ -22,7 +22,7 @@ COMMAND_LATENCY = 1_000_000
 _SECOND = 10**9
 
 
-class Driver:
+class DriverNode:
     """Hears /odom, /scan and /gwendolen_control; says /cmd_vel, /goal and /manual_control."""
 
     def __init__(
@@ -31,7 +31,7 @@ class Driver:
         self._bus, self._lidar, self._epoch = bus, lidar, epoch
         self._planner = scenario.planner
         self.navigator = Navigator(scene, scenario.planner)
-        self._operator = Operator(ROBOT) if scenario.operator.present else None
+        self._operator = OperatorNode(ROBOT) if scenario.operator.present else None
         self._estimate, self._velocity = scene.start, STANDSTILL
         self._points: Points | None = None
         self._clearance = math.nan
@@ -71,7 +71,7 @@ class Driver:
         if self._manual or not silent:
             self._bus.publish("/cmd_vel", messages.twist(command), now + COMMAND_LATENCY)
 
-    def _command(self, now: int) -> Velocity:
+    def _command(self, now: int) -> BodyVelocity:
         """From the operator while there is a manoeuvre, else from the planner."""
         manoeuvre = self._manoeuvre(now)
         if manoeuvre is not None and not self._manual:
@@ -82,7 +82,7 @@ class Driver:
                 self.navigator.replan(self._estimate, self._points)
         return self._navigate(now) if manoeuvre is None else manoeuvre
 
-    def _manoeuvre(self, now: int) -> Velocity | None:
+    def _manoeuvre(self, now: int) -> BodyVelocity | None:
         if self._operator is None or self._points is None:
             return None
         stopped = self._stop and not self._manual
@@ -93,7 +93,7 @@ class Driver:
         self._manual = manual
         self._bus.publish("/manual_control", messages.boolean(manual), now)
 
-    def _navigate(self, now: int) -> Velocity:
+    def _navigate(self, now: int) -> BodyVelocity:
         """The planner's command; a goal that comes into force is published."""
         command = self.navigator.step(self._estimate, self._clearance)
         if self.navigator.goal != self._goal:

@@ -6,7 +6,7 @@ from typing import Any
 from simulation.nodes import messages
 from simulation.nodes.bus import Bus
 from simulation.nodes.safety import Decision, Interceptor, stop_requested
-from simulation.world.motion import Velocity
+from simulation.world.motion import BodyVelocity
 from simulation.world.scenario import Safety
 
 ANSWER_LATENCY = 1_200_000
@@ -25,7 +25,7 @@ _SECOND = 10**9
 _SCAN_PERIOD = 100_000_000
 
 
-class SafetyFunction:
+class SafetyFunctionNode:
     """Hears /scan, /odom and /manual_control; says /gwendolen_control, on change and regularly."""
 
     def __init__(self, bus: Bus, decision: Decision, options: Safety, epoch: int) -> None:
@@ -91,5 +91,5 @@ class Gate:
         take(*message)
 
     def _say(self, velocity: Sequence[float]) -> None:
-        message = messages.twist(Velocity(velocity[0], velocity[5]))
+        message = messages.twist(BodyVelocity(velocity[0], velocity[5]))
         self._bus.publish("/cmd_vel_filtered", message, self._now + INTERCEPT_LATENCY)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from rosbags.typesys import Stores, get_typestore
 
 from simulation.world.lidar import Lidar
-from simulation.world.motion import Pose, Velocity
+from simulation.world.motion import BodyVelocity, Pose
 from simulation.world.scene import ROBOT
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def laser_scan(time: int, ranges: NDArray[np.float32], lidar: Lidar) -> "Msg":
     )
 
 
-def odometry(time: int, frame: str, pose: Pose, velocity: Velocity) -> "Msg":
+def odometry(time: int, frame: str, pose: Pose, velocity: BodyVelocity) -> "Msg":
     """A pose in `frame` and a velocity in the body's frame; covariances are left at 0, unknown."""
     return _new(
         "nav_msgs/msg/Odometry",
@@ -50,7 +50,7 @@ def odometry(time: int, frame: str, pose: Pose, velocity: Velocity) -> "Msg":
     )
 
 
-def twist(velocity: Velocity) -> "Msg":
+def twist(velocity: BodyVelocity) -> "Msg":
     """`linear.x` and `angular.z`."""
     return _new(
         "geometry_msgs/msg/Twist",
@@ -59,12 +59,12 @@ def twist(velocity: Velocity) -> "Msg":
     )
 
 
-def velocity(message: Any) -> Velocity:
+def velocity(message: Any) -> BodyVelocity:
     """What a Twist says."""
-    return Velocity(message.linear.x, message.angular.z)
+    return BodyVelocity(message.linear.x, message.angular.z)
 
 
-def motion(message: Any) -> tuple[Pose, Velocity]:
+def motion(message: Any) -> tuple[Pose, BodyVelocity]:
     """What an Odometry says."""
     pose = message.pose.pose
     yaw = 2 * math.atan2(pose.orientation.z, pose.orientation.w)

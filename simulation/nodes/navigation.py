@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulation.world.lidar import Points
-from simulation.world.motion import STANDSTILL, Pose, Velocity
-from simulation.world.scenario import Planner
+from simulation.world.motion import STANDSTILL, BodyVelocity, Pose
+from simulation.world.scenario import PlannerBehaviour
 from simulation.world.scene import Scene
 
 RESOLUTION = 0.05
@@ -95,7 +95,7 @@ def _way(before: dict[Cell, Cell], last: Cell) -> NDArray[np.float64]:
     return (np.array(cells[::-1]) + 0.5) * RESOLUTION
 
 
-def pursue(path: NDArray[np.float64], pose: Pose, speed: float, turn: float) -> Velocity:
+def pursue(path: NDArray[np.float64], pose: Pose, speed: float, turn: float) -> BodyVelocity:
     """Steer at the point of the path that lies some 0.4 m ahead (pure pursuit).
 
     Args:
@@ -113,7 +113,7 @@ def pursue(path: NDArray[np.float64], pose: Pose, speed: float, turn: float) -> 
     bearing = math.remainder(math.atan2(y - pose.y, x - pose.x) - pose.yaw, 2 * math.pi)
     widest = min(1.2, 2.0 * turn)
     share = max(0.0, 1.0 - abs(bearing) / widest)
-    return Velocity(speed * share, max(-turn, min(turn, 2.2 * bearing)))
+    return BodyVelocity(speed * share, max(-turn, min(turn, 2.2 * bearing)))
 
 
 def _ahead(path: NDArray[np.float64], distance: float) -> tuple[float, float]:
@@ -155,7 +155,7 @@ class Navigator:
         planner: how it plans and drives.
     """
 
-    def __init__(self, scene: Scene, planner: Planner = Planner()) -> None:  # noqa: B008 - frozen
+    def __init__(self, scene: Scene, planner: PlannerBehaviour = PlannerBehaviour()) -> None:  # noqa: B008 - frozen
         self._map = clearance_grid(scene)
         self._clearance = self._map
         self._options = planner
@@ -179,7 +179,7 @@ class Navigator:
         """The goal in force; None when all are reached."""
         return self._goals[self._reached] if self._reached < len(self._goals) else None
 
-    def step(self, estimate: Pose, clearance: float = math.inf) -> Velocity:
+    def step(self, estimate: Pose, clearance: float = math.inf) -> BodyVelocity:
         """The next command; standstill at a goal and after the last.
 
         Args:

@@ -4,7 +4,7 @@ import math
 from itertools import product
 
 from simulation.world.lidar import Points
-from simulation.world.motion import Velocity
+from simulation.world.motion import BodyVelocity
 from simulation.world.scene import Box
 
 STAND = 3.0
@@ -14,12 +14,14 @@ MANOEUVRE = 2.0
 """Seconds that the operator drives."""
 
 _STANDING = 0.01  # m/s and rad/s; slower counts as standing.
-_CHOICES = [Velocity(forward, turn) for forward, turn in product((-0.14, 0.14), (0.0, -0.2, 0.2))]
+_CHOICES = [
+    BodyVelocity(forward, turn) for forward, turn in product((-0.14, 0.14), (0.0, -0.2, 0.2))
+]
 _LOOK_STEP = 0.1
 _ENOUGH = 0.40
 
 
-def way_out(points: Points, outline: Box) -> Velocity:
+def way_out(points: Points, outline: Box) -> BodyVelocity:
     """The slow manoeuvre that brings nothing nearer and gains the most room.
 
     Each choice is held for `MANOEUVRE` seconds in thought; clearance beyond 0.4 m gains nothing.
@@ -34,7 +36,7 @@ def _merit(clearances: list[float]) -> tuple[float, float]:
     return -round(lost, 2), sum(clearances)
 
 
-def _clearances(choice: Velocity, points: Points, outline: Box) -> list[float]:
+def _clearances(choice: BodyVelocity, points: Points, outline: Box) -> list[float]:
     """Metres from outline to points, at most 0.4: before the manoeuvre and after each step."""
     x = y = yaw = 0.0
     clearances = []
@@ -47,18 +49,18 @@ def _clearances(choice: Velocity, points: Points, outline: Box) -> list[float]:
     return clearances
 
 
-class Operator:
+class OperatorNode:
     """A person beside the robot, asked at every control tick."""
 
     def __init__(self, outline: Box) -> None:
         self._outline = outline
         self._standing_since: float | None = None
-        self._command: Velocity | None = None
+        self._command: BodyVelocity | None = None
         self._until = 0.0
 
     def step(
-        self, time: float, stop_requested: bool, velocity: Velocity, points: Points
-    ) -> Velocity | None:
+        self, time: float, stop_requested: bool, velocity: BodyVelocity, points: Points
+    ) -> BodyVelocity | None:
         """What the operator commands, or None while the planner is in charge.
 
         Args:
@@ -77,7 +79,7 @@ class Operator:
             self._command = None
         return self._command
 
-    def _wait(self, time: float, velocity: Velocity) -> None:
+    def _wait(self, time: float, velocity: BodyVelocity) -> None:
         """Note since when the robot stands."""
         if abs(velocity.forward) > _STANDING or abs(velocity.turn) > _STANDING:
             self._standing_since = None

@@ -84,7 +84,7 @@ def stop_requested(before: bool, *, demanded: bool, manual: bool) -> bool:
     return not manual and (before or demanded)
 
 
-class Interception(Protocol):
+class InterceptionNode(Protocol):
     """What stands between commands and wheels: the emitted interceptor stands here.
 
     What it says goes where `Wheels` leads, before the call returns.
@@ -106,5 +106,5 @@ class Interception(Protocol):
 Wheels = Callable[[Sequence[float]], None]
 """Takes what is said to the wheels: m/s along x, y, z, and rad/s around them."""
 
-Interceptor = Callable[[Wheels], Interception]
+Interceptor = Callable[[Wheels], InterceptionNode]
 """Makes one."""

@@ -13,7 +13,7 @@ class Pose:
 
 
 @dataclass(frozen=True, slots=True)
-class Velocity:
+class BodyVelocity:
     """Body-frame velocity: `forward` in m/s (negative backwards), `turn` in rad/s, left positive.
 
     Both what is asked for (a ROS Twist) and what is measured.
@@ -23,4 +23,4 @@ class Velocity:
     turn: float
 
 
-STANDSTILL = Velocity(0.0, 0.0)
+STANDSTILL = BodyVelocity(0.0, 0.0)

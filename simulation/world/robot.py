@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulation.world.lidar import Lidar
-from simulation.world.motion import Pose, Velocity
+from simulation.world.motion import BodyVelocity, Pose
 from simulation.world.scene import ROBOT, Barrel, Box, Scene
 
 PHYSICS_STEP = 0.002
@@ -50,17 +50,17 @@ class Robot:
         return Pose(x, y, math.remainder(yaw, 2 * math.pi))
 
     @property
-    def velocity(self) -> Velocity:
+    def velocity(self) -> BodyVelocity:
         """The true velocity in the body frame."""
         east, north, turn = map(float, self._data.qvel)
         yaw = float(self._data.qpos[2])
-        return Velocity(east * math.cos(yaw) + north * math.sin(yaw), turn)
+        return BodyVelocity(east * math.cos(yaw) + north * math.sin(yaw), turn)
 
     def place_walker(self, x: float, y: float) -> None:
         """Put the one obstacle that moves somewhere else; metres."""
         self._data.mocap_pos[0, :2] = x, y
 
-    def drive(self, command: Velocity, steps: int) -> None:
+    def drive(self, command: BodyVelocity, steps: int) -> None:
         """Hold a command for a number of physics steps, at least one; then the truth is new."""
         for _ in range(steps):
             yaw = float(self._data.qpos[2])

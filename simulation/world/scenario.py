@@ -36,7 +36,7 @@ class Walker:
 
 
 @dataclass(frozen=True, slots=True)
-class Store:
+class MapDifferences:
     """How the room differs from the map."""
 
     moved: Mapping[str, tuple[float, float]] = field(default_factory=dict)
@@ -67,7 +67,7 @@ class Sensor:
 
 
 @dataclass(frozen=True, slots=True)
-class Planner:
+class PlannerBehaviour:
     """The autonomous system. Metres, m/s, rad/s, seconds."""
 
     margin: float = 0.60
@@ -168,9 +168,9 @@ class Scenario:
     text: str = ""
     duration: float = 400.0
     """Simulated seconds after which the mission is given up."""
-    store: Store = field(default_factory=Store)
+    store: MapDifferences = field(default_factory=MapDifferences)
     lidar: Sensor = field(default_factory=Sensor)
-    planner: Planner = field(default_factory=Planner)
+    planner: PlannerBehaviour = field(default_factory=PlannerBehaviour)
     operator: Operator = field(default_factory=Operator)
     safety: Safety = field(default_factory=Safety)
     interceptor: Interceptor = field(default_factory=Interceptor)

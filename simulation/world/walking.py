@@ -7,7 +7,7 @@ from simulation.world.scenario import Walker
 from simulation.world.scene import Barrel
 
 
-class Walk:
+class WalkerPath:
     """Where the walker is, tick by tick."""
 
     def __init__(self, walker: Walker) -> None:

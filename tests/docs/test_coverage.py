@@ -11,7 +11,7 @@ import pytest
 from compiler.project.folder import load
 from compiler.project.paths import requirement_files
 from compiler.project.project import Project
-from fretc.audit.many_logs import SEQUENTIAL, Audit, audit_logs
+from fretc.audit.many_logs import SEQUENTIAL, AuditOutcome, audit_logs
 from fretc.audit.plan import Plan, planned
 from fretc.coverage import mutation_output, mutation_record, record, text_output
 from fretc.coverage.coverage import Coverage, coverage
@@ -42,7 +42,7 @@ def mission() -> tuple[Project, Plan]:
 def covered() -> Coverage:
     _, plan = mission()
     audit = audit_logs(plan, [LOG], SEQUENTIAL)
-    assert isinstance(audit, Audit)
+    assert isinstance(audit, AuditOutcome)
     return coverage(audit.source)
 
 
@@ -88,12 +88,12 @@ def test_the_examples_are_what_is_printed(request: pytest.FixtureRequest) -> Non
 @pytest.mark.parametrize(
     ("heading", "record"),
     [
-        ("## As JSON", record.Document),
-        ("## As JSON", record.Requirement),
-        ("## As JSON", record.Situation),
-        ("### As JSON", mutation_record.Document),
-        ("### As JSON", mutation_record.Requirement),
-        ("### As JSON", mutation_record.Judged),
+        ("## As JSON", record.CoverageDocument),
+        ("## As JSON", record.CoveredRequirement),
+        ("## As JSON", record.CoveredSituation),
+        ("### As JSON", mutation_record.MutationDocument),
+        ("### As JSON", mutation_record.RequirementMutants),
+        ("### As JSON", mutation_record.RecordedMutant),
     ],
 )
 def test_every_key_of_the_json_is_told(heading: str, record: type) -> None:

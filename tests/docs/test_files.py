@@ -19,7 +19,7 @@ from compiler.project import hazards
 from fretc.audit.store import tables
 from fretc.audit.store.register import types
 from fretc.traceability import lock, texts, waivers
-from fretc.traceability.chain import Node
+from fretc.traceability.chain import ChainItem
 from fretish.bindings import declarations as d
 from fretish.bindings.tables import (
     clock,
@@ -47,7 +47,7 @@ REVIEW = lock.Review(
     "safety engineer",
     "2026-11-20",
     "first review",
-    {Node("sentence", "R1"): "0" * 64},
+    {ChainItem("sentence", "R1"): "0" * 64},
     {"traces/a.mcap": "satisfied"},
     texts.ReviewedTexts(
         sentence="whenever too_close the rover shall within 200 milliseconds satisfy stopped",
@@ -57,7 +57,7 @@ REVIEW = lock.Review(
         parents=("HAZ-001",),
         params={"too_close": "5 cm"},
         hazards={"HAZ-001": texts.HazardTexts("The robot hits a drum", severity="catastrophic")},
-        bindings=texts.Bindings(
+        bindings=texts.BindingsTexts(
             {"tick": "100 ms"},
             {"clearance": {"path": "/clearance.data", "unit": "m", "max_age": "300 ms"}},
             {"too_close": {"expr": "clearance < 5 cm", "role": "input"}},

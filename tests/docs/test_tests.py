@@ -11,7 +11,7 @@ import pytest
 
 from compiler.files.records import replace
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.obligation import Demand, Kind, dual
+from compiler.formalization.obligation import Demand, ObligationKind, dual
 from compiler.logic import formula as f
 from compiler.project.folder import load
 from compiler.project.paths import requirement_files
@@ -62,17 +62,17 @@ OTHERS = {
     "unknown": "each operand that is a value of one tick",
 }
 """Those that a timing, a scope and a condition do not tell."""
-Place = tuple[Kind, str, str]
+Place = tuple[ObligationKind, str, str]
 """What is demanded, and the keys of scope and condition."""
 
 
-def named(kind: Kind) -> str:
-    return "dual of `after`" if kind is Kind.NOT_AFTER else f"`{kind.name.lower()}`"
+def named(kind: ObligationKind) -> str:
+    return "dual of `after`" if kind is ObligationKind.NOT_AFTER else f"`{kind.name.lower()}`"
 
 
 def sentences_with(places: set[Place], every: set[Place]) -> str:
     """The timings, scopes and conditions that the places have: one way for all, or for each."""
-    kinds = [kind for kind in Kind if any(place[0] is kind for place in places)]
+    kinds = [kind for kind in ObligationKind if any(place[0] is kind for place in places)]
     fitting = {kind: [*ways(of(kind, places), of(kind, every))] for kind in kinds}
     common = [way for way in fitting[kinds[0]] if all(way in known for known in fitting.values())]
     chosen = {kind: (common or fitting[kind])[0] for kind in kinds}
@@ -83,7 +83,7 @@ def sentences_with(places: set[Place], every: set[Place]) -> str:
     return "; ".join(texts) or "each"
 
 
-def of(kind: Kind, places: set[Place]) -> set[tuple[str, str]]:
+def of(kind: ObligationKind, places: set[Place]) -> set[tuple[str, str]]:
     return {place[1:] for place in places if place[0] is kind}
 
 
@@ -98,8 +98,8 @@ def ways(own: set[tuple[str, str]], every: set[tuple[str, str]]) -> Iterator[str
             yield f"with {words}" if words else ""
 
 
-def all_named(kinds: Sequence[Kind]) -> str:
-    others = [kind for kind in Kind if kind not in kinds]
+def all_named(kinds: Sequence[ObligationKind]) -> str:
+    others = [kind for kind in ObligationKind if kind not in kinds]
     if len(others) > 3:
         return ", ".join(map(named, kinds))
     return f"all but {', '.join(map(named, others))}" if others else ""
@@ -137,7 +137,9 @@ def table_of_duals(subject: str) -> str:
             else f"{named(demand.kind)}, negated"
         )
 
-    written = (Demand(kind, f.Atom("q")) for kind in Kind if kind is not Kind.NOT_AFTER)
+    written = (
+        Demand(kind, f.Atom("q")) for kind in ObligationKind if kind is not ObligationKind.NOT_AFTER
+    )
     pairs = ((named(demand.kind), text(dual(demand))) for demand in written)
     return table(("written", "asked for outside"), pairs)
 

@@ -11,7 +11,7 @@ from compiler.emit import TARGETS
 from compiler.files.attribution import Attribution
 from compiler.project.folder import load
 from compiler.project.paths import expanded_paths
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretish.diagnostics.diagnostic import Severity
 from tests.ros2.messages import message_class
 from tests.ros2.world import Process, World
@@ -31,7 +31,7 @@ def write(requirements: Path, folder: Path, kind: str = "ros2-package") -> Path:
     assert [
         no.message for requirement in project.formalized if (no := target.refuse(requirement))
     ] == []
-    options = Options(declarations=project.declarations, attribution=OWNER)
+    options = TargetOptions(declarations=project.declarations, attribution=OWNER)
     assert target.refuse_project(options) is None
     artifacts = target.emit(project.formalized, options)
     for artifact in artifacts:

@@ -17,12 +17,12 @@ from simulation.mission import Mission, possible, really
 from simulation.recording import TOPICS
 from simulation.world.scenario import (
     Interceptor,
+    MapDifferences,
     Operator,
     Outage,
     Safety,
     Scenario,
     Sensor,
-    Store,
     Transport,
     load,
 )
@@ -353,7 +353,7 @@ def test_only_what_the_scenario_moves_stands_somewhere_else() -> None:
         place = (real[mapped.name].x, real[mapped.name].y)
         assert place == ((1.5, 2.6) if mapped.name == "barrel_9" else (mapped.x, mapped.y))
     with pytest.raises(ValueError, match="the store has no obstacle `barrel_11`"):
-        really(STORE, Scenario("bad", store=Store(moved={"barrel_11": (1.0, 1.0)})))
+        really(STORE, Scenario("bad", store=MapDifferences(moved={"barrel_11": (1.0, 1.0)})))
 
 
 def test_a_fault_of_a_topic_that_is_not_there_is_refused() -> None:

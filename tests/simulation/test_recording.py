@@ -11,7 +11,7 @@ from mcap_ros2.decoder import DecoderFactory
 from simulation import recording as log
 from simulation.nodes import messages as say
 from simulation.world.lidar import Lidar
-from simulation.world.motion import Pose, Velocity
+from simulation.world.motion import BodyVelocity, Pose
 from simulation.world.scenario import Recorder
 
 TIME = 1_700_000_000_250_000_000
@@ -47,7 +47,7 @@ def test_a_scan_says_when_where_and_how_it_was_measured(tmp_path: Path) -> None:
 
 
 def test_odometry_has_its_pose_in_the_room_and_its_twist_in_the_body(tmp_path: Path) -> None:
-    sent = say.odometry(TIME, "odom", Pose(1.0, 2.0, math.pi / 2), Velocity(0.3, -0.2))
+    sent = say.odometry(TIME, "odom", Pose(1.0, 2.0, math.pi / 2), BodyVelocity(0.3, -0.2))
     message = write(tmp_path / "a.mcap", "/odom", sent)
     assert (message.header.frame_id, message.child_frame_id) == ("odom", "base_link")
     pose, twist = message.pose.pose, message.twist.twist
@@ -78,7 +78,9 @@ def test_a_goal_and_a_stop_arrive_as_sent(tmp_path: Path) -> None:
 
 
 def test_the_quality_of_service_is_a_yaml_list_of_one_profile() -> None:
-    topic = log.Topic("/scan", "sensor_msgs/msg/LaserScan", depth=5, reliability="best_effort")
+    topic = log.RecordedTopic(
+        "/scan", "sensor_msgs/msg/LaserScan", depth=5, reliability="best_effort"
+    )
     assert topic.offered_qos_profiles() == (
         "- history: keep_last\n"
         "  depth: 5\n"
@@ -140,7 +142,7 @@ def test_the_map_has_its_rows_along_x_and_says_what_is_occupied(tmp_path: Path) 
 
 
 def test_what_a_twist_and_an_odometry_say_is_what_was_sent() -> None:
-    sent = Velocity(0.3, -0.2)
+    sent = BodyVelocity(0.3, -0.2)
     assert say.velocity(say.twist(sent)) == sent
     pose, velocity = say.motion(say.odometry(TIME, "odom", Pose(1.0, 2.0, -2.5), sent))
     assert (pose.x, pose.y, velocity) == (1.0, 2.0, sent)

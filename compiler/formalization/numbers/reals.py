@@ -16,7 +16,7 @@ import z3
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons, exclusion_in_words
-from compiler.formalization.numbers.terms import NoTermError, Term, Terms
+from compiler.formalization.numbers.terms import NoTermError, RequirementTerms, Term
 from compiler.logic.orders import Exclusion
 from fretish import expressions as e
 
@@ -64,7 +64,7 @@ class Reals:
     def __init__(self, requirement: FormalizedRequirement) -> None:
         """Prepare the queries; z3 is not called yet."""
         compared = comparisons(requirement)
-        terms = Terms([requirement], is_linear=False)
+        terms = RequirementTerms([requirement], is_linear=False)
         self._solver = z3.Solver()
         self._solver.set("rlimit", MOST_STEPS)
         self._flags: dict[str, Term] = {}

@@ -37,7 +37,7 @@ class PreviousValue:
     """The value at the first tick."""
 
 
-class Terms:
+class RequirementTerms:
     """The variables of some requirements, and formulas over them."""
 
     def __init__(

@@ -14,7 +14,7 @@ from operator import itemgetter
 from compiler.logic.ordering import cells
 from compiler.logic.ordering.relations import (
     ZERO,
-    Constant,
+    NumberTerm,
     Point,
     Relation,
     Term,
@@ -41,7 +41,7 @@ def is_of_one_term(relations: Mapping[str, Relation]) -> bool:
     (left, *others) = dict.fromkeys(relation.left for relation in relations.values())
     if others or not isinstance(left, Term) or is_word(left):
         return False
-    return all(isinstance(relation.right, Constant) for relation in relations.values()) or (
+    return all(isinstance(relation.right, NumberTerm) for relation in relations.values()) or (
         isinstance(left.text, e.Name)
         and all(
             is_word(relation.right) and relation.op in ("=", "!=")
@@ -88,7 +88,7 @@ def _signs(
     relations: Sequence[Relation], words: Mapping[str, Sequence[str]]
 ) -> tuple[Sequence[Point], Iterator[str]]:
     """The points that the term is compared with; for each cell the term's order to each."""
-    limits = {relation.right for relation in relations if isinstance(relation.right, Constant)}
+    limits = {relation.right for relation in relations if isinstance(relation.right, NumberTerm)}
     term = relations[0].left
     assert isinstance(term, Term)
     if not limits:
@@ -102,7 +102,7 @@ def _signs(
     return row, (signs for signs in _on_line(row) if least is None or signs[least] != "<")
 
 
-def _on_line(row: Sequence[Constant]) -> Iterator[str]:
+def _on_line(row: Sequence[NumberTerm]) -> Iterator[str]:
     """The cells between constants, and at each, with later ones that may be equal."""
     ends = [constant.ends for constant in row]
     for i in range(len(row) + 1):

@@ -31,7 +31,7 @@ class Term:
 
 
 @dataclass(frozen=True, slots=True)
-class Constant:
+class NumberTerm:
     """A number; if it is not a 32-bit float, it may differ from term to term."""
 
     value: Fraction
@@ -46,7 +46,7 @@ class Constant:
         return self.value - error, self.value + error
 
 
-Point = Term | Constant
+Point = Term | NumberTerm
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ def relation_of(comparison: e.Comparison, scales: Mapping[str, Fraction]) -> Rel
     is_base = len(factors) > 1 or e.has_unit(comparison)
     left, right = _exact(comparison.left), _exact(comparison.right)
     if left is not None and right is not None:
-        return Relation(Constant(left), comparison.op, Constant(right))
+        return Relation(NumberTerm(left), comparison.op, NumberTerm(right))
     if left is not None:
         mirrored = MIRRORED[comparison.op]
         return _measured(comparison.right, mirrored, left, is_base)
@@ -97,9 +97,9 @@ def _measured(
     return Relation(term, op, _beside(limit, term))
 
 
-def _beside(value: Fraction, term: Term) -> Constant:
+def _beside(value: Fraction, term: Term) -> NumberTerm:
     """The constant for a number beside a term; a term and its magnitude have the same one."""
-    return Constant(value) if _is_single(value) else Constant(value, of_magnitude(term) or term)
+    return NumberTerm(value) if _is_single(value) else NumberTerm(value, of_magnitude(term) or term)
 
 
 def of_magnitude(term: Term) -> Term | None:
@@ -143,7 +143,7 @@ def is_word(point: Point) -> bool:
     return isinstance(point, Term) and isinstance(point.text, e.Word)
 
 
-ZERO = Constant(Fraction(0))
+ZERO = NumberTerm(Fraction(0))
 
 
 def negative(term: Term) -> Term:

@@ -22,11 +22,11 @@ from compiler.files.build_id import __version__
 from compiler.files.templating import render, to_json
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.claims import Proof, Result
+from compiler.logic.claims import ClaimResult, Proof
 from compiler.targets.ajpf import names
 from compiler.targets.ajpf import properties as ajpf
-from compiler.targets.ajpf.safety_function import Reaction, Sif, sif
-from compiler.targets.target import DEFAULT, Options, Target, stem
+from compiler.targets.ajpf.safety_function import AgentReaction, Sif, sif
+from compiler.targets.target import DEFAULT, Target, TargetOptions, stem
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Modality
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -35,11 +35,13 @@ from fretish.expressions import MIRRORED
 from fretish.reading.recursion import with_recursion_limit
 
 SCHEMA = "fretc-ajpf-bundle-1"
-_WEAKEN = Options(weaken=True)
+_WEAKEN = TargetOptions(weaken=True)
 
 
 @with_recursion_limit
-def refusal(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
+def refusal(
+    requirement: FormalizedRequirement, options: TargetOptions = DEFAULT
+) -> Diagnostic | None:
     """F601 for what AJPF or the agent cannot express; F614 if the agent is not proved correct."""
     refused = ajpf.refusal(requirement, options)
     if refused is not None:
@@ -58,7 +60,7 @@ class CheckedAgent:
     @property
     def is_proved(self) -> bool:
         """Whether all claims are proved."""
-        return all(line.result is Result.PROVED for line in self.evidence)
+        return all(line.result is ClaimResult.PROVED for line in self.evidence)
 
 
 def forms(requirement: FormalizedRequirement) -> tuple[Sif, ...] | Diagnostic:
@@ -76,7 +78,7 @@ def forms(requirement: FormalizedRequirement) -> tuple[Sif, ...] | Diagnostic:
 
 @with_recursion_limit
 def checked_agent(
-    requirement: FormalizedRequirement, options: Options = DEFAULT, limit: int | None = None
+    requirement: FormalizedRequirement, options: TargetOptions = DEFAULT, limit: int | None = None
 ) -> CheckedAgent | Diagnostic:
     """The first form of the agent that is proved to satisfy its requirement, guarded form first.
 
@@ -101,14 +103,14 @@ def checked_agent(
         )
         if agents[-1].is_proved:
             return agents[-1]
-        if any(line.result is Result.NOT_CHECKED for line in agents[-1].evidence):
+        if any(line.result is ClaimResult.NOT_CHECKED for line in agents[-1].evidence):
             break  # an agent that responds to more has more states
     return agents[0]
 
 
 def _not_kept(requirement: FormalizedRequirement, evidence: Sequence[Proof]) -> Diagnostic | None:
     for line in evidence:
-        if line.result is Result.PROVED:
+        if line.result is ClaimResult.PROVED:
             continue
         return diagnostic(
             "agent_not_shown",
@@ -121,7 +123,7 @@ def _not_kept(requirement: FormalizedRequirement, evidence: Sequence[Proof]) -> 
 
 @with_recursion_limit
 def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
 ) -> tuple[Artifact, ...]:
     """A folder `<id>_ajpf/` for each requirement."""
     return tuple(
@@ -129,7 +131,7 @@ def emit(
     )
 
 
-def _bundle(requirement: FormalizedRequirement, options: Options) -> Iterator[Artifact]:
+def _bundle(requirement: FormalizedRequirement, options: TargetOptions) -> Iterator[Artifact]:
     agent = checked_agent(requirement, options)
     assert isinstance(agent, CheckedAgent), f"{requirement.id} was to be refused"
     assert agent.is_proved, f"{requirement.id} was to be refused"
@@ -152,7 +154,7 @@ def package(requirement: FormalizedRequirement) -> str:
 
 
 def texts(
-    requirement: FormalizedRequirement, form: Sif, options: Options = DEFAULT
+    requirement: FormalizedRequirement, form: Sif, options: TargetOptions = DEFAULT
 ) -> dict[str, str]:
     """The texts that are checked in the model and written to the bundle, by file name."""
     return {
@@ -169,7 +171,7 @@ def _sentence(requirement: FormalizedRequirement) -> str:
 
 
 def _agent(
-    requirement: FormalizedRequirement, form: Sif, plans: Sequence[Reaction], title: str
+    requirement: FormalizedRequirement, form: Sif, plans: Sequence[AgentReaction], title: str
 ) -> str:
     return render(
         "ajpf-bundle/agent.gwen.j2",
@@ -181,14 +183,14 @@ def _agent(
     )
 
 
-def _plan(plan: Reaction) -> str:
+def _plan(plan: AgentReaction) -> str:
     guards = [f"{'' if g.positive else '~'}B {g.belief}" for g in plan.guards] or ["True"]
     deeds = f" <- {', '.join(map(str, plan.deeds))}" if plan.deeds else ""
     return f"{plan.event} : {{{', '.join(guards)}}}{deeds};"
 
 
 def _configuration(
-    requirement: FormalizedRequirement, form: Sif, options: Options
+    requirement: FormalizedRequirement, form: Sif, options: TargetOptions
 ) -> dict[str, str]:
     """The other files for MCAPL and Java PathFinder."""
     name = package(requirement)
@@ -210,7 +212,7 @@ def _configuration(
     return texts
 
 
-def _checks(requirement: FormalizedRequirement, options: Options) -> list[dict[str, str]]:
+def _checks(requirement: FormalizedRequirement, options: TargetOptions) -> list[dict[str, str]]:
     """The checks for AJPF, each with its expected answer."""
     main, *controls = ajpf.properties(requirement, options)
     return [
@@ -242,7 +244,7 @@ def _check(
 
 
 def _manifest(
-    requirement: FormalizedRequirement, form: Sif, options: Options, texts: Mapping[str, str]
+    requirement: FormalizedRequirement, form: Sif, options: TargetOptions, texts: Mapping[str, str]
 ) -> dict[str, Any]:
     from compiler.logic import printing
 
@@ -315,7 +317,9 @@ def _comparisons(declarations: Declarations, expression: e.Expression) -> Iterat
 
 
 @with_recursion_limit
-def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
+def remark(
+    requirement: FormalizedRequirement, options: TargetOptions = DEFAULT
+) -> Diagnostic | None:
     """A warning about the properties (F605, F606, F607); else about the agent (F615)."""
     warning = ajpf.remark(requirement, options)
     agent = checked_agent(requirement, options) if warning is None else warning

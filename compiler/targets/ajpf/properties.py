@@ -27,8 +27,8 @@ from compiler.targets.ajpf import without_next as nextfree
 from compiler.targets.comparison_names import comparison_names
 from compiler.targets.target import (
     DEFAULT,
-    Options,
     Target,
+    TargetOptions,
     file_of_each,
     not_expressible,
     too_long,
@@ -46,7 +46,7 @@ from fretish.reading.recursion import with_recursion_limit
 
 HOLDS: Literal["HOLDS"] = "HOLDS"
 VIOLATED: Literal["VIOLATED"] = "VIOLATED"
-_WEAKEN = Options(weaken=True)
+_WEAKEN = TargetOptions(weaken=True)
 _MOST_LEVELS = 500
 _MONITOR = "check it with `--emit monitor`"
 
@@ -78,7 +78,7 @@ class ExpectedProperty:
 
 @with_recursion_limit
 def properties(
-    requirement: FormalizedRequirement, options: Options = DEFAULT
+    requirement: FormalizedRequirement, options: TargetOptions = DEFAULT
 ) -> tuple[ExpectedProperty, ...]:
     """The property of the requirement, and the controls that give its verdict a meaning.
 
@@ -101,7 +101,7 @@ def properties(
     )
 
 
-def weakened(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str | None:
+def weakened(requirement: FormalizedRequirement, options: TargetOptions = DEFAULT) -> str | None:
     """The loss in words if the property is weaker than the requirement; None: no loss."""
     if not options.weaken or not _can_be_weakened(requirement):
         return None
@@ -129,7 +129,9 @@ def _can_be_weakened(requirement: FormalizedRequirement) -> bool:
 
 
 @with_recursion_limit
-def refusal(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
+def refusal(
+    requirement: FormalizedRequirement, options: TargetOptions = DEFAULT
+) -> Diagnostic | None:
     """F601 for the first part of the requirement that AJPF's language cannot express; F604."""
     return (
         _refused_timing(requirement, options)
@@ -138,7 +140,9 @@ def refusal(requirement: FormalizedRequirement, options: Options = DEFAULT) -> D
     )
 
 
-def _refused_timing(requirement: FormalizedRequirement, options: Options) -> Diagnostic | None:
+def _refused_timing(
+    requirement: FormalizedRequirement, options: TargetOptions
+) -> Diagnostic | None:
     if requirement.pctl is not None:
         return _not(requirement, "the probability", "leave it out, or use a probabilistic tool")
     for expression in conditions(requirement.sentence):
@@ -225,7 +229,7 @@ def _levels(text: str) -> int:
 # The formulas -----------------------------------------------------------------------------------
 
 
-def _formula(requirement: FormalizedRequirement, options: Options) -> f.Formula | None:
+def _formula(requirement: FormalizedRequirement, options: TargetOptions) -> f.Formula | None:
     """The requirement's formula without X, or its next-free form; None if not proved equal."""
     duty = obligation(requirement.sentence, requirement.ticks or 0)
     condition = duty.condition
@@ -277,7 +281,9 @@ def _key(id: str) -> str:
 # What a user should know ------------------------------------------------------------------------
 
 
-def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
+def remark(
+    requirement: FormalizedRequirement, options: TargetOptions = DEFAULT
+) -> Diagnostic | None:
     """F605, F606, F607: limits of AJPF's verdict on the property."""
     place = requirement.sentence.timing_span or requirement.entry.wording
     loss = weakened(requirement, options)
@@ -292,7 +298,7 @@ def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Di
     return diagnostic("no_time_to_react", place, requirement=requirement.id)
 
 
-def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
+def text(requirement: FormalizedRequirement, options: TargetOptions = DEFAULT) -> str:
     """The property file of one requirement."""
     return render(
         "ajpf/properties.psl.j2",

@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from compiler.agents.gwendolen import Action, BeliefChange, Deed, Guard
+from compiler.agents.gwendolen import Action, BeliefChange, BeliefGuard, Deed
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.spelling.reserved_words import AJPF_ACTIONS
 from compiler.targets.ajpf import names
@@ -31,11 +31,11 @@ _TARGET = "an agent"
 
 
 @dataclass(frozen=True, slots=True)
-class Reaction:
+class AgentReaction:
     """A plan of the agent."""
 
     event: BeliefChange
-    guards: tuple[Guard, ...]
+    guards: tuple[BeliefGuard, ...]
     deeds: tuple[Deed, ...]
 
 
@@ -49,8 +49,8 @@ class Sif:
     responses: tuple[str, ...]
     names: Mapping[str, str]
     """The names of percepts, responses and other propositions in the texts."""
-    plans: tuple[Reaction, ...]
-    mutant: tuple[Reaction, ...]
+    plans: tuple[AgentReaction, ...]
+    mutant: tuple[AgentReaction, ...]
     """The plans without the deeds that make the response true."""
     released: bool
     """Whether the response is taken back when the trigger goes."""
@@ -98,7 +98,7 @@ def sif(requirement: FormalizedRequirement, guarded: bool = True) -> Sif | Diagn
     spoilt = tuple(Action(_action(requirement, name)) for name in believed)
     spelt = _spelt(requirement)
     terms = tuple(tuple((spelt[name], value) for name, value in term) for term in terms)
-    last = Guard(False, spelt[believed[-1]]) if believed and not released else None
+    last = BeliefGuard(False, spelt[believed[-1]]) if believed and not released else None
     plans, mutant = (
         (
             *_reactions(terms if guarded else _alone(terms), deeds, last),
@@ -222,14 +222,14 @@ def _action(requirement: FormalizedRequirement, name: str) -> str:
 
 
 def _reactions(
-    terms: tuple[Term, ...], answer: tuple[Deed, ...], last: Guard | None
-) -> tuple[Reaction, ...]:
+    terms: tuple[Term, ...], answer: tuple[Deed, ...], last: BeliefGuard | None
+) -> tuple[AgentReaction, ...]:
     """A plan for each event that can make a term true; the guard `last` blocks a second answer."""
     plans = [
-        Reaction(
+        AgentReaction(
             BeliefChange("+" if positive else "-", name),
             (
-                *(Guard(value, other) for other, value in term if other != name),
+                *(BeliefGuard(value, other) for other, value in term if other != name),
                 *([last] if last else []),
             ),
             answer,
@@ -240,8 +240,8 @@ def _reactions(
     return tuple(dict.fromkeys(plans))
 
 
-def _releases(terms: tuple[Term, ...], response: str) -> tuple[Reaction, ...]:
+def _releases(terms: tuple[Term, ...], response: str) -> tuple[AgentReaction, ...]:
     """The plan that takes the only response back when the only trigger goes."""
     (((trigger, _),),) = terms
     deeds = (Action(f"undo_{response}"), BeliefChange("-", response))
-    return (Reaction(BeliefChange("-", trigger), (), deeds),)
+    return (AgentReaction(BeliefChange("-", trigger), (), deeds),)

@@ -16,7 +16,7 @@ from functools import cache
 from typing import assert_never
 
 from compiler.formalization.future import future
-from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait
+from compiler.formalization.obligation import TRAITS, Demand, Obligation, ObligationKind, Trait
 from compiler.logic import formula as f
 from compiler.logic.formula import (
     FALSE,
@@ -66,7 +66,9 @@ def next_free(obligation: Obligation) -> Formula | None:
 
 
 @cache
-def is_proved(scope: ScopeKind | None, condition: ConditionKind | None, kind: Kind) -> bool:
+def is_proved(
+    scope: ScopeKind | None, condition: ConditionKind | None, kind: ObligationKind
+) -> bool:
     """Whether Spot finds the shape equal to the formula of `compiler/formalization/future.py`."""
     from compiler.logic.spot import equivalent
 
@@ -87,11 +89,11 @@ def unbounded(obligation: Obligation) -> Formula | None:
         return None
     interval = _Interval(scope, obligation.mode)
     met = or_(interval.outside, obligation.demand.response)
-    weak = replace(obligation, demand=Demand(Kind.EVENTUALLY, met))
+    weak = replace(obligation, demand=Demand(ObligationKind.EVENTUALLY, met))
     return interval.everywhere(weak, eventually(met))
 
 
-def _has_deadline(kind: Kind) -> bool:
+def _has_deadline(kind: ObligationKind) -> bool:
     """Whether one response up to a deadline is enough."""
     traits = TRAITS[kind]
     return Trait.COUNTS | Trait.WAITS in traits and Trait.OPPOSITES not in traits
@@ -106,7 +108,7 @@ def is_weaker(scope: ScopeKind | None, condition: ConditionKind | None) -> bool:
     """
     from compiler.logic.spot import equivalent
 
-    shape = _shape(scope, condition, Kind.WITHIN, 2)
+    shape = _shape(scope, condition, ObligationKind.WITHIN, 2)
     weak = unbounded(shape)
     return weak is not None and equivalent(_without_bounds(f.endless(future(shape))), weak)
 
@@ -144,7 +146,7 @@ def never_begins(obligation: Obligation) -> Formula | None:
 
 
 def _shape(
-    scope: ScopeKind | None, condition: ConditionKind | None, kind: Kind, ticks: int = 0
+    scope: ScopeKind | None, condition: ConditionKind | None, kind: ObligationKind, ticks: int = 0
 ) -> Obligation:
     """The obligation of a sentence over plain propositions."""
     m, c, r, q = map(f.Atom, ("m", "c", "r", "q"))
@@ -235,19 +237,25 @@ class _Interval:
         """The demand at a trigger at the present tick."""
         r, q = demand.response, demand.stop
         match demand.kind:
-            case Kind.IMMEDIATELY:
+            case ObligationKind.IMMEDIATELY:
                 return r
-            case Kind.EVENTUALLY:
+            case ObligationKind.EVENTUALLY:
                 return self.until(TRUE, r)
-            case Kind.ALWAYS:
+            case ObligationKind.ALWAYS:
                 return self.throughout(r)
-            case Kind.UNTIL:
+            case ObligationKind.UNTIL:
                 return self.release(q, or_(q, r))
-            case Kind.BEFORE:
+            case ObligationKind.BEFORE:
                 return self.release(r, not_(q))
-            case Kind.FINALLY:
+            case ObligationKind.FINALLY:
                 return self._finally(r)
-            case Kind.NEXT | Kind.WITHIN | Kind.FOR | Kind.AFTER | Kind.NOT_AFTER:
+            case (
+                ObligationKind.NEXT
+                | ObligationKind.WITHIN
+                | ObligationKind.FOR
+                | ObligationKind.AFTER
+                | ObligationKind.NOT_AFTER
+            ):
                 raise AssertionError(f"it counts ticks: {demand.kind}")
             case _:
                 assert_never(demand.kind)

@@ -15,13 +15,13 @@ from typing import assert_never
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import parts, possible_letters
-from compiler.formalization.obligation import Kind, obligation
+from compiler.formalization.obligation import ObligationKind, obligation
 from compiler.formalization.reference import (
     BROKEN,
     Automaton,
     Letter,
     Phase,
-    State,
+    ReferenceState,
     Template,
     accepting,
     explore,
@@ -47,7 +47,7 @@ class Chart:
     """The expressions of the sentence, by their position in a letter."""
     letters: tuple[Letter, ...]
     """All possible letters, and perhaps some that no valuation of the propositions has."""
-    states: tuple[State, ...]
+    states: tuple[ReferenceState, ...]
     """The states that have not decided."""
     moves: tuple[tuple[int, ...], ...]
     """For each of these states and each letter: the index of the next state, which may be
@@ -127,12 +127,12 @@ def _cached(kind: Template, letters: tuple[Letter, ...]) -> Automaton:
 
 
 @with_recursion_limit
-def kind(requirement: FormalizedRequirement) -> Kind:
+def kind(requirement: FormalizedRequirement) -> ObligationKind:
     """The kind of the demand; `only` scopes demand the dual of their timing."""
     return obligation(requirement.sentence, requirement.ticks or 0).demand.kind
 
 
-def words(demanded: Kind, template: Template, state: State) -> tuple[str, ...]:
+def words(demanded: ObligationKind, template: Template, state: ReferenceState) -> tuple[str, ...]:
     """The description of a state; its counter comes last, before `condition was true`.
 
     Args:
@@ -167,27 +167,27 @@ _PHASES: Mapping[Phase, str] = {
 }
 
 
-def _counter_words(demanded: Kind, count: int) -> str:
+def _counter_words(demanded: ObligationKind, count: int) -> str:
     match demanded:
-        case Kind.IMMEDIATELY:
+        case ObligationKind.IMMEDIATELY:
             raise AssertionError("it counts nothing")
-        case Kind.NEXT:
+        case ObligationKind.NEXT:
             return "due at the next tick"
-        case Kind.FINALLY:
+        case ObligationKind.FINALLY:
             return f"due at the end, {'held' if count < 0 else 'missing'} at this tick"
-        case Kind.ALWAYS:
+        case ObligationKind.ALWAYS:
             return "owed for ever"
-        case Kind.UNTIL:
+        case ObligationKind.UNTIL:
             return "owed until the stop condition"
-        case Kind.FOR:
+        case ObligationKind.FOR:
             return f"owed for {_ticks(count)} more"
-        case Kind.EVENTUALLY | Kind.BEFORE:
+        case ObligationKind.EVENTUALLY | ObligationKind.BEFORE:
             return "open"
-        case Kind.WITHIN:
+        case ObligationKind.WITHIN:
             return f"open for {_ticks(count)}"
-        case Kind.AFTER:
+        case ObligationKind.AFTER:
             return f"open {'twice ' if count < 0 else ''}for {_ticks(abs(count))}"
-        case Kind.NOT_AFTER:
+        case ObligationKind.NOT_AFTER:
             ago = [str(k + 1) for k in range(count.bit_length()) if count >> k & 1]
             return f"open since {', '.join(ago)} ticks ago"
         case _:

@@ -17,7 +17,14 @@ from compiler.logic import printing
 from compiler.logic.implicants import Term
 from compiler.targets.automata.chart import PLACES, chart
 from compiler.targets.automata.expressibility import refusal
-from compiler.targets.automata.folding import OPEN, SATISFIED, VIOLATED, Edge, Node, folded_chart
+from compiler.targets.automata.folding import (
+    OPEN,
+    SATISFIED,
+    VIOLATED,
+    Edge,
+    FoldedState,
+    folded_chart,
+)
 from compiler.targets.comparison_names import comparison_names, notes, with_renamed_atoms
 from compiler.targets.target import Target, file_of_each
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -57,7 +64,7 @@ def _text(requirement: FormalizedRequirement) -> str:
 
 
 def _caption(
-    requirement: FormalizedRequirement, long: Mapping[int, f.Formula], nodes: Sequence[Node]
+    requirement: FormalizedRequirement, long: Mapping[int, f.Formula], nodes: Sequence[FoldedState]
 ) -> list[str]:
     lines = [f"{requirement.id}: {wording(requirement.entry)}"]
     lines.append(meaning(requirement.written, requirement.ticks, requirement.clock))
@@ -70,7 +77,7 @@ def _caption(
     return [line for text in lines for line in textwrap.wrap(" ".join(text.split()), _WIDTH)]
 
 
-def _node_text(node: Node) -> list[str]:
+def _node_text(node: FoldedState) -> list[str]:
     if node.counts is None:
         return list(node.words)
     low, high = node.counts
@@ -78,7 +85,7 @@ def _node_text(node: Node) -> list[str]:
     return [f"{word}: {counts}" if word in OPEN else word for word in node.words]
 
 
-def _look(node: Node) -> str:
+def _look(node: FoldedState) -> str:
     if node.name == VIOLATED:
         return "shape=doubleoctagon"
     if node.name == SATISFIED:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import TRAITS, Trait
-from compiler.formalization.reference import Letter, State
+from compiler.formalization.reference import Letter, ReferenceState
 from compiler.targets.automata.chart import START, Chart, chart, kind, words
 
 VIOLATED, SATISFIED = "violated", "satisfied"
@@ -20,7 +20,7 @@ OPEN = ("open", "open twice", "owed")
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class FoldedState:
     """States that differ only in their counter."""
 
     name: str
@@ -49,7 +49,7 @@ class Edge:
 class FoldedChart:
     """A deterministic folded chart; deciding nodes have no edges."""
 
-    nodes: tuple[Node, ...]
+    nodes: tuple[FoldedState, ...]
     edges: tuple[Edge, ...]
     start: str
 
@@ -82,7 +82,7 @@ class _Folding:
         }
         self.names |= {unfolded.violated: VIOLATED, unfolded.satisfied: SATISFIED}
 
-    def _key(self, index: int, state: State) -> object:
+    def _key(self, index: int, state: ReferenceState) -> object:
         if index == self.chart.start:
             return "start"
         count = state.counted
@@ -101,7 +101,7 @@ class _Folding:
         nodes = [self._node(members) for members in self.groups.values()]
         for index, name in ((self.chart.violated, VIOLATED), (self.chart.satisfied, SATISFIED)):
             if self.chart.has(index):
-                nodes.append(Node(name, (name,), None, name == SATISFIED))
+                nodes.append(FoldedState(name, (name,), None, name == SATISFIED))
         return FoldedChart(tuple(nodes), tuple(edges), self.names[self.chart.start])
 
     def _count(self, index: int) -> int | None:
@@ -117,14 +117,14 @@ class _Folding:
             return count.bit_length()
         return abs(count)
 
-    def _node(self, members: Sequence[int]) -> Node:
+    def _node(self, members: Sequence[int]) -> FoldedState:
         state = self.chart.states[members[0]]
         phrases = list(words(self.demanded, self.chart.template, state))
         counts = sorted(k for index in members if (k := self._count(index)) is not None)
         if counts and not self.registers:  # one k stands for the ticks of all members
             word = 1 if self.scoped else 0
             phrases[word] = "owed" if Trait.DOWN in self.traits else OPEN[state.counted < 0]
-        return Node(
+        return FoldedState(
             self.names[members[0]],
             tuple(phrases),
             (counts[0], counts[-1]) if counts and not self.registers else None,

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import assert_never
 
-from compiler.formalization.obligation import TRAITS, Kind, Obligation, Trait
+from compiler.formalization.obligation import TRAITS, Obligation, ObligationKind, Trait
 from fretish.syntax import ConditionKind, ScopeKind
 
 Cases = tuple[tuple[str, str], ...]
@@ -19,7 +19,7 @@ Cases = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Variable:
+class SmvVariable:
     """A state variable."""
 
     name: str
@@ -39,15 +39,15 @@ class Definition:
 
 
 @dataclass(frozen=True, slots=True)
-class Module:
+class SmvModule:
     """One `MODULE` of the file."""
 
     parameters: tuple[str, ...]
-    variables: tuple[Variable, ...]
+    variables: tuple[SmvVariable, ...]
     definitions: tuple[Definition, ...]
 
 
-def monitor(obligation: Obligation) -> Module:
+def monitor(obligation: Obligation) -> SmvModule:
     """The module of a sentence; its parameters are the expressions that the sentence has.
 
     It defines `violated` (a demand is broken, for good) and, with `eventually` and `finally`,
@@ -61,10 +61,10 @@ def monitor(obligation: Obligation) -> Module:
         "response": True,
         "stop": stops,
     }
-    failed = Variable(
+    failed = SmvVariable(
         "failed", "boolean", "FALSE", _plain("violated"), "a demand was broken at a tick before"
     )
-    return Module(
+    return SmvModule(
         tuple(name for name, there in has.items() if there),
         (*_scope_variables(obligation), *counter.variables, failed),
         (
@@ -114,14 +114,14 @@ def _is_everywhere(obligation: Obligation) -> bool:
     return obligation.scope is None and obligation.condition is not None
 
 
-def _scope_variables(obligation: Obligation) -> Iterator[Variable]:
+def _scope_variables(obligation: Obligation) -> Iterator[SmvVariable]:
     more, _ = _PHASES[obligation.scope]
     if not _is_everywhere(obligation):
         values = ", ".join(("outside", "inside", *([more] if more else [])))
         comment = "where the tick before lies"
-        yield Variable("phase", f"{{{values}}}", "outside", _plain("now"), comment)
+        yield SmvVariable("phase", f"{{{values}}}", "outside", _plain("now"), comment)
     if obligation.condition is ConditionKind.TRIGGER:
-        yield Variable(
+        yield SmvVariable(
             "held",
             "boolean",
             "FALSE",
@@ -153,40 +153,42 @@ def _scope_definitions(obligation: Obligation) -> Iterator[Definition]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Counter:
-    variables: tuple[Variable, ...]
+class _SmvCounter:
+    variables: tuple[SmvVariable, ...]
     definitions: tuple[Definition, ...]
 
 
-def _counter(obligation: Obligation) -> _Counter:
+def _counter(obligation: Obligation) -> _SmvCounter:
     n = obligation.demand.ticks
     match obligation.demand.kind:
-        case Kind.WITHIN | Kind.FOR if n == 0:  # a range of one number is no range
+        case ObligationKind.WITHIN | ObligationKind.FOR if (
+            n == 0
+        ):  # a range of one number is no range
             return _flag(None, broken="triggered & !response")
-        case Kind.IMMEDIATELY:
+        case ObligationKind.IMMEDIATELY:
             return _flag(None, broken="triggered & !response")
-        case Kind.NEXT:
+        case ObligationKind.NEXT:
             comment = "the tick before was a trigger"
             return _flag("triggered", comment, broken="enforced & open & !response")
-        case Kind.EVENTUALLY:
+        case ObligationKind.EVENTUALLY:
             over = _interval_over(obligation)
             return _at_the_end(_flag("unmet", "no response yet", broken=over), "!response")
-        case Kind.FINALLY:
+        case ObligationKind.FINALLY:
             return _finally(_interval_over(obligation))
-        case Kind.ALWAYS:
+        case ObligationKind.ALWAYS:
             return _flag("due", "there was a trigger", broken="due & !response", due=True)
-        case Kind.UNTIL:
+        case ObligationKind.UNTIL:
             broken = "due & !stop & !response"
             return _flag("due & !stop", "no stop condition yet", broken=broken, due=True)
-        case Kind.BEFORE:
+        case ObligationKind.BEFORE:
             return _flag("due & !response", "no response yet", broken="due & stop", due=True)
-        case Kind.WITHIN:
+        case ObligationKind.WITHIN:
             return _within(n)
-        case Kind.FOR:
+        case ObligationKind.FOR:
             return _for(n)
-        case Kind.AFTER:
+        case ObligationKind.AFTER:
             return _after(n)
-        case Kind.NOT_AFTER:
+        case ObligationKind.NOT_AFTER:
             return _not_after(n) if obligation.condition is None else _register(n)
         case _:
             assert_never(obligation.demand.kind)
@@ -200,33 +202,33 @@ def _interval_over(obligation: Obligation) -> str:
     return "FALSE" if obligation.scope is None else "!enforced & open"
 
 
-def _flag(carry: str | None, comment: str = "", *, broken: str, due: bool = False) -> _Counter:
+def _flag(carry: str | None, comment: str = "", *, broken: str, due: bool = False) -> _SmvCounter:
     """The counter of one bit, whether a demand is open; `carry` is its value for the next tick."""
     broken_at = Definition("broken", _plain(broken), "at this tick")
     opened = (
-        () if carry is None else (Variable("open", "boolean", "FALSE", _plain(carry), comment),)
+        () if carry is None else (SmvVariable("open", "boolean", "FALSE", _plain(carry), comment),)
     )
-    return _Counter(opened, (*([_DUE] if due else []), broken_at))
+    return _SmvCounter(opened, (*([_DUE] if due else []), broken_at))
 
 
-def _at_the_end(counter: _Counter, absence: str) -> _Counter:
+def _at_the_end(counter: _SmvCounter, absence: str) -> _SmvCounter:
     unmet = Definition("unmet", _plain(f"due & {absence}"), "and would fail if the interval ended")
-    return _Counter(counter.variables, (_DUE, unmet, *counter.definitions))
+    return _SmvCounter(counter.variables, (_DUE, unmet, *counter.definitions))
 
 
-def _finally(over: str) -> _Counter:
+def _finally(over: str) -> _SmvCounter:
     """`open`: there was a trigger; the response at the tick before is the last of an interval."""
-    answered = Variable(
+    answered = SmvVariable(
         "answered", "boolean", "FALSE", _plain("response"), "the response held at the tick before"
     )
-    opened = Variable("open", "boolean", "FALSE", _plain("due"), "there was a trigger")
+    opened = SmvVariable("open", "boolean", "FALSE", _plain("due"), "there was a trigger")
     broken = "FALSE" if over == "FALSE" else f"{over} & !answered"
-    counter = _Counter((opened, answered), (Definition("broken", _plain(broken), "at its end"),))
+    counter = _SmvCounter((opened, answered), (Definition("broken", _plain(broken), "at its end"),))
     return _at_the_end(counter, "!response")
 
 
-def _count(most: int, cases: Cases, comment: str) -> Variable:
-    return Variable("count", f"0..{most}", "0", cases, comment)
+def _count(most: int, cases: Cases, comment: str) -> SmvVariable:
+    return SmvVariable("count", f"0..{most}", "0", cases, comment)
 
 
 _DUE_BY_COUNT = Definition(
@@ -234,17 +236,17 @@ _DUE_BY_COUNT = Definition(
 )
 
 
-def _within(n: int) -> _Counter:
+def _within(n: int) -> _SmvCounter:
     count = _count(
         n,
         (("!due | response", "0"), (f"count = {n}", str(n)), ("TRUE", "count + 1")),
         "ticks since the oldest open trigger, its tick included",
     )
     broken = Definition("broken", _plain(f"due & !response & count = {n}"), "the deadline")
-    return _Counter((count,), (_DUE_BY_COUNT, broken))
+    return _SmvCounter((count,), (_DUE_BY_COUNT, broken))
 
 
-def _for(n: int) -> _Counter:
+def _for(n: int) -> _SmvCounter:
     count = _count(
         n,
         (
@@ -255,16 +257,16 @@ def _for(n: int) -> _Counter:
         ),
         "ticks for which the newest trigger still demands the response",
     )
-    return _Counter((count,), (_DUE_BY_COUNT, Definition("broken", _plain("due & !response"))))
+    return _SmvCounter((count,), (_DUE_BY_COUNT, Definition("broken", _plain("due & !response"))))
 
 
-def _after(n: int) -> _Counter:
+def _after(n: int) -> _SmvCounter:
     count = _count(
         n + 1,
         ((f"!due | count = {n + 1}", "0"), ("TRUE", "count + 1")),
         "ticks since the oldest open trigger, its tick included",
     )
-    clash = Variable(
+    clash = SmvVariable(
         "clash",
         "boolean",
         "FALSE",
@@ -275,10 +277,10 @@ def _after(n: int) -> _Counter:
     too_early = f"(count < {n + 1} & response)"
     too_late = f"(count = {n + 1} & (clashes | !response))"
     broken = Definition("broken", _plain(f"due & ({too_early} | {too_late})"))
-    return _Counter((count, clash), (_DUE_BY_COUNT, clashes, broken))
+    return _SmvCounter((count, clash), (_DUE_BY_COUNT, clashes, broken))
 
 
-def _not_after(n: int) -> _Counter:
+def _not_after(n: int) -> _SmvCounter:
     """The counter with one trigger for each interval, whose time is a count."""
     count = _count(
         n + 1,
@@ -286,14 +288,14 @@ def _not_after(n: int) -> _Counter:
         "ticks since the trigger, while no response has come",
     )
     broken = Definition("broken", _plain(f"enforced & response & count = {n + 1}"))
-    return _Counter((count,), (_DUE_BY_COUNT, broken))
+    return _SmvCounter((count,), (_DUE_BY_COUNT, broken))
 
 
-def _register(n: int) -> _Counter:
+def _register(n: int) -> _SmvCounter:
     """The register of triggers, each of which forbids the response at a different tick."""
     carry = "enforced & !response"
     ago = [
-        Variable(
+        SmvVariable(
             f"ago_{k}",
             "boolean",
             "FALSE",
@@ -303,4 +305,4 @@ def _register(n: int) -> _Counter:
         for k in range(1, n + 2)
     ]
     broken = Definition("broken", _plain(f"enforced & response & ago_{n + 1}"))
-    return _Counter(tuple(ago), (broken,))
+    return _SmvCounter(tuple(ago), (broken,))

@@ -12,16 +12,16 @@ from dataclasses import dataclass
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.program.program import Counter
-from compiler.program.rails import Reading, Ring
+from compiler.program.rails import RequirementValues, Ring
 from compiler.targets.c.monitor import c_printer
-from compiler.targets.c.printer import Printer
+from compiler.targets.c.printer import CPrinter
 
 ENTRY = "fretc_driver"
 """The function that never returns."""
 
 
 @dataclass(frozen=True, slots=True)
-class Driver:
+class DriverText:
     """The text of the driver, and what an analyzer has to know about the monitor."""
 
     text: str
@@ -45,7 +45,7 @@ class _Range:
     most: int
 
 
-def driver(name: str, base: str, requirements: Sequence[FormalizedRequirement]) -> Driver:
+def driver(name: str, base: str, requirements: Sequence[FormalizedRequirement]) -> DriverText:
     """The driver of a monitor.
 
     Args:
@@ -66,10 +66,10 @@ def driver(name: str, base: str, requirements: Sequence[FormalizedRequirement]) 
         readings=[_told(reading) for reading in program.readings],
     )
     words = (-(-cell.length // 32) for cell in program.cells if isinstance(cell, Ring))
-    return Driver(text, max(words, default=0))
+    return DriverText(text, max(words, default=0))
 
 
-def _ranges(printer: Printer) -> Iterator[_Range]:
+def _ranges(printer: CPrinter) -> Iterator[_Range]:
     for cell in printer.rail.cells:
         if isinstance(cell, Counter):
             yield _Range(cell.name, cell.least, cell.most)
@@ -77,6 +77,6 @@ def _ranges(printer: Printer) -> Iterator[_Range]:
             yield _Range(f"{cell.name}_at", 0, cell.length - 1)
 
 
-def _told(reading: Reading) -> dict[str, object]:
+def _told(reading: RequirementValues) -> dict[str, object]:
     horizon = -1 if reading.deadline is None else reading.deadline.horizon
     return {"prefix": reading.prefix, "horizon": horizon, "truths": [*reading.truths]}

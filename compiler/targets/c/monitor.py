@@ -19,11 +19,11 @@ from compiler.logic.spelling.reserved_words import C_LIBRARY, C, ReservedWords
 from compiler.program.rails import Ring
 from compiler.signals.functions import Functions, functions
 from compiler.targets.c import signals
-from compiler.targets.c.printer import Printer
+from compiler.targets.c.printer import CPrinter
 from compiler.targets.fixed_memory import input_names, inputs, rail_of, too_large
 from compiler.targets.python.monitor import description, refusal, remark
 from compiler.targets.python.names import module, prefixes_of
-from compiler.targets.target import DEFAULT, Options, Target, stem
+from compiler.targets.target import DEFAULT, Target, TargetOptions, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
@@ -34,7 +34,7 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
 
 
 def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
 ) -> tuple[Artifact, ...]:
     """`<id>_monitor.h` and `.c` for each requirement, or `monitors.h` and `.c` for all."""
     if options.one_file:
@@ -134,7 +134,7 @@ def joined_interface(requirements: Sequence[FormalizedRequirement]) -> JoinedInt
     )
 
 
-def c_printer(name: str, requirements: Sequence[FormalizedRequirement]) -> Printer:
+def c_printer(name: str, requirements: Sequence[FormalizedRequirement]) -> CPrinter:
     """The printer of C for a monitor of all requirements.
 
     Args:
@@ -142,14 +142,14 @@ def c_printer(name: str, requirements: Sequence[FormalizedRequirement]) -> Print
         requirements: requirements that are not refused.
     """
     reserved = _reserved(name)
-    return Printer.of(rail_of(requirements, reserved), input_names(requirements, reserved))
+    return CPrinter.of(rail_of(requirements, reserved), input_names(requirements, reserved))
 
 
 def _reserved(name: str) -> ReservedWords:
     return C | {signals.guard(name)}
 
 
-def _values(printer: Printer) -> dict[str, Any]:
+def _values(printer: CPrinter) -> dict[str, Any]:
     """The variables of both templates."""
     return {
         "members": printer.members(),

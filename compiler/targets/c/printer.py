@@ -6,14 +6,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import assert_never
 
-from compiler.program.program import Counter, Flag
+from compiler.program.program import Counter, StoredFlag
 from compiler.program.rails import Cell, Deadline, Ring
 from compiler.program.statements import Statements
 from compiler.program.values import Constant, Literal, Value, Variable
 
 
 @dataclass(frozen=True, slots=True)
-class Member:
+class StructMember:
     """A member of the struct of the state."""
 
     declaration: str
@@ -22,22 +22,22 @@ class Member:
     """The statements that give it its first value."""
 
 
-class Printer(Statements):
+class CPrinter(Statements):
     """The syntax of C: `rail` points to the cells, `now` to the literals."""
 
     __slots__ = ()
     CELLS, LITERALS, LOCAL, IF = "rail->", "now->", "const bool", ("(", ")")
 
-    def members(self) -> tuple[Member, ...]:
+    def members(self) -> tuple[StructMember, ...]:
         """The members, the widest first, so that there is no padding between them."""
-        sizes = {Ring: 0, Counter: 1, Flag: 2}
+        sizes = {Ring: 0, Counter: 1, StoredFlag: 2}
         cells = sorted(self.rail.cells, key=lambda cell: sizes[type(cell)])
         return tuple(member for cell in cells for member in _members(cell))
 
     @property
     def bytes(self) -> int:
         """The size of the struct, if a `bool` has one byte and alignment is at most 4."""
-        flags = sum(isinstance(cell, Flag) for cell in self.rail.cells)
+        flags = sum(isinstance(cell, StoredFlag) for cell in self.rail.cells)
         unused = -flags % 4 if flags < len(self.rail.cells) else 0
         return sum(map(_bytes, self.rail.cells)) + unused or 1
 
@@ -71,25 +71,25 @@ class Printer(Statements):
         return f"({self.grouped(is_open)} & {ahead}) ? ({horizon} - {counter}) : -1"
 
 
-def _members(cell: Cell) -> Iterable[Member]:
+def _members(cell: Cell) -> Iterable[StructMember]:
     match cell:
-        case Flag(name, initial):
-            yield Member(f"bool {name}", cell.comment, (f"{name} = {str(initial).lower()}",))
+        case StoredFlag(name, initial):
+            yield StructMember(f"bool {name}", cell.comment, (f"{name} = {str(initial).lower()}",))
         case Counter(name, initial, least, most):
             comment = f"{cell.comment}; {least} to {most}"
-            yield Member(f"int32_t {name}", comment, (f"{name} = {initial}",))
+            yield StructMember(f"int32_t {name}", comment, (f"{name} = {initial}",))
         case Ring(name, length):
             words = -(-length // 32)
-            yield Member(f"uint32_t {name}[{words}]", cell.comment, ())
+            yield StructMember(f"uint32_t {name}[{words}]", cell.comment, ())
             place = f"{name}_at"
-            yield Member(f"uint32_t {place}", "where this tick's is", (f"{place} = 0u",))
+            yield StructMember(f"uint32_t {place}", "where this tick's is", (f"{place} = 0u",))
         case _:
             assert_never(cell)
 
 
 def _bytes(cell: Cell) -> int:
     match cell:
-        case Flag():
+        case StoredFlag():
             return 1
         case Counter():
             return 4

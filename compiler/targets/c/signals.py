@@ -14,7 +14,7 @@ from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.functions import file_name, functions
-from compiler.signals.printing import Language, encode_constant, letters, parts
+from compiler.signals.printing import NumberSyntax, encode_constant, letters, parts
 
 _SIGNS = {"<": "LT", "<=": "LE", ">": "GT", ">=": "GE", "=": "EQ", "!=": "NE"}
 
@@ -88,7 +88,7 @@ def _scale(value: Fraction) -> str:
     return ", ".join(map(_double, parts(value)))
 
 
-LANGUAGE = Language(
+LANGUAGE = NumberSyntax(
     prefix="fretc_",
     truths={True: "FRETC_TRUE", False: "FRETC_FALSE", None: "FRETC_UNKNOWN"},
     signs={sign: f"FRETC_{name}" for sign, name in _SIGNS.items()},

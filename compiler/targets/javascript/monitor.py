@@ -17,12 +17,12 @@ from compiler.logic.identifiers import legal_names
 from compiler.program.lowering import program
 from compiler.targets.javascript import signals
 from compiler.targets.javascript.constants import Constants, scale, truth
-from compiler.targets.javascript.printer import Printer
-from compiler.targets.python.comparisons import TRUTH, Spelling, Writer
+from compiler.targets.javascript.printer import JavaScriptPrinter
+from compiler.targets.python.comparisons import TRUTH, ComparisonWriter, Spelling
 from compiler.targets.python.input_adapter import InputAdapter, input_adapter
 from compiler.targets.python.monitor import description, description_of, refusal, remark, watched
 from compiler.targets.python.names import module
-from compiler.targets.target import DEFAULT, Options, Target, stem
+from compiler.targets.target import DEFAULT, Target, TargetOptions, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
@@ -36,7 +36,7 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
 
 
 def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
 ) -> tuple[Artifact, ...]:
     """`<id>_monitor.mjs` for each requirement, or one file; and the truths of samples beside it."""
     if options.one_file:
@@ -87,8 +87,8 @@ def body(*requirements: FormalizedRequirement) -> Body:
     inputs = compared.inputs if compared else {}
     names = legal_names((*propositions, *inputs), ())
     monitor_program = program({requirement.id: requirement.watch for requirement in requirements})
-    printer = Printer.of(monitor_program, names)
-    lines = _AdapterCode.of(compared, propositions, names) if compared else None
+    printer = JavaScriptPrinter.of(monitor_program, names)
+    lines = _JavaScriptAdapter.of(compared, propositions, names) if compared else None
     written = render(
         "js/body.js.j2",
         formalized=[description_of(requirement) for requirement in requirements],
@@ -130,7 +130,7 @@ def body(*requirements: FormalizedRequirement) -> Body:
 
 
 @dataclass(frozen=True, slots=True)
-class _AdapterCode:
+class _JavaScriptAdapter:
     """The code that computes truth values from variables."""
 
     constants: tuple[str, ...]
@@ -143,11 +143,11 @@ class _AdapterCode:
     @classmethod
     def of(
         cls, compared: InputAdapter, propositions: Sequence[str], names: Mapping[str, str]
-    ) -> _AdapterCode:
+    ) -> _JavaScriptAdapter:
         """The code for given names of variables and propositions."""
         constants = Constants()
         variables = {name: f"v_{names[name]}" for name in compared.inputs}
-        writer = Writer(variables, Spelling(constants.name, scale, truth))
+        writer = ComparisonWriter(variables, Spelling(constants.name, scale, truth))
         texts = {
             name: writer.comparison(comparison) for name, comparison in compared.comparisons.items()
         }

@@ -14,19 +14,27 @@ from compiler.program.instructions import (
     Advance,
     Assign,
     Choose,
-    Count,
     Instruction,
+    SetCounter,
     Shift,
     Slide,
 )
-from compiler.program.program import Block, Cell, Counter, Flag, Program, Requirement, Window
+from compiler.program.program import (
+    Block,
+    Cell,
+    Counter,
+    Program,
+    RequirementProgram,
+    StoredFlag,
+    WindowMemory,
+)
 from compiler.program.values import Age, And, Constant, Literal, Not, Or, Value, Variable
 
 _OR, _AND, _COMPARED, _ATOMIC = range(4)
 """Precedence ranks of operators: a higher rank binds tighter."""
 
 
-class _Text(NamedTuple):
+class _JavaScriptText(NamedTuple):
     text: str
     rank: int = _ATOMIC
 
@@ -36,7 +44,7 @@ class _Text(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Printer:
+class JavaScriptPrinter:
     """The syntax of JavaScript for a program."""
 
     program: Program
@@ -46,7 +54,7 @@ class Printer:
     """The cells of the program, by their names."""
 
     @classmethod
-    def of(cls, program: Program, names: Mapping[str, str]) -> Printer:
+    def of(cls, program: Program, names: Mapping[str, str]) -> JavaScriptPrinter:
         """A printer for a program, with an identifier for each proposition."""
         return cls(program, names, {cell.name: cell for cell in program.cells})
 
@@ -58,16 +66,16 @@ class Printer:
     def initial(self, cell: Cell) -> str:
         """The value of a cell before the first tick."""
         match cell:
-            case Flag():
+            case StoredFlag():
                 return str(cell.initial).lower()
             case Counter():
                 return str(cell.initial)
-            case Window():
+            case WindowMemory():
                 return "{ runs: [], first: 0 }"
             case _:
                 assert_never(cell)
 
-    def signals(self, requirement: Requirement) -> dict[str, str]:
+    def signals(self, requirement: RequirementProgram) -> dict[str, str]:
         """The signals of a requirement."""
         return {
             name: self._value(signal_value).text
@@ -86,14 +94,14 @@ class Printer:
             case Shift(name, cell, value):
                 yield self._assigned(name, f"rail.{cell}")
                 yield f"rail.{cell} = {self._value(value).text};"
-            case Count(counter, number):
+            case SetCounter(counter, number):
                 yield f"rail.{counter} = {number};"
             case Advance(counter, most):
                 yield f"rail.{counter} = rail.{counter} < {most} ? rail.{counter} + 1 : {most};"
             case Slide(name, window, guard, witness, negated):
                 sides = f"{self._value(guard).text}, {self._value(witness).text}"
                 kept = self.cells[window]
-                assert isinstance(kept, Window)
+                assert isinstance(kept, WindowMemory)
                 held = f"slide(rail.{window}, tick, {kept.lo}, {kept.hi}, {sides})"
                 yield self._assigned(name, f"{'!' if negated else ''}{held}")
             case Choose(branches, otherwise):
@@ -116,22 +124,24 @@ class Printer:
     def _literal(self, literal: Literal) -> str:
         return f"{'is' if literal.positive else 'not'}_{self.names[literal.proposition]}"
 
-    def _value(self, value: Value) -> _Text:
+    def _value(self, value: Value) -> _JavaScriptText:
         match value:
             case Constant(truth):
-                return _Text(str(truth).lower())
+                return _JavaScriptText(str(truth).lower())
             case Literal():
-                return _Text(self._literal(value))
+                return _JavaScriptText(self._literal(value))
             case Variable(name):
-                return _Text(self._place(name))
+                return _JavaScriptText(self._place(name))
             case Age(counter, comparison, number):
-                return _Text(f"rail.{counter} {comparison.value} {number}", _COMPARED)
+                return _JavaScriptText(f"rail.{counter} {comparison.value} {number}", _COMPARED)
             case Not(negated):
-                return _Text(f"!{self._value(negated).at_least(_ATOMIC)}")
+                return _JavaScriptText(f"!{self._value(negated).at_least(_ATOMIC)}")
             case And(values):
                 texts = (self._value(operand).at_least(_AND) for operand in values)
-                return _Text(" && ".join(texts), _AND)
+                return _JavaScriptText(" && ".join(texts), _AND)
             case Or(values):
-                return _Text(" || ".join(self._value(operand).text for operand in values), _OR)
+                return _JavaScriptText(
+                    " || ".join(self._value(operand).text for operand in values), _OR
+                )
             case _:
                 assert_never(value)

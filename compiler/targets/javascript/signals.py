@@ -10,7 +10,7 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.identifiers import legal_names
 from compiler.signals.functions import file_name, functions
-from compiler.signals.printing import Language
+from compiler.signals.printing import NumberSyntax
 from compiler.targets.javascript.constants import Constants, scale, truth
 from fretish.expressions import COMPARE
 
@@ -32,9 +32,9 @@ def files(monitor: str, requirements: Sequence[FormalizedRequirement]) -> tuple[
     return (Artifact(PurePosixPath(f"{file_name(monitor)}.mjs"), text),)
 
 
-def _language(constants: Constants) -> Language:
+def _language(constants: Constants) -> NumberSyntax:
     """The syntax of JavaScript; constants get their names while expressions are written."""
-    return Language(
+    return NumberSyntax(
         prefix="",
         truths={value: truth(value) for value in (True, False, None)},
         signs={sign: f'"{sign}"' for sign in COMPARE},

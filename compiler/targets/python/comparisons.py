@@ -28,7 +28,7 @@ ANNOTATIONS: Mapping[str, str] = {NUMBER: "Number", TRUTH: "Truth", WORD: "str |
 
 
 @dataclass(frozen=True, slots=True)
-class Input:
+class StepInput:
     """A variable that is an input of a step."""
 
     kind: str
@@ -43,7 +43,7 @@ class Input:
 class CompiledComparison:
     """A comparison that can be compiled, with its inputs and units."""
 
-    inputs: Mapping[str, Input]
+    inputs: Mapping[str, StepInput]
     """The variables of the comparison."""
     tree: e.Comparison
     units: Mapping[str, tuple[str, Fraction]]
@@ -110,7 +110,7 @@ PYTHON = Spelling(_number, _scale, str)
 
 
 @dataclass(slots=True)
-class Writer:
+class ComparisonWriter:
     """The writer of comparisons; values that they look back at are stored from tick to tick."""
 
     parameters: Mapping[str, str]
@@ -259,7 +259,7 @@ class Writer:
 def threshold(compared: CompiledComparison) -> tuple[str, Fraction] | None:
     """The variable of a comparison with a number, and the number in its unit."""
     names = {name: name for name in compared.inputs}
-    writer = Writer(names, units=compared.units)
+    writer = ComparisonWriter(names, units=compared.units)
     tree = compared.tree
     for side, other in ((tree.left, tree.right), (tree.right, tree.left)):
         if isinstance(side, e.Name) and not any(e.names(other)) and not compared.is_of_words:

@@ -12,10 +12,10 @@ from compiler.targets.python.comparisons import (
     NUMBER,
     TRUTH,
     WORD,
+    ComparisonWriter,
     CompiledComparison,
-    Input,
     NotCompiledError,
-    Writer,
+    StepInput,
 )
 from fretish import expressions as e
 from fretish.bindings.comparisons import is_measured
@@ -28,7 +28,7 @@ from fretish.reading.recursion import with_recursion_limit
 class InputAdapter:
     """The adapter from the variables of a tick to the truth of propositions."""
 
-    inputs: Mapping[str, Input]
+    inputs: Mapping[str, StepInput]
     comparisons: Mapping[str, CompiledComparison]
     """The comparisons by the names of their propositions."""
 
@@ -60,9 +60,9 @@ def input_adapter(
     }
     if not usable:
         return None
-    inputs: dict[str, Input] = {}
+    inputs: dict[str, StepInput] = {}
     for name in propositions:
-        inputs |= usable[name].inputs if name in usable else {name: Input(TRUTH)}
+        inputs |= usable[name].inputs if name in usable else {name: StepInput(TRUTH)}
     return InputAdapter(inputs, usable) if inputs else None
 
 
@@ -82,8 +82,8 @@ def _clashing(
     requirements: Sequence[FormalizedRequirement], comparisons: Iterable[CompiledComparison]
 ) -> Iterator[str]:
     """The variables with two kinds, or two units."""
-    kinds: dict[str, Input] = {
-        name: Input(TRUTH)
+    kinds: dict[str, StepInput] = {
+        name: StepInput(TRUTH)
         for requirement in requirements
         for name in requirement.propositions
         if not is_compound(name)
@@ -113,11 +113,11 @@ def _compared(tree: e.Comparison, requirement: FormalizedRequirement) -> Compile
     spoken = _spoken(tree, signals)
     if spoken is not None:
         ids, words = spoken
-        return CompiledComparison({variable(id): Input(WORD, words) for id in ids}, tree, units)
-    numbers = {variable(id): Input(NUMBER, infinite=_infinite(signals.get(id))) for id in names}
+        return CompiledComparison({variable(id): StepInput(WORD, words) for id in ids}, tree, units)
+    numbers = {variable(id): StepInput(NUMBER, infinite=_infinite(signals.get(id))) for id in names}
     compared = CompiledComparison(numbers, tree, units)
     try:
-        Writer(dict.fromkeys(compared.inputs, "x")).comparison(compared)
+        ComparisonWriter(dict.fromkeys(compared.inputs, "x")).comparison(compared)
     except NotCompiledError:
         return None
     return compared

@@ -16,7 +16,7 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.interceptor_options import options as counted
 from compiler.targets.interceptor_options import repetition, ticks
-from compiler.targets.target import DEFAULT, Options, Target
+from compiler.targets.target import DEFAULT, Target, TargetOptions
 from fretish.bindings.declarations import Declarations, Interception, InterceptorForm
 from fretish.bindings.tables.interceptor import TABLE
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -29,7 +29,7 @@ MARKER = "# The ROS node ".ljust(97, "-")
 """The line between the core with its options and the node."""
 
 
-def refuse(options: Options) -> Diagnostic | None:
+def refuse(options: TargetOptions) -> Diagnostic | None:
     """F323: the topics of the interceptor are not declared."""
     declared = options.declarations
     if declared is not None and declared.interceptor is not None:
@@ -44,7 +44,7 @@ def refuse(options: Options) -> Diagnostic | None:
 # Remarks --------------------------------------------------------------------------------------
 
 
-def remarks(options: Options) -> tuple[Diagnostic, ...]:
+def remarks(options: TargetOptions) -> tuple[Diagnostic, ...]:
     """F630 to F633: hazards that remain even if the node works as declared."""
     declared = options.declarations
     if declared is None or declared.interceptor is None:
@@ -93,7 +93,7 @@ def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnost
 
 
 def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
 ) -> tuple[Artifact, ...]:
     """`interceptor.py`.
 

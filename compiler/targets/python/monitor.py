@@ -21,7 +21,7 @@ from compiler.formalization.formalized import FormalizedRequirement, without_pro
 from compiler.formalization.obligation import TRAITS, Trait, obligation
 from compiler.logic import printing
 from compiler.program.program import MARKS, SIGNALS
-from compiler.targets.python.comparisons import ANNOTATIONS, Writer
+from compiler.targets.python.comparisons import ANNOTATIONS, ComparisonWriter
 from compiler.targets.python.input_adapter import InputAdapter, input_adapter
 from compiler.targets.python.names import (
     MOST_PARAMETERS,
@@ -31,11 +31,11 @@ from compiler.targets.python.names import (
     prefixes_of,
 )
 from compiler.targets.python.program import (
-    Program,
+    ProgramCode,
     marks_of,
     program,
 )
-from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
+from compiler.targets.target import DEFAULT, Target, TargetOptions, not_expressible, stem
 from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, calls, conditions
 from fretish.clock import assumed_ticks
@@ -127,7 +127,7 @@ def remark(requirement: FormalizedRequirement) -> Diagnostic | None:
 
 
 def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
 ) -> tuple[Artifact, ...]:
     """`<id>_monitor.py` for each requirement, or one file; they need only Python 3.11."""
     if options.one_file:
@@ -189,7 +189,7 @@ def is_inlined(requirements: int, inputs: int) -> bool:
 
 
 def _digest(
-    code: Program, requirements: Sequence[FormalizedRequirement], front: _AdapterCode | None
+    code: ProgramCode, requirements: Sequence[FormalizedRequirement], front: _AdapterCode | None
 ) -> str:
     """SHA-256 of everything that defines the meaning of the saved state."""
     identities = [
@@ -203,7 +203,7 @@ def _tuple(names: Sequence[str]) -> str:
     return f"({', '.join(names)}{',' * (len(names) == 1)})"
 
 
-def _slots(code: Program) -> list[str]:
+def _slots(code: ProgramCode) -> list[str]:
     """The `__slots__` of the state, in natural order."""
     marks = {name for signals in code.requirements for name in marks_of(signals.prefix)}
     names = {"doubt", "tick", *(cell.name for cell in code.cells), *marks}
@@ -251,7 +251,7 @@ class _AdapterCode:
     @classmethod
     def of(cls, compared: InputAdapter, parameters: Mapping[str, str]) -> _AdapterCode:
         """The code for given names of variables and propositions."""
-        writer = Writer({name: parameters[name] for name in compared.inputs})
+        writer = ComparisonWriter({name: parameters[name] for name in compared.inputs})
         comparisons = tuple(
             (name, parameters[name], writer.comparison(comparison))
             for name, comparison in compared.comparisons.items()
@@ -281,7 +281,7 @@ class _Input:
     """Whether the negation is needed, too."""
 
 
-def _is_negated(proposition: str, code: Program) -> bool:
+def _is_negated(proposition: str, code: ProgramCode) -> bool:
     return any(
         literal.proposition == proposition and not literal.positive for literal in code.literals
     )

@@ -16,7 +16,7 @@ from compiler.files.templating import render
 from compiler.formalization.binding_agreement import binding_fix
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals import numbers as n
-from compiler.signals.policies import Meaning, Policy, instant
+from compiler.signals.policies import PropositionFunctions, SamplePolicy, instant
 from fretish.bindings.declarations import Declarations, Reduce
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -140,7 +140,7 @@ def topics_of(requirement: FormalizedRequirement) -> tuple[str, ...]:
     return tuple(dict.fromkeys(policy.signal.path.topic for policy in at_instant.policies))
 
 
-def _policy(policy: Policy) -> str:
+def _policy(policy: SamplePolicy) -> str:
     signal = policy.signal
     invalid = signal.invalid
     kinds = (invalid.nan, invalid.positive_infinity, invalid.negative_infinity, invalid.other)
@@ -170,12 +170,12 @@ def _policy(policy: Policy) -> str:
     return f"Policy({', '.join([*head, *_named(texts)])})"
 
 
-def _besides(policy: Policy) -> dict[str, str]:
+def _besides(policy: SamplePolicy) -> dict[str, str]:
     """The fields that `valid` reads, with their parameters."""
     return {name: f"beside{i}" for i, name in enumerate(policy.fields)}
 
 
-def _measured(policy: Policy) -> str | None:
+def _measured(policy: SamplePolicy) -> str | None:
     """`valid` in plain Python if nothing in it can be unknown or needs rounding; else None."""
     if not policy.signal.path.each:
         return None
@@ -202,7 +202,7 @@ def _measured(policy: Policy) -> str | None:
     return text(policy.valid)
 
 
-def _meaning(meaning: Meaning) -> str:
+def _meaning(meaning: PropositionFunctions) -> str:
     asked = [_truth(part) for part, _ in meaning.held]
     held = "".join(
         f"(lambda row, held: {text}, {duration}), "
@@ -228,7 +228,7 @@ def _named(texts: dict[str, str]) -> Iterator[str]:
     return (f"{name}={text}" for name, text in texts.items())
 
 
-def lookback(tree: n.Truth, meaning: Meaning) -> int:
+def lookback(tree: n.Truth, meaning: PropositionFunctions) -> int:
     """The sum of nested durations."""
     return max(
         (
@@ -239,11 +239,11 @@ def lookback(tree: n.Truth, meaning: Meaning) -> int:
     )
 
 
-def signals_of(meaning: Meaning) -> Iterator[str]:
+def signals_of(meaning: PropositionFunctions) -> Iterator[str]:
     """The signals that the meaning reads, possibly repeated."""
     for tree in (meaning.truth, *(part for part, _ in meaning.held)):
         for part in _parts(tree):
-            if isinstance(part, n.Flag | n.SignalValue):
+            if isinstance(part, n.BooleanSignal | n.SignalValue):
                 yield part.name
 
 
@@ -260,7 +260,7 @@ def _parts(tree: n.Truth | n.Number) -> Iterator[n.Truth | n.Number]:
 
 def _children(tree: n.Truth | n.Number) -> Iterable[n.Truth | n.Number]:
     match tree:
-        case n.Known() | n.Flag() | n.HeldFor() | n.SignalValue() | n.Constant():
+        case n.Known() | n.BooleanSignal() | n.HeldFor() | n.SignalValue() | n.Constant():
             return ()
         case n.Not(arg) | n.UnaryCall(_, arg) | n.ToBaseUnit(arg, _) | n.Power(arg, _):
             return (arg,)
@@ -281,7 +281,7 @@ def _truth(tree: n.Truth) -> str:
     match tree:
         case n.Known(value):
             return repr(value)
-        case n.Flag(name):
+        case n.BooleanSignal(name):
             return f"flag(row[{name!r}])"
         case n.Comparison(sign, left, right):
             return f"compared({_number(left)}, {sign!r}, {_number(right)})"

@@ -19,7 +19,7 @@ _OR, _AND, _ATOMIC = range(3)
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class StoredVariable:
     """A variable that is kept from tick to tick."""
 
     name: str
@@ -28,7 +28,7 @@ class Cell:
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class OperatorStatements:
     """The statements of one temporal operator, below a comment with its formula."""
 
     comment: str
@@ -65,7 +65,7 @@ class RequirementSignals:
 
 
 @dataclass(frozen=True, slots=True)
-class Literal:
+class LiteralVariable:
     """A proposition or its negation, as a variable."""
 
     name: str
@@ -74,20 +74,20 @@ class Literal:
 
 
 @dataclass(frozen=True, slots=True)
-class Program:
+class ProgramCode:
     """The code of the cells, the steps and the signals; and of the same over columns."""
 
-    literals: tuple[Literal, ...]
-    cells: tuple[Cell, ...]
-    steps: tuple[Block, ...]
-    columns: tuple[Block, ...]
+    literals: tuple[LiteralVariable, ...]
+    cells: tuple[StoredVariable, ...]
+    steps: tuple[OperatorStatements, ...]
+    columns: tuple[OperatorStatements, ...]
     requirements: tuple[RequirementSignals, ...]
 
 
 @with_recursion_limit
 def program(
     watches: Mapping[str, MonitorSpec], parameters: Mapping[str, str], prefixes: Mapping[str, str]
-) -> Program:
+) -> ProgramCode:
     """The Python code of monitor specifications.
 
     Args:
@@ -97,15 +97,25 @@ def program(
     """
     marks = {name for prefix in prefixes.values() for name in marks_of(prefix)}
     monitor_program = lowered(watches, marks | locals_of(parameters.values()))
-    printer = _Printer(parameters)
-    return Program(
+    printer = _PythonPrinter(parameters)
+    return ProgramCode(
         tuple(
-            Literal(printer.name(x), x.proposition, x.positive) for x in monitor_program.literals
+            LiteralVariable(printer.name(x), x.proposition, x.positive)
+            for x in monitor_program.literals
         ),
-        tuple(Cell(cell.name, _initial(cell), cell.comment) for cell in monitor_program.cells),
-        tuple(Block(b.comment, printer.step(b)) for b in monitor_program.blocks if b.instructions),
         tuple(
-            Block(b.comment, lines) for b in monitor_program.blocks if (lines := printer.column(b))
+            StoredVariable(cell.name, _initial(cell), cell.comment)
+            for cell in monitor_program.cells
+        ),
+        tuple(
+            OperatorStatements(b.comment, printer.step(b))
+            for b in monitor_program.blocks
+            if b.instructions
+        ),
+        tuple(
+            OperatorStatements(b.comment, lines)
+            for b in monitor_program.blocks
+            if (lines := printer.column(b))
         ),
         tuple(
             printer.signals(requirement, prefixes[requirement.id])
@@ -131,9 +141,9 @@ def marks_of(prefix: str) -> frozenset[str]:
 
 def _initial(cell: p.Cell) -> str:
     match cell:
-        case p.Flag() | p.Counter():
+        case p.StoredFlag() | p.Counter():
             return str(cell.initial)
-        case p.Window():
+        case p.WindowMemory():
             return f"Window({cell.lo}, {cell.hi})"
         case _:
             assert_never(cell)
@@ -154,7 +164,7 @@ class _Text(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class _Printer:
+class _PythonPrinter:
     """The syntax of Python for a program."""
 
     parameters: Mapping[str, str]
@@ -164,7 +174,7 @@ class _Printer:
         parameter = self.parameters[literal.proposition]
         return parameter if literal.positive else negation(parameter)
 
-    def signals(self, requirement: p.Requirement, prefix: str) -> RequirementSignals:
+    def signals(self, requirement: p.RequirementProgram, prefix: str) -> RequirementSignals:
         """The signals of a requirement with this prefix."""
         texts = {n: self.text(value) for n, value in requirement.signals._asdict().items()}
         return RequirementSignals(
@@ -214,7 +224,7 @@ class _Printer:
                 return (f"{name} = {self.text(value).step}",)
             case i.Shift(name, cell, value):
                 return (f"{name}, {cell} = {cell}, {self.text(value).step}",)
-            case i.Count(counter, number):
+            case i.SetCounter(counter, number):
                 return (f"{counter} = {number}",)
             case i.Advance(counter, most):
                 return (f"{counter} = {counter} + 1 if {counter} < {most} else {most}",)
@@ -242,18 +252,18 @@ class _Printer:
             return ()
         return (f"{block.name} = {self._column(block.column)}",)
 
-    def _column(self, column: v.Value | c.PreviousColumn | c.Since) -> str:
+    def _column(self, column: v.Value | c.PreviousColumn | c.SinceColumn) -> str:
         match column:
             case c.PreviousColumn(value, weak):
                 return (
                     f"{'weak_previous' if weak else 'previous'}({self.text(value).column}, every)"
                 )
-            case c.Since():
+            case c.SinceColumn():
                 return self._since(column)
             case _:
                 return self.text(column).column
 
-    def _since(self, since: c.Since) -> str:
+    def _since(self, since: c.SinceColumn) -> str:
         bounds, witness = f"{since.lo}, {since.hi}, every", self.text(since.witness).column
         if since.guard is None:
             return f"{'historically' if since.dual else 'once'}({witness}, {bounds})"

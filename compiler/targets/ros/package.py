@@ -18,7 +18,7 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.policies import instant
 from compiler.targets.python import interceptor, monitor, perception
-from compiler.targets.target import Options, stem
+from compiler.targets.target import TargetOptions, stem
 from compiler.targets.witness_traces import witness_traces
 from fretish.bindings.declarations import Interception, Signal, short_type
 from fretish.bindings.tables.interceptor import TABLE
@@ -32,7 +32,7 @@ from monitors.voice import LONGEST_BEAT, SHORTEST
 
 
 @dataclass(frozen=True, slots=True)
-class Topic:
+class SubscribedTopic:
     """A topic that the node subscribes to."""
 
     name: str
@@ -61,7 +61,7 @@ class Package:
 
     name: str
     requirements: tuple[FormalizedRequirement, ...]
-    topics: tuple[Topic, ...]
+    topics: tuple[SubscribedTopic, ...]
     period: int
     """The length of a tick in nanoseconds."""
     phase: int
@@ -157,7 +157,7 @@ def _refusal(requirement: FormalizedRequirement, what: str, place: Span, fix: st
     return Diagnostic(Code.NOT_EXPRESSIBLE, message, place, help=fix)
 
 
-def refuse_project(options: Options) -> Diagnostic | None:
+def refuse_project(options: TargetOptions) -> Diagnostic | None:
     """F634 if maintainer or license are missing, which a manifest must have."""
     missing = options.attribution.missing
     if not missing:
@@ -165,7 +165,7 @@ def refuse_project(options: Options) -> Diagnostic | None:
     return diagnostic("no_attribution", settings=SETTINGS, fields=", ".join(missing), paste=EXAMPLE)
 
 
-def remarks(options: Options) -> tuple[Diagnostic, ...]:
+def remarks(options: TargetOptions) -> tuple[Diagnostic, ...]:
     """F323 if nothing executes a stop; F630 to F633 of the interceptor."""
     declared = options.declarations
     if declared is None or declared.interceptor is not None:
@@ -183,7 +183,7 @@ def remarks(options: Options) -> tuple[Diagnostic, ...]:
 # The description --------------------------------------------------------------------------------
 
 
-def package(requirements: Sequence[FormalizedRequirement], options: Options) -> Package:
+def package(requirements: Sequence[FormalizedRequirement], options: TargetOptions) -> Package:
     """The package of requirements that were not refused.
 
     Raises:
@@ -229,19 +229,19 @@ def _signals(requirements: Sequence[FormalizedRequirement]) -> list[Signal]:
     return [policy.signal for policy in at_instant.policies] if at_instant else []
 
 
-def _topics(signals: Sequence[Signal]) -> Iterator[Topic]:
+def _topics(signals: Sequence[Signal]) -> Iterator[SubscribedTopic]:
     for topic in dict.fromkeys(signal.path.topic for signal in signals):
         own = [signal for signal in signals if signal.path.topic == topic]
         kind = _TYPE.fullmatch(_kind(own[0]))
         assert kind is not None, "it is refused"
         fields = dict.fromkeys(str(signal.path).removeprefix(f"{topic}.") for signal in own)
-        yield Topic(topic, kind["package"], kind["message"], tuple(fields))
+        yield SubscribedTopic(topic, kind["package"], kind["message"], tuple(fields))
 
 
 def _parameters(
     requirements: Sequence[FormalizedRequirement],
     signals: Sequence[Signal],
-    options: Options,
+    options: TargetOptions,
     period: int,
 ) -> Iterator[Parameter]:
     ages = [signal.max_age for signal in signals if signal.max_age is not None]
@@ -270,7 +270,9 @@ def _parameters(
     )
 
 
-def _deciding(requirements: Sequence[FormalizedRequirement], options: Options) -> tuple[str, ...]:
+def _deciding(
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions
+) -> tuple[str, ...]:
     """The requirements that stop the robot, by `[assume]`; all of them if it names none."""
     assumed = options.declarations.assumed if options.declarations else None
     asking = [

@@ -13,11 +13,11 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import interceptor
 from compiler.targets.python.monitor import remark
 from compiler.targets.ros import package as shared
-from compiler.targets.target import DEFAULT, Options, Target
+from compiler.targets.target import DEFAULT, Target, TargetOptions
 
 
 def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
 ) -> tuple[Artifact, ...]:
     """One folder, to be put into the `src` of a workspace."""
     package = shared.package(requirements, options)

@@ -15,8 +15,8 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.ros import package as shared
-from compiler.targets.ros.package import Package, Topic
-from compiler.targets.target import DEFAULT, Options, Target
+from compiler.targets.ros.package import Package, SubscribedTopic
+from compiler.targets.target import DEFAULT, Target, TargetOptions
 
 _SENSORS = {"sensor_msgs", "nav_msgs"}
 """Packages of messages that drivers publish with best effort."""
@@ -48,7 +48,7 @@ _TEMPLATES = {
 
 
 def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
 ) -> tuple[Artifact, ...]:
     """A folder with the name of the package.
 
@@ -103,7 +103,7 @@ def _literal(value: float | Sequence[str]) -> str:
     return repr(value) if isinstance(value, float) else json.dumps(list(value))
 
 
-def qos(topic: Topic) -> str:
+def qos(topic: SubscribedTopic) -> str:
     """The QoS of the node's subscription, as Python code."""
     return "qos_profile_sensor_data" if topic.package in _SENSORS else "10"
 

@@ -19,7 +19,7 @@ from compiler.files.build_id import __version__
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.functions import SignalFunction
-from compiler.signals.policies import Meaning, Policy, instant
+from compiler.signals.policies import PropositionFunctions, SamplePolicy, instant
 from compiler.signals.printing import parts
 from compiler.targets.c import monitor
 from compiler.targets.c.monitor import JoinedInterface, joined_interface
@@ -28,7 +28,7 @@ from compiler.targets.python.monitor import description_of
 from compiler.targets.ros import package as shared
 from compiler.targets.ros.package import Package
 from compiler.targets.ros.ros2 import qos
-from compiler.targets.target import DEFAULT, Options, Target
+from compiler.targets.target import DEFAULT, Target, TargetOptions
 from compiler.targets.witness_traces import RepeatedTick, witness_traces
 from fretish.bindings.declarations import Reading, Reduce
 from fretish.clock import TimeSource
@@ -52,7 +52,7 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
 
 
 def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
 ) -> tuple[Artifact, ...]:
     """A folder with the name of the package.
 
@@ -70,7 +70,7 @@ def emit(
     files |= {name: documents[name] for name in ("LICENSE", "CHANGELOG.rst")}
     files[f"config/{package.name}.yaml"] = render("ros2/config.yaml.j2", **values)
     files[f"launch/{package.name}.launch.py"] = render("ros2/launch.py.j2", **values)
-    for artifact in monitor.emit(requirements, Options(one_file=True)):
+    for artifact in monitor.emit(requirements, TargetOptions(one_file=True)):
         files[f"src/{artifact.path}"] = artifact.text
     folder = PurePosixPath(package.name)
     return tuple(Artifact(folder / path, text) for path, text in files.items())
@@ -149,7 +149,7 @@ def _ticks(ticks: RepeatedTick, order: Mapping[str, int]) -> dict[str, Any]:
     }
 
 
-def _signal(policy: Policy, function: SignalFunction) -> dict[str, Any]:
+def _signal(policy: SamplePolicy, function: SignalFunction) -> dict[str, Any]:
     signal = policy.signal
     return {
         "name": function.name,
@@ -179,7 +179,7 @@ _MEANINGS = {
 
 
 def _meanings(
-    meanings: Sequence[Meaning], names: JoinedInterface, places: Mapping[str, int]
+    meanings: Sequence[PropositionFunctions], names: JoinedInterface, places: Mapping[str, int]
 ) -> list[dict[str, Any]]:
     held = iter(names.signals.held)
     return [

@@ -17,8 +17,8 @@ from compiler.targets.fixed_memory import input_names, inputs, rail_of, too_larg
 from compiler.targets.python.monitor import description, refusal, remark
 from compiler.targets.python.names import module
 from compiler.targets.rust import signals
-from compiler.targets.rust.printer import Printer
-from compiler.targets.target import DEFAULT, Options, Target, stem
+from compiler.targets.rust.printer import RustPrinter
+from compiler.targets.target import DEFAULT, Target, TargetOptions, stem
 from compiler.targets.witness_traces import witness_traces
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
@@ -30,7 +30,7 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
 
 
 def emit(
-    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: TargetOptions = DEFAULT
 ) -> tuple[Artifact, ...]:
     """A crate for each requirement, or one for all; and a crate for samples beside it."""
     if options.one_file:
@@ -47,7 +47,7 @@ def _crate(name: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Ar
     """The files of a crate with one monitor for all of the requirements."""
     name = name if name[0].isalpha() else f"r{name}"
     names = input_names(requirements, RUST)
-    printer = Printer.of(rail_of(requirements, RUST), names)
+    printer = RustPrinter.of(rail_of(requirements, RUST), names)
     library = render(
         "rust/lib.rs.j2",
         **description(requirements),

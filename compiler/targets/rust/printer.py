@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple, assert_never
 
-from compiler.program.program import Counter, Flag
+from compiler.program.program import Counter, StoredFlag
 from compiler.program.rails import Deadline, Ring
 from compiler.program.statements import Statements
 from compiler.program.values import Age, Comparison, Not, Value
 
 
-class Field(NamedTuple):
+class StructField(NamedTuple):
     """A field of the struct of the state."""
 
     name: str
@@ -21,24 +21,24 @@ class Field(NamedTuple):
     comment: str
 
 
-class Printer(Statements):
+class RustPrinter(Statements):
     """The syntax of Rust: cells are fields of `self`, literals are fields of `now`."""
 
     __slots__ = ()
     CELLS, LITERALS, LOCAL, IF = "self.", "now.", "let", ("", "")
 
-    def fields(self) -> Iterator[Field]:
+    def fields(self) -> Iterator[StructField]:
         """The fields of all cells."""
         for cell in self.rail.cells:
             match cell:
-                case Flag(name, initial, comment):
-                    yield Field(name, "bool", str(initial).lower(), comment)
+                case StoredFlag(name, initial, comment):
+                    yield StructField(name, "bool", str(initial).lower(), comment)
                 case Counter(name, initial, least, most, comment):
-                    yield Field(name, "i32", str(initial), f"{comment}; {least} to {most}")
+                    yield StructField(name, "i32", str(initial), f"{comment}; {least} to {most}")
                 case Ring(name, length, comment):
                     words = -(-length // 32)
-                    yield Field(name, f"[u32; {words}]", f"[0; {words}]", comment)
-                    yield Field(f"{name}_at", "usize", "0", "where this tick's is")
+                    yield StructField(name, f"[u32; {words}]", f"[0; {words}]", comment)
+                    yield StructField(f"{name}_at", "usize", "0", "where this tick's is")
                 case _:
                     assert_never(cell)
 

@@ -12,7 +12,7 @@ from math import isinf, isnan
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.functions import file_name, functions
-from compiler.signals.printing import Language, encode_constant, letters, parts
+from compiler.signals.printing import NumberSyntax, encode_constant, letters, parts
 
 _SIGNS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge", "=": "eq", "!=": "ne"}
 
@@ -81,7 +81,7 @@ def _scale(value: Fraction) -> str:
     return ", ".join(map(_double, parts(value)))
 
 
-_LANGUAGE = Language(
+_LANGUAGE = NumberSyntax(
     prefix="",
     truths={True: "Some(true)", False: "Some(false)", None: "None"},
     signs={sign: f"Ordering::is_{name}" for sign, name in _SIGNS.items()},

@@ -16,7 +16,7 @@ from fretish.bindings.declarations import Role
 
 if TYPE_CHECKING:
     from fretc.analysis.arena.budget import Budget
-    from fretc.analysis.arena.memory import Counter
+    from fretc.analysis.arena.memory import RequirementCounter
 
 Value = bool | int | float | str
 """Value of a variable at one tick: a truth value, a number, or an enumeration value."""
@@ -95,7 +95,7 @@ class Alphabet(Protocol):
             UnsupportedError: the alphabet has no such atom.
         """
 
-    def memory(self) -> Counter | None:
+    def memory(self) -> RequirementCounter | None:
         """Stored facts about earlier ticks on which valuations depend."""
 
     def course(self, budget: Budget) -> NumericTrace | None:

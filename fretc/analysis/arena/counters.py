@@ -11,16 +11,16 @@ from dataclasses import dataclass
 from typing import assert_never
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.obligation import Kind, Obligation
+from compiler.formalization.obligation import Obligation, ObligationKind
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.memory import (
     LONGEST_DELAY,
     Bit,
-    Counter,
     Memory,
-    Past,
+    PastMemory,
+    RequirementCounter,
     constant,
     either,
     equals,
@@ -42,7 +42,7 @@ def counter(
     shared: dict[Function, Bit],
     *,
     as_fret: bool = False,
-) -> Counter:
+) -> RequirementCounter:
     """The counter of a requirement.
 
     Args:
@@ -60,8 +60,8 @@ def counter(
         raise UnsupportedError("it states a probability")
     demanded = requirement.demanded
     memory = Memory(fresh, shared)
-    past = Past(alphabet.atom, memory)
-    tick = _Tick(demanded, memory, past.value)
+    past = PastMemory(alphabet.atom, memory)
+    tick = _CounterTick(demanded, memory, past.value)
     timing = _timing(tick, demanded.demand.ticks)
     safe, fair = -timing.broken, timing.fair
     if as_fret and timing.owed is not None:
@@ -69,12 +69,12 @@ def counter(
     roots = [safe, tick.enforced, tick.triggered, *([] if fair is None else [fair])]
     bits = memory.needed(roots)
     steps = tuple(memory.steps[bit] for bit in bits)
-    return Counter(
+    return RequirementCounter(
         requirement.id, bits, steps, safe, fair, tuple(memory.words), tick.enforced, tick.triggered
     )
 
 
-class _Tick:
+class _CounterTick:
     """Scope and condition at one tick."""
 
     def __init__(
@@ -143,41 +143,41 @@ class _Timing:
     fair: Function | None = None
 
 
-def _timing(tick: _Tick, n: int) -> _Timing:
+def _timing(tick: _CounterTick, n: int) -> _Timing:
     """The safe ticks of the timing; its count becomes a part of the memory."""
     enforced, triggered, q, stop = tick.enforced, tick.triggered, tick.q, tick.stop
     kind = tick.demanded.demand.kind
     match kind:
-        case Kind.IMMEDIATELY:
+        case ObligationKind.IMMEDIATELY:
             return _Timing(triggered - q)
-        case Kind.NEXT:
+        case ObligationKind.NEXT:
             due = enforced & tick.memory.keep(triggered)
             return _Timing(due - q)
-        case Kind.EVENTUALLY:
+        case ObligationKind.EVENTUALLY:
             return _eventually(tick)
-        case Kind.FINALLY:
+        case ObligationKind.FINALLY:
             return _finally(tick)
-        case Kind.ALWAYS if tick.demanded.condition is None:
+        case ObligationKind.ALWAYS if tick.demanded.condition is None:
             return _Timing(enforced - q)
-        case Kind.ALWAYS:
+        case ObligationKind.ALWAYS:
             return _Timing(_open(tick, lambda due: due) - q)
-        case Kind.UNTIL:
+        case ObligationKind.UNTIL:
             return _Timing(_open(tick, lambda due: due - stop) - stop - q)
-        case Kind.BEFORE:
+        case ObligationKind.BEFORE:
             return _Timing(_open(tick, lambda due: due - q) & stop)
-        case Kind.WITHIN:
+        case ObligationKind.WITHIN:
             return _within(tick, n)
-        case Kind.FOR:
+        case ObligationKind.FOR:
             return _for(tick, n)
-        case Kind.AFTER:
+        case ObligationKind.AFTER:
             return _after(tick, n)
-        case Kind.NOT_AFTER:
+        case ObligationKind.NOT_AFTER:
             return _not_after(tick, n) if tick.demanded.condition is None else _register(tick, n)
         case _:
             assert_never(kind)
 
 
-def _open(tick: _Tick, stays: Callable[[Function], Function]) -> Function:
+def _open(tick: _CounterTick, stays: Callable[[Function], Function]) -> Function:
     """Whether an obligation is open at a tick; if it `stays`, it is open at the next tick too."""
     bit = tick.memory.bit()
     due = tick.triggered | (tick.enforced & bdd.variable(bit.now))
@@ -185,7 +185,7 @@ def _open(tick: _Tick, stays: Callable[[Function], Function]) -> Function:
     return due
 
 
-def _eventually(tick: _Tick) -> _Timing:
+def _eventually(tick: _CounterTick) -> _Timing:
     bit = tick.memory.bit()
     was = bdd.variable(bit.now)
     owed = (tick.triggered | (tick.enforced & was)) - tick.q
@@ -193,7 +193,7 @@ def _eventually(tick: _Tick) -> _Timing:
     return _Timing(was - tick.enforced, owed, -was)
 
 
-def _finally(tick: _Tick) -> _Timing:
+def _finally(tick: _CounterTick) -> _Timing:
     """An interval without an end has no last tick, so that no obligation falls due."""
     bit = tick.memory.bit()
     was = bdd.variable(bit.now)
@@ -203,7 +203,7 @@ def _finally(tick: _Tick) -> _Timing:
     return _Timing(was - answered - tick.enforced, due - tick.q)
 
 
-def _within(tick: _Tick, n: int) -> _Timing:
+def _within(tick: _CounterTick, n: int) -> _Timing:
     """The count is the number of ticks since the oldest open trigger."""
     bits, count = tick.memory.word(n)
     open_ = (tick.triggered | (tick.enforced & some(count))) - tick.q
@@ -211,7 +211,7 @@ def _within(tick: _Tick, n: int) -> _Timing:
     return _Timing(open_ & equals(count, n))
 
 
-def _for(tick: _Tick, n: int) -> _Timing:
+def _for(tick: _CounterTick, n: int) -> _Timing:
     """The count is the number of remaining ticks of the newest trigger."""
     bits, count = tick.memory.word(n)
     due = tick.triggered | (tick.enforced & some(count))
@@ -220,7 +220,7 @@ def _for(tick: _Tick, n: int) -> _Timing:
     return _Timing(due - tick.q)
 
 
-def _after(tick: _Tick, n: int) -> _Timing:
+def _after(tick: _CounterTick, n: int) -> _Timing:
     """The count is the number of ticks since the oldest trigger.
 
     A second trigger before the deadline forbids the response at the tick at which the first one
@@ -237,7 +237,7 @@ def _after(tick: _Tick, n: int) -> _Timing:
     return _Timing(due & bdd.ite(last, clashes | -tick.q, tick.q))
 
 
-def _not_after(tick: _Tick, n: int) -> _Timing:
+def _not_after(tick: _CounterTick, n: int) -> _Timing:
     """With one trigger in an interval, a count gives its time."""
     bits, count = tick.memory.word(n + 1)
     due = tick.triggered | (tick.enforced & some(count))
@@ -246,7 +246,7 @@ def _not_after(tick: _Tick, n: int) -> _Timing:
     return _Timing(tick.enforced & last & tick.q)
 
 
-def _register(tick: _Tick, n: int) -> _Timing:
+def _register(tick: _CounterTick, n: int) -> _Timing:
     """Each trigger forbids the response at a tick of its own, so each trigger is stored."""
     if n > LONGEST_DELAY:
         raise UnsupportedError(f"each of its triggers is remembered for {n} ticks")

@@ -154,7 +154,7 @@ def only(condition: Function, word: Word) -> Word:
 # Formulas of the past ---------------------------------------------------------------------------
 
 
-class Past:
+class PastMemory:
     """Formulas of the past as functions of a valuation and of bits that they add to a memory.
 
     Source: Havelund, Rosu, Synthesizing monitors for safety properties, TACAS 2002: the value of a
@@ -253,7 +253,7 @@ def _folded(
 
 
 @dataclass(frozen=True, slots=True)
-class Counter:
+class RequirementCounter:
     """A requirement as a counter. All bits of its state are false before the first tick."""
 
     id: str

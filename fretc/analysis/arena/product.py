@@ -15,7 +15,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.counters import counter
-from fretc.analysis.arena.memory import Bit, Counter
+from fretc.analysis.arena.memory import Bit, RequirementCounter
 from fretc.analysis.arena.variables import Numbers, UnsupportedError
 
 
@@ -24,9 +24,9 @@ class Arena:
     """Requirements and assumptions as counters over one alphabet."""
 
     alphabet: Alphabet
-    counters: tuple[Counter, ...]
+    counters: tuple[RequirementCounter, ...]
     """Counters of the requirements, in the order of the files, except those in `beyond`."""
-    assumptions: tuple[Counter, ...]
+    assumptions: tuple[RequirementCounter, ...]
     beyond: dict[str, str]
     """Id of a requirement without a counter → the reason."""
 
@@ -64,7 +64,7 @@ def arena(
     Raises:
         UnsupportedError: an assumption has no counter.
     """
-    found: dict[str, Counter] = {}
+    found: dict[str, RequirementCounter] = {}
     beyond: dict[str, str] = {}
     shared: dict[Function, Bit] = {}
     known = {id(requirement) for requirement in assumptions}

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
-from fretc.analysis.arena.memory import Bit, Counter
+from fretc.analysis.arena.memory import Bit, RequirementCounter
 
 State = Mapping[int, bool]
 """A value of each bit."""
@@ -15,7 +15,7 @@ State = Mapping[int, bool]
 class Transition:
     """Product of some counters: next-state functions, without a relation."""
 
-    def __init__(self, counters: Sequence[Counter]) -> None:
+    def __init__(self, counters: Sequence[RequirementCounter]) -> None:
         by_number: dict[int, Bit] = {}
         self._steps: dict[int, Function] = {}
         for counter in counters:

@@ -12,15 +12,15 @@ from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.memory import Counter, Memory
+from fretc.analysis.arena.memory import Memory, RequirementCounter
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.arithmetic.course import SolvedNumericTrace
-from fretc.analysis.arithmetic.durations import Duration, DurationValue, held
+from fretc.analysis.arithmetic.durations import DurationValue, StoredDuration, held
 from fretc.analysis.arithmetic.group_content import choice, linked, owners
-from fretc.analysis.arithmetic.groups import Group
+from fretc.analysis.arithmetic.groups import ComparisonGroup
 from fretc.analysis.arithmetic.past import Remembered, remembered
 from fretc.analysis.arithmetic.projection import Limit
 from fretish.bindings.declarations import Role
@@ -59,9 +59,9 @@ class Cells:
         self._pairs = remembered(self._atoms, steps)
         self._fresh = fresh
         self._kept = Memory(fresh, {})
-        self._groups: list[Group] = []
-        self._of: dict[str, Group] = {}
-        self._lasted: dict[Duration, DurationValue] = {}
+        self._groups: list[ComparisonGroup] = []
+        self._of: dict[str, ComparisonGroup] = {}
+        self._lasted: dict[StoredDuration, DurationValue] = {}
         self._asked: dict[str, Function] = {}
         self._free: list[int] = []
         """Bits of the favoured player: whether a duration has lasted since before the run."""
@@ -70,7 +70,7 @@ class Cells:
             budget.check()
             try:
                 chosen = choice(names, self._atoms, owners(names, self._atoms, roles, favoured))
-                group = Group(chosen, self._atoms, fresh, favoured, Limit(budget))
+                group = ComparisonGroup(chosen, self._atoms, fresh, favoured, Limit(budget))
             except UnsupportedError as error:
                 shown = f"`{names[0]}` and others" if len(names) > 1 else f"`{names[0]}`"
                 refused |= dict.fromkeys(names, f"{shown} {error}")
@@ -115,7 +115,7 @@ class Cells:
             found = found | term
         return found
 
-    def _lasted_so(self, duration: Duration) -> DurationValue:
+    def _lasted_so(self, duration: StoredDuration) -> DurationValue:
         if duration not in self._lasted:
             throughout, at_last = self.atom(duration.throughout), self.atom(duration.at_last)
             self._free.append(next(self._fresh))
@@ -224,7 +224,7 @@ class Cells:
             found |= self._lasting.keys()
         return frozenset(found)
 
-    def memory(self) -> Counter | None:
+    def memory(self) -> RequirementCounter | None:
         """Stored facts about earlier ticks, which the player of the numbers must respect."""
         pairs = [pair for pair in self._pairs if pair.now in self._of and pair.then in self._of]
         agrees = self._agreement(pairs) if pairs else bdd.true()
@@ -233,7 +233,7 @@ class Cells:
             return None
         steps = tuple(self._kept.steps[bit] for bit in bits)
         words = tuple(self._kept.words)
-        return Counter("", bits, steps, agrees, None, words, bdd.true(), bdd.true())
+        return RequirementCounter("", bits, steps, agrees, None, words, bdd.true(), bdd.true())
 
     def _agreement(self, pairs: Sequence[Remembered]) -> Function:
         """Whether numbers of the previous tick agree with the stored facts, if they have a pattern.
@@ -270,5 +270,5 @@ class Cells:
         return found
 
     @property
-    def _used(self) -> Iterator[Group]:
+    def _used(self) -> Iterator[ComparisonGroup]:
         return (group for group in self._groups if group.is_used)

@@ -9,16 +9,22 @@ from fractions import Fraction
 import z3
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.numbers.terms import NoTermError, PreviousValue, Term, Terms, read_by
+from compiler.formalization.numbers.terms import (
+    NoTermError,
+    PreviousValue,
+    RequirementTerms,
+    Term,
+    read_by,
+)
 from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.arithmetic.durations import DurationProposition, parted
-from fretc.analysis.arithmetic.readings import Reading, readings
-from fretc.analysis.arithmetic.steps import AtomOfTick, Moment, Steps, linked, tick, unknown
+from fretc.analysis.arithmetic.readings import AtomReading, readings
+from fretc.analysis.arithmetic.steps import AtomOfTick, AtomStep, Steps, linked, tick, unknown
 
 
 @dataclass(frozen=True, slots=True)
-class Atom:
+class NumericAtom:
     """Atom of one tick that depends on numbers and enumeration values."""
 
     over: AtomOfTick
@@ -45,8 +51,8 @@ class Atoms:
             requirements: the requirements.
             of_moments: whether only atoms of one known sample are read.
         """
-        self._terms = Terms(requirements)
-        self.found: dict[str, Atom] = {}
+        self._terms = RequirementTerms(requirements)
+        self.found: dict[str, NumericAtom] = {}
         self.refused: dict[str, str] = {}
         """Comparison → why it has no formula here."""
         self.lasting: dict[str, DurationProposition] = {}
@@ -55,7 +61,7 @@ class Atoms:
         """Variable of another step → its signal."""
         self._flags: set[str] = set()
         self._parts: set[str] = set()
-        moments: dict[str, Moment] = {}
+        moments: dict[str, AtomStep] = {}
         for name, reading in readings(requirements):
             if of_moments and not reading.is_of_moment:
                 continue
@@ -111,7 +117,7 @@ class Atoms:
             if name not in self._of
         }
 
-    def _read(self, name: str, reading: Reading, moments: dict[str, Moment]) -> None:
+    def _read(self, name: str, reading: AtomReading, moments: dict[str, AtomStep]) -> None:
         try:
             parts, lasting = parted(name, reading)
             made = {each: self._moment(part) for each, part in parts.items()}
@@ -123,19 +129,19 @@ class Atoms:
             self.lasting[name] = lasting
             self._parts |= {*lasting.atoms}
 
-    def _moment(self, reading: Reading) -> Moment:
+    def _moment(self, reading: AtomReading) -> AtomStep:
         true, false = (
             self._terms.holds(reading.expression, value, self._known) for value in (True, False)
         )
         signals = frozenset(each for each in read_by(true) if each in self.variables)
-        return Moment(true, false, signals, reading.aggregate, reading.on_unknown, reading.names)
+        return AtomStep(true, false, signals, reading.aggregate, reading.on_unknown, reading.names)
 
     def _known(self, compared: Term) -> Term:
         return z3.And([z3.Not(unknown(name)) for name in read_by(compared)])
 
     # Over a tick
 
-    def _sort(self, moments: Mapping[str, Moment]) -> None:
+    def _sort(self, moments: Mapping[str, AtomStep]) -> None:
         """Make formulas of a tick from all moments."""
         open_ = {
             signal
@@ -163,8 +169,8 @@ class Atoms:
                 self._found(name, moment, steps.tick(moment))
 
     def _settled(
-        self, moments: Mapping[str, Moment], open_: Collection[str]
-    ) -> Mapping[str, Moment]:
+        self, moments: Mapping[str, AtomStep], open_: Collection[str]
+    ) -> Mapping[str, AtomStep]:
         """Moments in which all other signals are known; durations of these signals are refused."""
         for name, lasting in [*self.lasting.items()]:
             if any(not moments[atom].signals.isdisjoint(open_) for atom in lasting.atoms):
@@ -189,6 +195,6 @@ class Atoms:
         if z3.is_bool(term):
             self._flags.add(variable)
 
-    def _found(self, name: str, moment: Moment, made: AtomOfTick) -> None:
+    def _found(self, name: str, moment: AtomStep, made: AtomOfTick) -> None:
         reads = read_by(made.formula) | read_by(made.given)
-        self.found[name] = Atom(made, reads, moment.names)
+        self.found[name] = NumericAtom(made, reads, moment.names)

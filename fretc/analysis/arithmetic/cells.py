@@ -27,7 +27,7 @@ Point = dict[str, Fraction]
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class InputClass:
     """Inputs that leave the same patterns to the system."""
 
     region: Term
@@ -124,7 +124,7 @@ def cells(
     outputs: Sequence[Term],
     domains: tuple[Term, Term],
     limit: Limit,
-) -> tuple[Cell, ...]:
+) -> tuple[InputClass, ...]:
     """Cells of the inputs of a group.
 
     Args:
@@ -155,7 +155,7 @@ def cells(
             for pattern in known
             if _part(pattern, free) in inside and _part(pattern, given) == signs[: len(given)]
         )
-        found.append(Cell(z3.And(of_inputs, *literals(marks, signs)), left))
+        found.append(InputClass(z3.And(of_inputs, *literals(marks, signs)), left))
     return tuple(found)
 
 

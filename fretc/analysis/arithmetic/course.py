@@ -11,14 +11,14 @@ from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.arithmetic.cells import Point, fixed
-from fretc.analysis.arithmetic.groups import Group
+from fretc.analysis.arithmetic.groups import ComparisonGroup
 from fretc.analysis.arithmetic.projection import Limit
 
 
 class SolvedNumericTrace:
     """Implementation of `NumericTrace`."""
 
-    def __init__(self, groups: Sequence[Group], atoms: Atoms, budget: Budget) -> None:
+    def __init__(self, groups: Sequence[ComparisonGroup], atoms: Atoms, budget: Budget) -> None:
         """A run before its first tick.
 
         Args:
@@ -53,7 +53,7 @@ class SolvedNumericTrace:
         self._numbers = numbers
         self.ticks.append(self._atoms.tick(numbers))
 
-    def _before(self, group: Group) -> list[Term]:
+    def _before(self, group: ComparisonGroup) -> list[Term]:
         """Values of the previous tick that a group reads."""
         found: list[Term] = []
         for name, before in self._atoms.before.items():

@@ -23,7 +23,7 @@ from fretc.analysis.arena.memory import (
     successor,
 )
 from fretc.analysis.arena.variables import UnsupportedError
-from fretc.analysis.arithmetic.readings import Reading
+from fretc.analysis.arithmetic.readings import AtomReading
 from fretish import expressions as e
 from fretish.bindings.declarations import Aggregate
 from fretish.printer import expression as printed
@@ -33,7 +33,7 @@ _MOST = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Duration:
+class StoredDuration:
     """A duration that has to be stored."""
 
     throughout: str
@@ -47,7 +47,7 @@ class Duration:
 class DurationProposition:
     """A proposition with durations."""
 
-    durations: tuple[Duration, ...]
+    durations: tuple[StoredDuration, ...]
     cases: Mapping[tuple[bool, ...], str]
     """Truth values of the durations → atom that then equals the proposition."""
 
@@ -59,7 +59,9 @@ class DurationProposition:
         yield from self.cases.values()
 
 
-def parted(name: str, reading: Reading) -> tuple[Mapping[str, Reading], DurationProposition | None]:
+def parted(
+    name: str, reading: AtomReading
+) -> tuple[Mapping[str, AtomReading], DurationProposition | None]:
     """A reading as readings of single ticks, and their combination; None: it is a single one.
 
     Raises:
@@ -74,7 +76,7 @@ def parted(name: str, reading: Reading) -> tuple[Mapping[str, Reading], Duration
         )
     if len(spans) > _MOST:
         raise UnsupportedError("has too many durations")
-    found: dict[str, Reading] = {}
+    found: dict[str, AtomReading] = {}
     durations = []
     for span in spans:
         if reading.period is None or span.duration % reading.period or span.duration == 0:
@@ -82,7 +84,9 @@ def parted(name: str, reading: Reading) -> tuple[Mapping[str, Reading], Duration
         if any(_durations(span.arg)):
             raise UnsupportedError("has a duration within another one")
         text = printed(span.arg)
-        made = Duration(f"{text} throughout", f"{text} at last", span.duration // reading.period)
+        made = StoredDuration(
+            f"{text} throughout", f"{text} at last", span.duration // reading.period
+        )
         found[made.throughout] = replace(reading, expression=span.arg, aggregate=Aggregate.ALL)
         found[made.at_last] = replace(reading, expression=span.arg)
         durations.append(made)

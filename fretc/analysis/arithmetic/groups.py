@@ -14,7 +14,7 @@ from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.arithmetic.cells import (
-    Cell,
+    InputClass,
     Pattern,
     Point,
     another,
@@ -30,7 +30,7 @@ from fretc.analysis.arithmetic.projection import Limit
 from fretish.bindings.declarations import Role
 
 
-class Group:
+class ComparisonGroup:
     """Comparisons that share variables; bits are created when the first of them is asked for."""
 
     def __init__(
@@ -238,7 +238,7 @@ class _Sorted:
     """Possible patterns of a group."""
 
     patterns: Sequence[Pattern]
-    cells: Sequence[Cell] = ()
+    cells: Sequence[InputClass] = ()
     """Cells, if both players choose its numbers."""
     open: Sequence[Pattern] = ()
     """Patterns that exist only if something is unknown."""

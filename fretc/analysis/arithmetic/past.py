@@ -14,7 +14,7 @@ from math import ceil, floor
 import z3
 
 from compiler.formalization.numbers.terms import PreviousValue, Term, read_by
-from fretc.analysis.arithmetic.atoms import Atom, Atoms
+from fretc.analysis.arithmetic.atoms import Atoms, NumericAtom
 from fretc.analysis.arithmetic.steps import AtomOfTick
 from fretc.analysis.arithmetic.thresholds import Bound, reached
 
@@ -88,5 +88,5 @@ def _named(atoms: Atoms, formula: Term) -> str:
     found = next(same, None)
     if found is None:
         found = formula.sexpr()
-        atoms.found[found] = Atom(AtomOfTick(formula, z3.BoolVal(True)), read_by(formula))
+        atoms.found[found] = NumericAtom(AtomOfTick(formula, z3.BoolVal(True)), read_by(formula))
     return found

@@ -14,7 +14,7 @@ from fretish.bindings.expressions import ticks_back
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class AtomReading:
     """Expression of an atom over the samples of a tick."""
 
     expression: e.Expression
@@ -33,19 +33,19 @@ class Reading:
         return self.aggregate is Aggregate.LAST and self.on_unknown is None and not lasts
 
 
-def readings(requirements: Sequence[FormalizedRequirement]) -> Iterator[tuple[str, Reading]]:
+def readings(requirements: Sequence[FormalizedRequirement]) -> Iterator[tuple[str, AtomReading]]:
     """The reading of each atom that compares numbers or enumeration values, by its name."""
     for requirement in requirements:
         compared, declared = comparisons(requirement), requirement.declarations
         for name, comparison in compared.items():
-            yield name, Reading(comparison, _names(comparison))
+            yield name, AtomReading(comparison, _names(comparison))
         for name, part in candidates(requirement.sentence):
             bound = declared.propositions.get(name) if declared is not None else None
             if declared is None or bound is None or name in compared:
                 continue
             if _is_measured(bound.expression, declared.signals):
                 own = bound.aggregate, bound.on_unknown, declared.clock.period
-                yield name, Reading(bound.expression, _names(part), *own)
+                yield name, AtomReading(bound.expression, _names(part), *own)
 
 
 def _names(part: e.Expression) -> tuple[str, ...]:

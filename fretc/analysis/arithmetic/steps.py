@@ -22,7 +22,7 @@ from fretish.bindings.declarations import Aggregate
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class AtomStep:
     """An atom at one step: when it is certainly true, and when it is false."""
 
     true: Term
@@ -57,9 +57,9 @@ def unknown(signal: str) -> Term:
     return z3.Bool(f"{signal} is unknown")
 
 
-def linked(moments: Mapping[str, Moment]) -> list[dict[str, Moment]]:
+def linked(moments: Mapping[str, AtomStep]) -> list[dict[str, AtomStep]]:
     """Atoms for which steps other than the last one count, grouped by shared signals."""
-    groups: list[dict[str, Moment]] = []
+    groups: list[dict[str, AtomStep]] = []
     for name, moment in moments.items():
         if moment.is_of_all_steps:
             near = [
@@ -76,7 +76,7 @@ class Steps:
     """Steps of some signals within a tick."""
 
     def __init__(
-        self, group: Mapping[str, Moment], variables: Mapping[str, Term], open_: Collection[str]
+        self, group: Mapping[str, AtomStep], variables: Mapping[str, Term], open_: Collection[str]
     ) -> None:
         """Create the steps.
 
@@ -114,7 +114,7 @@ class Steps:
         """Whether some atoms read a part of what others read."""
         return len({each.signals for each in self._group.values()}) > 1
 
-    def tick(self, moment: Moment) -> AtomOfTick:
+    def tick(self, moment: AtomStep) -> AtomOfTick:
         """Atom of the group over all steps."""
         every = [[], *self._others]
         true, false = (
@@ -124,7 +124,7 @@ class Steps:
         made = tick(moment, true, false)
         return self._carried(moment, made) if self.is_crossed else made
 
-    def _carried(self, moment: Moment, made: AtomOfTick) -> AtomOfTick:
+    def _carried(self, moment: AtomStep, made: AtomOfTick) -> AtomOfTick:
         """Formula with old numbers of signals without a new sample, step by step."""
         values = {n: z3.Const(f"{n} of before", v.sort()) for n, v in self._signals.items()}
         states, seen = [], []
@@ -154,7 +154,7 @@ def _is_new(signal: str, step: int) -> Term:
     return z3.Bool(f"{signal} is new at {step}")
 
 
-def tick(moment: Moment, true: Sequence[Term], false: Sequence[Term]) -> AtomOfTick:
+def tick(moment: AtomStep, true: Sequence[Term], false: Sequence[Term]) -> AtomOfTick:
     """Atom of a tick from its values at the steps, the last one first."""
     match moment.aggregate:
         case Aggregate.ANY:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from compiler.logic.diagrams import decision_diagrams as bdd
-from fretc.analysis.controllers.machine import Machine, NoMachineError
+from fretc.analysis.controllers.machine import MealyMachine, NoMachineError
 
 MOST_NODES = 20_000
 """Maximum number of nodes of a circuit; each is a line of a program."""
@@ -62,7 +62,7 @@ class Circuit:
     """Value of each bit after the tick, in order."""
 
 
-def circuit(machine: Machine, requirements: Sequence[str], number: int) -> Circuit:
+def circuit(machine: MealyMachine, requirements: Sequence[str], number: int) -> Circuit:
     """The circuit of a machine.
 
     Args:

@@ -11,7 +11,7 @@ from compiler.files.artifact import Artifact
 from compiler.files.build_id import __version__
 from compiler.files.templating import render
 from fretc.analysis.controllers.circuit import Circuit
-from fretc.analysis.controllers.moves import Mealy, Move, Term
+from fretc.analysis.controllers.moves import MachineMove, Mealy, Term
 
 
 class ControllerFormat(StrEnum):
@@ -72,7 +72,7 @@ def _automaton(machine: Mealy, form: ControllerFormat) -> str:
 def _hoa(machine: Mealy, title: str) -> str:
     names = {name: i for i, name in enumerate((*machine.inputs, *machine.outputs))}
 
-    def label(move: Move) -> str:
+    def label(move: MachineMove) -> str:
         outputs = _conjunction(move.outputs, names)
         return " | ".join(
             " & ".join(part for part in (_conjunction(term, names), outputs) if part) or "t"

@@ -21,7 +21,7 @@ class NoMachineError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Machine:
+class MealyMachine:
     """A Mealy machine. Before the first tick all bits are false."""
 
     inputs: Mapping[int, str]
@@ -36,7 +36,7 @@ class Machine:
     """Possible inputs."""
 
 
-def machine(game: Game, solution: Solution, budget: Budget) -> Machine:
+def machine(game: Game, solution: Solution, budget: Budget) -> MealyMachine:
     """A winning machine of the system.
 
     Args:
@@ -60,7 +60,7 @@ def machine(game: Game, solution: Solution, budget: Budget) -> Machine:
         relation = relation | (turns.is_turn(number) & move)
     steps = {bit: game.transition.step(bit) for bit in game.transition.start}
     steps |= turns.steps([game.safe & game.transition.moved(goal.target) for goal in goals])
-    return Machine(
+    return MealyMachine(
         {number: named[number] for number in alphabet.inputs},
         {number: named[number] for number in alphabet.outputs},
         _chosen(_with_broken_word(game, relation), alphabet.outputs, budget),

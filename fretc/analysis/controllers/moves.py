@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.controllers.machine import Machine, NoMachineError
+from fretc.analysis.controllers.machine import MealyMachine, NoMachineError
 
 MOST_STATES, MOST_MOVES = 1_000, 10_000
 """Maximum size of an automaton that is written."""
@@ -17,7 +17,7 @@ Term = Mapping[str, bool]
 
 
 @dataclass(frozen=True, slots=True)
-class Move:
+class MachineMove:
     """Next state and outputs of a machine for some inputs."""
 
     when: tuple[Term, ...]
@@ -34,10 +34,10 @@ class Mealy:
     requirements: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    states: tuple[tuple[Move, ...], ...]
+    states: tuple[tuple[MachineMove, ...], ...]
 
 
-def mealy(machine: Machine, requirements: Sequence[str], budget: Budget) -> Mealy:
+def mealy(machine: MealyMachine, requirements: Sequence[str], budget: Budget) -> Mealy:
     """Reachable states of a machine, with its moves.
 
     Args:
@@ -50,7 +50,7 @@ def mealy(machine: Machine, requirements: Sequence[str], budget: Budget) -> Meal
         OutOfTimeError: it takes too long.
     """
     numbers: dict[tuple[bool, ...], int] = {tuple(False for _ in machine.steps): 0}
-    states: list[tuple[Move, ...]] = []
+    states: list[tuple[MachineMove, ...]] = []
     size = 0
     while len(states) < len(numbers):
         budget.check()
@@ -59,7 +59,9 @@ def mealy(machine: Machine, requirements: Sequence[str], budget: Budget) -> Meal
         for inputs, outputs, after in _moves(machine, state):
             number = numbers.setdefault(after, len(numbers))
             when = tuple(_terms(inputs, machine.inputs))
-            moves.append(Move(when, {machine.outputs[o]: v for o, v in outputs.items()}, number))
+            moves.append(
+                MachineMove(when, {machine.outputs[o]: v for o, v in outputs.items()}, number)
+            )
             size += len(when)
         states.append(tuple(moves))
         if len(numbers) > MOST_STATES or size > MOST_MOVES:
@@ -75,7 +77,7 @@ def mealy(machine: Machine, requirements: Sequence[str], budget: Budget) -> Meal
 
 
 def _moves(
-    machine: Machine, state: tuple[bool, ...]
+    machine: MealyMachine, state: tuple[bool, ...]
 ) -> Iterator[tuple[Function, Mapping[int, bool], tuple[bool, ...]]]:
     """Sets of inputs with the same outputs and the same next state."""
     known = bdd.point(dict(zip(machine.steps, state, strict=True)))

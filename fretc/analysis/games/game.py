@@ -16,10 +16,10 @@ from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.memory import Counter
+from fretc.analysis.arena.memory import RequirementCounter
 from fretc.analysis.arena.transition import Transition
-from fretc.analysis.games.runs import Runs
-from fretc.analysis.games.squaring import IterativeSquaring, Relation, identity
+from fretc.analysis.games.runs import SatisfyingRuns
+from fretc.analysis.games.squaring import IterativeSquaring, TransitionRelation, identity
 
 Letter = Mapping[int, bool]
 """A value of each input and output."""
@@ -42,7 +42,7 @@ class Trap:
 
 
 @dataclass(frozen=True, slots=True)
-class Layer:
+class AttractorLayer:
     """States from which the system comes nearer to a goal, or the environment keeps no promise."""
 
     states: Function
@@ -55,7 +55,7 @@ class Goal:
     """A liveness goal of the system, reachable from all its winning states."""
 
     target: Function
-    layers: tuple[Layer, ...]
+    layers: tuple[AttractorLayer, ...]
     """From each layer the system can move into the target or into an earlier layer."""
 
     @property
@@ -76,11 +76,13 @@ class Solution:
     goals: tuple[Goal, ...]
 
 
-def upheld(alphabet: Alphabet, assumptions: Sequence[Counter], budget: Budget) -> Function:
+def upheld(
+    alphabet: Alphabet, assumptions: Sequence[RequirementCounter], budget: Budget
+) -> Function:
     """Whether the environment can satisfy the assumptions for ever after a tick."""
     if not assumptions:
         return bdd.true()
-    runs = Runs(alphabet, assumptions, budget)
+    runs = SatisfyingRuns(alphabet, assumptions, budget)
     return runs.safe_transitions(runs.lasting())
 
 
@@ -90,8 +92,8 @@ class Game:
     def __init__(
         self,
         alphabet: Alphabet,
-        counters: Sequence[Counter],
-        assumptions: Sequence[Counter],
+        counters: Sequence[RequirementCounter],
+        assumptions: Sequence[RequirementCounter],
         budget: Budget,
         kept: Function | None = None,
     ) -> None:
@@ -154,7 +156,7 @@ class Game:
         free = bdd.and_exists(self.reachable, -self.kept, self._outputs) | -self.legal
         moves = self.transition.relation(states & self.safe, self._outputs, known)
         moves = moves | (states & bdd.at(free, known) & identity(bits))
-        return Relation(bits, moves, self._budget).lasting()
+        return TransitionRelation(bits, moves, self._budget).lasting()
 
     def solution(self, *, traps: bool = False) -> Solution:
         """The winner, with a strategy.
@@ -165,10 +167,12 @@ class Game:
         Raises:
             OutOfTimeError: it takes too long.
         """
-        return _Search(self, self._budget, traps=traps).solution(self.duties, self.promises)
+        return _AttractorSearch(self, self._budget, traps=traps).solution(
+            self.duties, self.promises
+        )
 
 
-class _Search:
+class _AttractorSearch:
     def __init__(self, game: Game, budget: Budget, *, traps: bool) -> None:
         self._game, self._budget, self._keeps = game, budget, traps
         self._initial = game.transition.initial
@@ -223,7 +227,7 @@ class _Search:
     def _goal(self, fair: Function, states: Function, promises: Sequence[Function]) -> Goal:
         """How the system reaches `fair` without leaving the states."""
         target = fair & states
-        layers: list[Layer] = []
+        layers: list[AttractorLayer] = []
         near = bdd.false()
         while True:
             self._budget.check()
@@ -232,22 +236,22 @@ class _Search:
             if states_of == near:
                 break
             near = states_of
-            layers.append(Layer(near, layer.stays))
+            layers.append(AttractorLayer(near, layer.stays))
         if self._keeps:
             left, escape = states & near, target | near
             kept = [self._chain(escape, promise) for promise in promises]
             self._trapped(left, *(kept or [((left, escape),)]))
-        return Goal(target, tuple(layers) or (Layer(bdd.false(), ()),))
+        return Goal(target, tuple(layers) or (AttractorLayer(bdd.false(), ()),))
 
-    def _layer(self, near: Function, promises: Sequence[Function]) -> Layer:
+    def _layer(self, near: Function, promises: Sequence[Function]) -> AttractorLayer:
         """States from which the system comes near, or a promise is not kept for ever."""
         if not promises:
-            return Layer(self._game.forced(near), ())
+            return AttractorLayer(self._game.forced(near), ())
         stays = tuple(self._staying(near, promise) for promise in promises)
         found = bdd.false()
         for each in stays:
             found = found | each
-        return Layer(found, stays)
+        return AttractorLayer(found, stays)
 
     def _staying(self, near: Function, promise: Function) -> Function:
         chain = self._chain(near, promise)

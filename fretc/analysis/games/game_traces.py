@@ -11,7 +11,7 @@ from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.transition import State
 from fretc.analysis.games.game import Game, Letter, Solution, Trap, whole
-from fretc.analysis.games.squaring import Relation, RelationTooLargeError
+from fretc.analysis.games.squaring import RelationTooLargeError, TransitionRelation
 
 Run = tuple[Letter, int]
 """A valuation, and its number of ticks."""
@@ -128,7 +128,7 @@ class Counterstrategy:
         stays = game.safe & left & game.transition.moved(left)
         moves = game.transition.relation(stays, bdd.true(), known)
         try:
-            return Relation(game.transition.bits, moves, self._budget).longest(state)
+            return TransitionRelation(game.transition.bits, moves, self._budget).longest(state)
         except RelationTooLargeError:
             return 0, state
 

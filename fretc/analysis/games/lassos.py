@@ -20,7 +20,7 @@ from compiler.formalization.numbers.terms import Term, read_by
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.memory import Counter
+from fretc.analysis.arena.memory import RequirementCounter
 from fretc.analysis.arena.product import arena
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import numbers
@@ -47,7 +47,7 @@ class SatisfyingRun:
 
 
 @dataclass(frozen=True, slots=True)
-class Impossible:
+class NoShortRun:
     """No run of so many ticks satisfies all requirements."""
 
     ticks: int
@@ -59,7 +59,7 @@ def lasso(
     budget: Budget,
     *,
     as_fret: bool = False,
-) -> SatisfyingRun | Impossible | None:
+) -> SatisfyingRun | NoShortRun | None:
     """An endless run that satisfies all requirements, or proof that there is none; None: unknown.
 
     Args:
@@ -74,7 +74,7 @@ def lasso(
         return None
     counters = arena(requirements, (), cells, fresh, as_fret=as_fret).counters
     waiting = {counter.id for counter in counters if counter.fair is not None}
-    search = _Search(cells, counters)
+    search = _LassoSearch(cells, counters)
     for length in range(1, LONGEST + 1):
         if budget.spent > budget.seconds / 2:
             return None
@@ -88,10 +88,10 @@ def lasso(
     return None
 
 
-class _Search:
+class _LassoSearch:
     """Search for runs of increasing length that return to an earlier state."""
 
-    def __init__(self, cells: Cells, counters: Sequence[Counter]) -> None:
+    def __init__(self, cells: Cells, counters: Sequence[RequirementCounter]) -> None:
         self._atoms, self._formulas = cells.numbers, cells.formulas
         assert not cells.inputs, "the system chooses everything"
         self._free = [bit for bit in cells.outputs if bit not in self._formulas]
@@ -105,12 +105,12 @@ class _Search:
         self._solver.set("timeout", _PATIENCE)
         self._solver.add([z3.Not(_bit(number, 0)) for number in self._steps])
 
-    def next(self) -> SatisfyingRun | Impossible | None:
+    def next(self) -> SatisfyingRun | NoShortRun | None:
         """A lasso with one more tick, or proof that there is none of this length; None: neither."""
         self._solver.add(list(self._tick(self._length)))
         self._length += 1
         if self._solver.check() == z3.unsat:
-            return Impossible(self._length)
+            return NoShortRun(self._length)
         self._solver.push()
         begins = [z3.Bool(f"loop {tick}") for tick in range(self._length)]
         self._solver.add(z3.Or(begins))

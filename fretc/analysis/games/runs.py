@@ -12,20 +12,20 @@ from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.memory import Counter
+from fretc.analysis.arena.memory import RequirementCounter
 from fretc.analysis.arena.transition import Transition
-from fretc.analysis.games.squaring import IterativeSquaring, Relation
+from fretc.analysis.games.squaring import IterativeSquaring, TransitionRelation
 
 
-class Runs:
+class SatisfyingRuns:
     """Runs that satisfy some counters; other counters may be observed along with them."""
 
     def __init__(
         self,
         alphabet: Alphabet,
-        kept: Sequence[Counter],
+        kept: Sequence[RequirementCounter],
         budget: Budget,
-        watched: Sequence[Counter] = (),
+        watched: Sequence[RequirementCounter] = (),
         *,
         certain: bool = False,
     ) -> None:
@@ -51,10 +51,10 @@ class Runs:
         """Ticks without a violation that lead to one of the states."""
         return self.safe & self.transition.moved(states)
 
-    def _paths(self, through: Function) -> Relation:
+    def _paths(self, through: Function) -> TransitionRelation:
         """Relation of ticks without a violation, from these states."""
         steps = self.transition.relation(self.safe & through, self._letters, bdd.true())
-        return Relation(self.transition.bits, steps, self._budget)
+        return TransitionRelation(self.transition.bits, steps, self._budget)
 
     def pre_image(self, states: Function) -> Function:
         """States with a tick without a violation that leads to one of these."""
@@ -125,7 +125,7 @@ class Runs:
                 return False
             found = more
 
-    def can_break(self, counter: Counter, lasting: Function) -> bool:
+    def can_break(self, counter: RequirementCounter, lasting: Function) -> bool:
         """Whether an endless satisfying run violates an observed counter.
 
         Args:

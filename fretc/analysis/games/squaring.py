@@ -17,7 +17,7 @@ from itertools import pairwise
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.memory import Bit, Counter
+from fretc.analysis.arena.memory import Bit, RequirementCounter
 from fretc.analysis.arena.transition import State
 
 MOST_NODES = 10_000
@@ -39,7 +39,7 @@ class IterativeSquaring:
     ticks has at most the root of n squarings.
     """
 
-    def __init__(self, counters: Iterable[Counter]) -> None:
+    def __init__(self, counters: Iterable[RequirementCounter]) -> None:
         """The schedule for a question about such counters."""
         self._ticks = 0
         self._wait = _PATIENCE if _are_side_by_side(counters) else None
@@ -61,7 +61,7 @@ class IterativeSquaring:
             self._wait = None
 
 
-def _are_side_by_side(counters: Iterable[Counter]) -> bool:
+def _are_side_by_side(counters: Iterable[RequirementCounter]) -> bool:
     """Whether the bits of long counts are interleaved in the variable order.
 
     Sums of counts that are not interleaved have no small diagrams.
@@ -76,7 +76,7 @@ _LONG = 6
 
 
 @dataclass(frozen=True, slots=True)
-class Relation:
+class TransitionRelation:
     """States and next states, over the bits `now` and `after`."""
 
     bits: tuple[Bit, ...]

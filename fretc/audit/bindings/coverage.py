@@ -10,9 +10,9 @@ from functools import partial
 from typing import Any
 
 from compiler.files.records import plain
-from fretc.audit.constancy import Total, never_changed
+from fretc.audit.constancy import PropositionTotal, never_changed
 from fretc.audit.evidence.writer import phase_verdicts
-from fretc.audit.measurements.tallies import NOTHING, Tally, tally
+from fretc.audit.measurements.tallies import NOTHING, PropositionTally, tally
 from fretc.audit.one_log import examined, signals_of
 from fretc.audit.phases.advice import Runs, proposal
 from fretc.audit.phases.by_shift import Phases, phases
@@ -34,14 +34,14 @@ class LogCoverage:
 
     run: str
     ticks: int
-    tallies: Mapping[str, Tally] | None
+    tallies: Mapping[str, PropositionTally] | None
     findings: tuple[Diagnostic, ...]
     phases: Mapping[str, Phases] = field(default_factory=dict)
     """The verdict of each requirement at each phase of the ticks; empty: not computed."""
 
 
 @dataclass(frozen=True, slots=True)
-class Coverage:
+class PropositionCoverage:
     """The values of each proposition in each log."""
 
     declarations: Declarations
@@ -87,14 +87,14 @@ class Coverage:
         return tuple((visible(line), colour) for line, colour in (*lines, *self._phase_lines()))
 
     @property
-    def _totals(self) -> dict[str, Total]:
+    def _totals(self) -> dict[str, PropositionTotal]:
         return {
-            name: Total(sum(tallies, NOTHING), len(tallies))
+            name: PropositionTotal(sum(tallies, NOTHING), len(tallies))
             for name, tallies in self._tallies.items()
         }
 
     @property
-    def _tallies(self) -> dict[str, list[Tally]]:
+    def _tallies(self) -> dict[str, list[PropositionTally]]:
         read = [log.tallies for log in self.logs if log.tallies is not None]
         return {name: [log[name] for log in read] for name in self.declarations.propositions}
 
@@ -179,7 +179,7 @@ def _bound(signal: Signal) -> str:
     return f"{signal.name} = {reduced}{signal.path} {signal.unit_name}".rstrip()
 
 
-def _counted(tally: Tally) -> str:
+def _counted(tally: PropositionTally) -> str:
     ticks = tally.true + tally.false + tally.unknown
     times = f"{tally.changes} time{'' if tally.changes == 1 else 's'}"
     return (
@@ -190,7 +190,7 @@ def _counted(tally: Tally) -> str:
 
 def coverage(
     declarations: Declarations, logs: Sequence[str], jobs: int, plan: Plan | None = None
-) -> Coverage | Diagnostic:
+) -> PropositionCoverage | Diagnostic:
     """Evaluate every proposition in every log.
 
     Args:
@@ -217,7 +217,7 @@ def coverage(
         else result
         for index, result in map_processes(look, logs, jobs)
     }
-    return Coverage(declarations, tuple(of_logs[index] for index in range(len(logs))))
+    return PropositionCoverage(declarations, tuple(of_logs[index] for index in range(len(logs))))
 
 
 def _log_coverage(log: str, declarations: Declarations, plan: Plan | None) -> LogCoverage:

@@ -16,8 +16,8 @@ from compiler.files.templating import render
 from compiler.formalization import binding_agreement
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.project import Project
-from fretc.audit.bindings.quantities import QUANTITIES, Quantity
-from fretc.logs.messages.leaves import Kind, Leaves
+from fretc.audit.bindings.quantities import QUANTITIES, NumberField
+from fretc.logs.messages.leaves import FieldKind, Leaves
 from fretc.logs.reader import Overview
 from fretc.logs.signals.samples import Topic
 from fretc.logs.vocabulary import Words
@@ -49,7 +49,7 @@ class DraftedSignal:
     name: str
     topic: str
     type: str
-    quantity: Quantity
+    quantity: NumberField
     max_age: str
     """The age limit; empty: the topic has no rate."""
     values: tuple[str, ...] = ()
@@ -150,7 +150,7 @@ def plain_signals(overview: Overview) -> tuple[DraftedSignal, ...]:
 
 def _plain(topic: Topic, field: str, values: tuple[str, ...]) -> DraftedSignal:
     name, type_ = _word(f"{topic.name}_{field}"), short_type(topic.type)
-    return DraftedSignal(name, topic.name, type_, Quantity(field, ""), _max_age(topic), values)
+    return DraftedSignal(name, topic.name, type_, NumberField(field, ""), _max_age(topic), values)
 
 
 def _fields(overview: Overview, topic: str) -> dict[str, tuple[str, ...]]:
@@ -159,13 +159,13 @@ def _fields(overview: Overview, topic: str) -> dict[str, tuple[str, ...]]:
     return {
         field: (*leaf.names, *(words.get(field) or ()))
         for field, leaf in leaves.items()
-        if _is_worth(field) and (leaf.kind is not Kind.TEXT or words.get(field))
+        if _is_worth(field) and (leaf.kind is not FieldKind.TEXT or words.get(field))
     }
 
 
 def _is_flag(overview: Overview, signal: DraftedSignal) -> bool:
     leaves = overview.leaves.get(signal.topic) or {}
-    return leaves[signal.quantity.field].kind is Kind.FLAG
+    return leaves[signal.quantity.field].kind is FieldKind.FLAG
 
 
 def _example(overview: Overview, signals: Sequence[DraftedSignal]) -> str:
@@ -294,7 +294,7 @@ def _drafted(topic: Topic, leaves: Leaves, words: Words) -> list[DraftedSignal]:
         )
         for quantity in QUANTITIES.get(type_, ())
         if quantity.field in leaves and path(f"{topic.name}.{quantity.field}") is not None
-        if leaves[quantity.field].kind is not Kind.TEXT or words.get(quantity.field)
+        if leaves[quantity.field].kind is not FieldKind.TEXT or words.get(quantity.field)
     ]
 
 

@@ -14,7 +14,7 @@ _REP_117 = '{ nan = "drop", "+inf" = "far", "-inf" = "near", other = "drop", emp
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class NumberField:
     """A field of a message, with the name, unit and range of its signal."""
 
     field: str
@@ -29,46 +29,46 @@ class Quantity:
     note: str = ""
 
 
-def _planar(prefix: str) -> tuple[Quantity, ...]:
+def _planar(prefix: str) -> tuple[NumberField, ...]:
     """The fields of a geometry_msgs/Twist: m/s and rad/s, x forward and z up (REP 103)."""
     return (
-        Quantity(f"{prefix}linear.x", "vx", "m/s"),
-        Quantity(f"{prefix}linear.y", "vy", "m/s"),
-        Quantity(f"{prefix}angular.z", "wz", "rad/s"),
+        NumberField(f"{prefix}linear.x", "vx", "m/s"),
+        NumberField(f"{prefix}linear.y", "vy", "m/s"),
+        NumberField(f"{prefix}angular.z", "wz", "rad/s"),
     )
 
 
-def _place(prefix: str) -> tuple[Quantity, ...]:
+def _place(prefix: str) -> tuple[NumberField, ...]:
     """The fields of a geometry_msgs/Pose."""
-    return tuple(Quantity(f"{prefix}position.{axis}", axis, "m") for axis in "xyz")
+    return tuple(NumberField(f"{prefix}position.{axis}", axis, "m") for axis in "xyz")
 
 
-def _force(prefix: str) -> tuple[Quantity, ...]:
+def _force(prefix: str) -> tuple[NumberField, ...]:
     """The fields of a geometry_msgs/Wrench."""
     return (
-        *(Quantity(f"{prefix}force.{axis}", f"f{axis}", "N") for axis in "xyz"),
-        *(Quantity(f"{prefix}torque.{axis}", f"t{axis}", "Nm") for axis in "xyz"),
+        *(NumberField(f"{prefix}force.{axis}", f"f{axis}", "N") for axis in "xyz"),
+        *(NumberField(f"{prefix}torque.{axis}", f"t{axis}", "Nm") for axis in "xyz"),
     )
 
 
-def _accelerations(prefix: str) -> tuple[Quantity, ...]:
-    return tuple(Quantity(f"{prefix}linear.{axis}", f"a{axis}", "m/s^2") for axis in "xyz")
+def _accelerations(prefix: str) -> tuple[NumberField, ...]:
+    return tuple(NumberField(f"{prefix}linear.{axis}", f"a{axis}", "m/s^2") for axis in "xyz")
 
 
-def _steered(prefix: str) -> tuple[Quantity, ...]:
+def _steered(prefix: str) -> tuple[NumberField, ...]:
     return (
-        Quantity(f"{prefix}speed", "speed", "m/s"),
-        Quantity(f"{prefix}steering_angle", "steering", "rad"),
+        NumberField(f"{prefix}speed", "speed", "m/s"),
+        NumberField(f"{prefix}steering_angle", "steering", "rad"),
     )
 
 
-_PLAIN = (Quantity("data", "", note="a plain number: the type states no unit"),)
-_FLAG = (Quantity("data", "", note="true or false: its name alone is an expression"),)
-_WORD = (Quantity("data", "", note="the values in this log; add the missing ones"),)
+_PLAIN = (NumberField("data", "", note="a plain number: the type states no unit"),)
+_FLAG = (NumberField("data", "", note="true or false: its name alone is an expression"),)
+_WORD = (NumberField("data", "", note="the values in this log; add the missing ones"),)
 
-QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
+QUANTITIES: Mapping[str, tuple[NumberField, ...]] = {
     "sensor_msgs/LaserScan": (
-        Quantity(
+        NumberField(
             "ranges[:]",
             "min",
             "m",
@@ -80,28 +80,28 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
         ),
     ),
     "sensor_msgs/Range": (
-        Quantity("range", "", "m", valid="min_range <= x and x <= max_range", invalid=_REP_117),
+        NumberField("range", "", "m", valid="min_range <= x and x <= max_range", invalid=_REP_117),
     ),
     "sensor_msgs/BatteryState": (
-        Quantity("voltage", "voltage", "V"),
-        Quantity("current", "current", "A", note="negative while it discharges; NaN: not measured"),
-        Quantity("percentage", "percentage", note="from 0 to 1, or write 20 %; NaN: not measured"),
+        NumberField("voltage", "voltage", "V"),
+        NumberField("current", "current", "A", note="below 0 while it discharges; NaN: unmeasured"),
+        NumberField("percentage", "percentage", note="from 0 to 1, or write 20 %; NaN: unmeasured"),
     ),
     "sensor_msgs/Imu": (
-        *(Quantity(f"angular_velocity.{axis}", f"w{axis}", "rad/s") for axis in "xyz"),
-        *(Quantity(f"linear_acceleration.{axis}", f"a{axis}", "m/s^2") for axis in "xyz"),
+        *(NumberField(f"angular_velocity.{axis}", f"w{axis}", "rad/s") for axis in "xyz"),
+        *(NumberField(f"linear_acceleration.{axis}", f"a{axis}", "m/s^2") for axis in "xyz"),
     ),
     "sensor_msgs/Temperature": (
-        Quantity("temperature", "", note="degrees Celsius, which is not a unit of fretc: a "
+        NumberField("temperature", "", note="degrees Celsius, which is not a unit of fretc: a "
             "plain number"),
     ),
-    "sensor_msgs/FluidPressure": (Quantity("fluid_pressure", "", "Pa"),),
-    "sensor_msgs/RelativeHumidity": (Quantity("relative_humidity", "", note="from 0 to 1"),),
+    "sensor_msgs/FluidPressure": (NumberField("fluid_pressure", "", "Pa"),),
+    "sensor_msgs/RelativeHumidity": (NumberField("relative_humidity", "", note="from 0 to 1"),),
     "sensor_msgs/NavSatFix": (
-        Quantity("latitude", "latitude", "deg"),
-        Quantity("longitude", "longitude", "deg"),
-        Quantity("altitude", "altitude", "m", note="above the WGS 84 ellipsoid"),
-        Quantity("status.status", "status", note="-1: no fix"),
+        NumberField("latitude", "latitude", "deg"),
+        NumberField("longitude", "longitude", "deg"),
+        NumberField("altitude", "altitude", "m", note="above the WGS 84 ellipsoid"),
+        NumberField("status.status", "status", note="-1: no fix"),
     ),
     "nav_msgs/Odometry": (*_planar("twist.twist."), *_place("pose.pose.")),
     "geometry_msgs/Twist": _planar(""),
@@ -111,11 +111,11 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
     "geometry_msgs/Pose": _place(""),
     "geometry_msgs/PoseStamped": _place("pose."),
     "geometry_msgs/PoseWithCovarianceStamped": _place("pose.pose."),
-    "geometry_msgs/PointStamped": tuple(Quantity(f"point.{a}", a, "m") for a in "xyz"),
+    "geometry_msgs/PointStamped": tuple(NumberField(f"point.{a}", a, "m") for a in "xyz"),
     "geometry_msgs/Pose2D": (
-        Quantity("x", "x", "m"),
-        Quantity("y", "y", "m"),
-        Quantity("theta", "yaw", "rad"),
+        NumberField("x", "x", "m"),
+        NumberField("y", "y", "m"),
+        NumberField("theta", "yaw", "rad"),
     ),
     "geometry_msgs/Accel": _accelerations(""),
     "geometry_msgs/AccelStamped": _accelerations("accel."),

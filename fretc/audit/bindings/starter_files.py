@@ -33,7 +33,7 @@ _NAMES = ("r1.fret", "bindings.toml", "hazards.toml")
 
 
 @dataclass(frozen=True, slots=True)
-class Bound:
+class UpperLimit:
     """A signal and its upper limit."""
 
     signal: str
@@ -53,7 +53,7 @@ class FirstRequirement:
     sentence: str
 
 
-def first_requirement(bound: Bound, origin: str) -> FirstRequirement:
+def first_requirement(bound: UpperLimit, origin: str) -> FirstRequirement:
     """The text of a requirement about one signal.
 
     Args:
@@ -80,7 +80,7 @@ class StarterFiles:
 
 def without_log() -> StarterFiles:
     """The first files of a project without a log."""
-    bound = Bound("speed", "1.5", "m/s")
+    bound = UpperLimit("speed", "1.5", "m/s")
     requirement = first_requirement(bound, "is an example.")
     return StarterFiles(_files(requirement, render("project/speed.toml.j2")))
 
@@ -121,7 +121,7 @@ def _signals(overview: Overview) -> str:
     return text + render("project/signals.toml.j2", signals=plain)
 
 
-def _bounds(declarations: Declarations, recording: Recording) -> Iterator[Bound]:
+def _bounds(declarations: Declarations, recording: Recording) -> Iterator[UpperLimit]:
     """The bound that each signal of the recording satisfies, the best first requirement first."""
     signals = sorted(
         declarations.signals.values(),
@@ -137,7 +137,7 @@ def _bounds(declarations: Declarations, recording: Recording) -> Iterator[Bound]
             continue
         largest = float(samples.values.max())
         if np.isfinite(samples.values).all():
-            yield Bound(signal.name, _limit(largest), signal.unit_name)
+            yield UpperLimit(signal.name, _limit(largest), signal.unit_name)
 
 
 def _is_steady(signal: Signal, recording: Recording) -> bool:

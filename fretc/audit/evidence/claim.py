@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from compiler.situations.situations import Situation
 from fretc.audit.evidence.basis import Basis
 from fretc.audit.measurements.count_trials import RequiredProbability
-from fretc.audit.measurements.violations import Demand
+from fretc.audit.measurements.violations import DemandText
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +19,7 @@ class AuditedRequirement:
     basis: Basis = field(compare=False)
     """SHA-256 of each input of the verdict other than the log."""
     monitor: str
-    demand: Demand
+    demand: DemandText
     """The response that is missing when the requirement is violated."""
     situations: tuple[Situation, ...] = field(compare=False)
     """The situations to look for in runs, from the sentence and the bindings."""

@@ -7,8 +7,8 @@ from fractions import Fraction
 from math import isinf
 
 from compiler.files.records import replace
-from fretc.audit.evidence.samples import Series
-from fretc.audit.evidence.schema import Result, Threshold, Violation
+from fretc.audit.evidence.samples import WindowSamples
+from fretc.audit.evidence.schema import Result, ThresholdRecord, Violation
 from fretish.bindings.amounts import declared_unit, scaled, shared_unit
 from fretish.bindings.declarations import Declarations, Signal
 
@@ -23,8 +23,8 @@ def in_declared_units(result: Result, declared: Declarations | None) -> Result:
 
 
 def thresholds_in_declared_units(
-    thresholds: Sequence[Threshold], declared: Declarations | None
-) -> tuple[Threshold, ...]:
+    thresholds: Sequence[ThresholdRecord], declared: Declarations | None
+) -> tuple[ThresholdRecord, ...]:
     """The thresholds in declared units."""
     if declared is None:
         return tuple(thresholds)
@@ -77,13 +77,13 @@ def _violation(violation: Violation, units: _Units) -> Violation:
     )
 
 
-def _series(series: Series, factor: Fraction) -> Series:
+def _series(series: WindowSamples, factor: Fraction) -> WindowSamples:
     if factor == 1:
         return series
     return replace(series, values=tuple(scaled(value, factor) for value in series.values))
 
 
-def _threshold(threshold: Threshold, declared: Mapping[str, Signal]) -> Threshold:
+def _threshold(threshold: ThresholdRecord, declared: Mapping[str, Signal]) -> ThresholdRecord:
     unit, factor = shared_unit(threshold.signal, threshold.unit, declared)
     bound = scaled(threshold.bound, factor)
     if isinf(bound):

@@ -23,10 +23,10 @@ from fretc.audit.evidence.result_summaries import (
     run_facts,
 )
 from fretc.audit.evidence.schema import (
-    Document,
+    EvidenceDocument,
     Result,
     Situations,
-    Threshold,
+    ThresholdRecord,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
@@ -48,10 +48,10 @@ class EvidenceFile(HeadProperties):
 
     file: str
     sha256: str
-    document: Document
+    document: EvidenceDocument
 
     @property
-    def head(self) -> Document:
+    def head(self) -> EvidenceDocument:
         """The facts of the audit as a whole."""
         return self.document
 
@@ -85,7 +85,7 @@ class EvidenceFile(HeadProperties):
 
     def thresholds(
         self, requirements: Collection[str]
-    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+    ) -> Iterator[tuple[int, Sequence[ThresholdRecord]]]:
         """The thresholds of each result of some requirements, with its index, in order."""
         for index, result in self._of(requirements):
             yield index, result.thresholds
@@ -126,7 +126,7 @@ def _parsed(source: Source) -> EvidenceFile | Diagnostic:
     except (ValueError, RecursionError) as error:
         return _wrong(path, f"is not JSON that fretc can read: {_why(error)}")
     try:
-        return EvidenceFile(source.name, sha256(source.text), decoded(file.value, Document))
+        return EvidenceFile(source.name, sha256(source.text), decoded(file.value, EvidenceDocument))
     except SchemaError as error:
         return _wrong(path, f"is not evidence of fretc: {error}")
 

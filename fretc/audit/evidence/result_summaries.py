@@ -17,14 +17,14 @@ from compiler.files.records import UnsetType
 from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import (
-    Bindings,
+    BindingsRecord,
     Hashes,
     Health,
-    Requirement,
+    RequirementRecord,
     Result,
     Selection,
     Situations,
-    Threshold,
+    ThresholdRecord,
 )
 from fretc.audit.measurements.trials import Trials
 from fretish.bindings.canonical import digest
@@ -136,11 +136,11 @@ class Head(Protocol):
         """Version of the tool that audited."""
 
     @property
-    def bindings(self) -> Bindings:
+    def bindings(self) -> BindingsRecord:
         """The bindings with which the logs were read."""
 
     @property
-    def requirements(self) -> Sequence[Requirement]:
+    def requirements(self) -> Sequence[RequirementRecord]:
         """The requirements of the audit."""
 
     @property
@@ -166,12 +166,12 @@ class HeadProperties:
         return self.head.fretc
 
     @property
-    def bindings(self) -> Bindings:
+    def bindings(self) -> BindingsRecord:
         """The bindings with which the logs were read."""
         return self.head.bindings
 
     @property
-    def requirements(self) -> Sequence[Requirement]:
+    def requirements(self) -> Sequence[RequirementRecord]:
         """The requirements of the audit."""
         return self.head.requirements
 
@@ -202,11 +202,11 @@ class EvidenceSource(Protocol):
         """Version of the tool that audited."""
 
     @property
-    def bindings(self) -> Bindings:
+    def bindings(self) -> BindingsRecord:
         """The bindings with which the logs were read."""
 
     @property
-    def requirements(self) -> Sequence[Requirement]:
+    def requirements(self) -> Sequence[RequirementRecord]:
         """The requirements of the audit."""
 
     @property
@@ -234,7 +234,7 @@ class EvidenceSource(Protocol):
 
     def thresholds(
         self, requirements: Collection[str]
-    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+    ) -> Iterator[tuple[int, Sequence[ThresholdRecord]]]:
         """The thresholds of each result of some requirements, with its index, in order."""
 
     def situations(

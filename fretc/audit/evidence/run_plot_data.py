@@ -10,7 +10,7 @@ from math import ceil, floor, log10
 import numpy as np
 from numpy.typing import NDArray
 
-from fretc.audit.evidence.schema import MOST_POINTS, MOST_WORDS, Course, Way, Words
+from fretc.audit.evidence.schema import MOST_POINTS, MOST_WORDS, EnumChanges, RobotPath, RunPlotData
 from fretc.logs.signals.propositions import history_of
 from fretc.logs.signals.samples import Gap, Numbers, Recording, Samples, Times
 from fretish.bindings.declarations import Declarations, MapCoordinates, Signal
@@ -28,7 +28,7 @@ _EXACT = 10.0**-_DIGITS
 _MOST_LINES = MOST_POINTS // 3
 
 
-def plot_data(recording: Recording, declarations: Declarations) -> Course | None:
+def plot_data(recording: Recording, declarations: Declarations) -> RunPlotData | None:
     """The plot data of a run; None: there is nothing to draw."""
     words = {
         name: _words(signal, recording)
@@ -36,7 +36,7 @@ def plot_data(recording: Recording, declarations: Declarations) -> Course | None
         if signal.values and name in recording.samples
     }
     way = _way(declarations.map, recording) if declarations.map else None
-    return Course(way, words) if way or words else None
+    return RunPlotData(way, words) if way or words else None
 
 
 def map_diagnostics(recording: Recording, declarations: Declarations) -> Iterator[Diagnostic]:
@@ -58,7 +58,7 @@ def map_diagnostics(recording: Recording, declarations: Declarations) -> Iterato
 # Enumerations ----------------------------------------------------------------------------------
 
 
-def _words(signal: Signal, recording: Recording) -> Words:
+def _words(signal: Signal, recording: Recording) -> EnumChanges:
     """The changes of an enumeration signal, as propositions read it."""
     history = history_of({signal.name: signal}, recording)
     values, times = history.numbers[signal.name], history.times
@@ -67,7 +67,7 @@ def _words(signal: Signal, recording: Recording) -> Words:
     places, times = places[last], times[last]
     changed = np.append(True, places[1:] != places[:-1]) if len(places) else np.zeros(0, bool)
     places, times = places[changed], times[changed]
-    return Words(
+    return EnumChanges(
         tuple(times[:MOST_WORDS].tolist()),
         tuple(None if place < 0 else signal.values[place] for place in places[:MOST_WORDS]),
         max(0, len(places) - MOST_WORDS),
@@ -77,7 +77,7 @@ def _words(signal: Signal, recording: Recording) -> Words:
 # The path --------------------------------------------------------------------------------------
 
 
-def _way(drawn: MapCoordinates, recording: Recording) -> Way | None:
+def _way(drawn: MapCoordinates, recording: Recording) -> RobotPath | None:
     """The path as lines, thinned where this moves no position by much."""
     if not {drawn.x.name, drawn.y.name} <= recording.beside.keys():
         return None
@@ -93,7 +93,7 @@ def _way(drawn: MapCoordinates, recording: Recording) -> Way | None:
     chosen, error = _thinned(times, places, kept, MOST_POINTS)
     points = [point for line in chosen for point in line]
     starts = np.cumsum([0, *map(len, chosen)])[:-1]
-    return Way(
+    return RobotPath(
         tuple(times[points].tolist()),
         tuple(np.round(places[points, 0], _DIGITS).tolist()),
         tuple(np.round(places[points, 1], _DIGITS).tolist()),
@@ -187,7 +187,7 @@ def _above(number: float) -> float:
     return round(ceil(round(number * 10.0**digits, 6)) / 10.0**digits, digits)
 
 
-def position_at(way: Way, ns: int) -> tuple[float, float] | None:
+def position_at(way: RobotPath, ns: int) -> tuple[float, float] | None:
     """The position of the robot at a time, within the error of the path; None: unknown.
 
     Up to `_HOLD` before the first and after the last sample it is where they are: ticks and samples

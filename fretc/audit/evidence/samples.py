@@ -21,7 +21,7 @@ Reading = Annotated[
 ]
 
 
-class Series(Record, frozen=True):
+class WindowSamples(Record, frozen=True):
     """The sample of a signal in force at the start of a window, and those after it.
 
     Of more than 50 samples, some are kept: among them the least, the greatest, and the one in force
@@ -60,7 +60,7 @@ class Surroundings(Record, frozen=True):
 
     start_ns: Whole
     end_ns: Whole
-    samples: dict[str, Series]
+    samples: dict[str, WindowSamples]
     words: Annotated[
         dict[str, WordSeries] | UnsetType,
         about("the values of enumeration signals; absent: there are none"),
@@ -76,7 +76,7 @@ T = TypeVar("T", float, str)
 
 
 @dataclass(frozen=True, slots=True)
-class Samples(Generic[T]):
+class SignalSamples(Generic[T]):
     """The samples of one signal: each value holds from its time on; None: unknown."""
 
     times: tuple[float, ...]
@@ -91,32 +91,32 @@ class Samples(Generic[T]):
 
 
 @dataclass(frozen=True, slots=True)
-class Window:
+class RunPart:
     """A part of a run, in seconds from its first tick, with the samples of some signals."""
 
     start: float
     end: float
-    samples: Mapping[str, Samples[float]]
-    words: Mapping[str, Samples[str]] = field(default_factory=dict)
+    samples: Mapping[str, SignalSamples[float]]
+    words: Mapping[str, SignalSamples[str]] = field(default_factory=dict)
     """The samples of enumeration signals."""
 
 
-def window(surroundings: Surroundings, first_ns: int) -> Window:
+def window(surroundings: Surroundings, first_ns: int) -> RunPart:
     """The samples around a violation, in seconds of the run, by the names of the signals.
 
     Args:
         surroundings: the window of a violation.
         first_ns: the time of the first tick of the run, on the clock of the log.
     """
-    return Window(
+    return RunPart(
         (surroundings.start_ns - first_ns) / 1e9,
         (surroundings.end_ns - first_ns) / 1e9,
         {
-            name: Samples(_seconds(each.times_ns, first_ns), tuple(map(number, each.values)))
+            name: SignalSamples(_seconds(each.times_ns, first_ns), tuple(map(number, each.values)))
             for name, each in sorted(surroundings.samples.items())
         },
         {
-            name: Samples(_seconds(each.times_ns, first_ns), each.words)
+            name: SignalSamples(_seconds(each.times_ns, first_ns), each.words)
             for name, each in sorted((surroundings.words or {}).items())
         },
     )

@@ -34,13 +34,13 @@ from compiler.files.records import (
 from fretc.audit.evidence.probabilities import Estimated, Outcomes
 from fretc.audit.evidence.samples import (
     Reading,
+    RunPart,
     Surroundings,
-    Window,
     Word,
     check_series,
     window,
 )
-from fretc.audit.measurements.tallies import Tally
+from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.measurements.trials import Trials
 from fretc.audit.measurements.violations import Moment as Moment
 
@@ -104,7 +104,7 @@ class Violation(Record, frozen=True):
         return Moment(self.last_tick, self.end_ns, self.end_s)
 
     @property
-    def window(self) -> Window | None:
+    def window(self) -> RunPart | None:
         """The signals around the violation, in seconds from the first tick; None: not kept."""
         if self.surroundings is None:
             return None
@@ -118,7 +118,7 @@ class Instant(Record, frozen=True):
     seconds: Number
 
 
-class Threshold(Record, frozen=True):
+class ThresholdRecord(Record, frozen=True):
     """A comparison of a signal with a constant, over the audited time; known samples count."""
 
     proposition: str
@@ -151,7 +151,7 @@ class Threshold(Record, frozen=True):
 # The log ---------------------------------------------------------------------------------------
 
 
-class Finding(Record, frozen=True):
+class LogFinding(Record, frozen=True):
     """A diagnostic about the log."""
 
     code: Annotated[str, Meta(pattern="^F[0-9]{3}$", max_length=4)]
@@ -166,7 +166,7 @@ class Finding(Record, frozen=True):
     )
 
 
-class Topic(Record, frozen=True):
+class TopicRecord(Record, frozen=True):
     """The condition of one topic of a log; null: its messages were only counted."""
 
     type: str
@@ -193,7 +193,7 @@ class Topic(Record, frozen=True):
     ]
 
 
-class Checked(Record, frozen=True):
+class CheckedChunks(Record, frozen=True):
     """The numbers of chunks of an MCAP file that were checked, by kind of check."""
 
     by_index: Annotated[
@@ -220,10 +220,10 @@ class Health(Record, frozen=True):
 
     intact: Annotated[bool, about("false: messages may have been lost")]
     size: Annotated[Count | None, about("bytes; null: the log could not be read")]
-    checked: Annotated[Checked | None, about("null: the log could not be read")]
+    checked: Annotated[CheckedChunks | None, about("null: the log could not be read")]
     gaps: tuple[Gap, ...]
-    findings: tuple[Finding, ...]
-    topics: dict[str, Topic]
+    findings: tuple[LogFinding, ...]
+    topics: dict[str, TopicRecord]
 
 
 class Hashes(Record, frozen=True, kw_only=True):
@@ -281,7 +281,7 @@ _FAR = 10**9
 Metre = Annotated[int, Meta(ge=-_FAR, le=_FAR)] | Annotated[float, Meta(ge=-_FAR, le=_FAR)]
 
 
-class Way(Record, frozen=True):
+class RobotPath(Record, frozen=True):
     """The path of the robot, as lines with few points, for a map; no verdict depends on it."""
 
     times_ns: Annotated[tuple[Whole, ...], Meta(max_length=MOST_POINTS)]
@@ -309,7 +309,7 @@ class Way(Record, frozen=True):
             raise ValueError("Expected the places of points, in their order")
 
 
-class Words(Record, frozen=True):
+class EnumChanges(Record, frozen=True):
     """The changes of an enumeration signal; null: it is unknown from then on."""
 
     times_ns: Annotated[tuple[Whole, ...], Meta(max_length=MOST_WORDS)]
@@ -323,17 +323,21 @@ class Words(Record, frozen=True):
         check_series(self.times_ns, self.words)
 
 
-class Course(Record, frozen=True):
+class RunPlotData(Record, frozen=True):
     """The plot data of a run, beside its results; present in the first of them."""
 
-    way: Annotated[Way | None, about("null: the bindings declare no map, or no position is known")]
-    words: Annotated[dict[str, Words], about("each enumeration signal that the requirements read")]
+    way: Annotated[
+        RobotPath | None, about("null: the bindings declare no map, or no position is known")
+    ]
+    words: Annotated[
+        dict[str, EnumChanges], about("each enumeration signal that the requirements read")
+    ]
 
 
 # Results ---------------------------------------------------------------------------------------
 
 
-class State(Record, frozen=True):
+class StateChangeRecord(Record, frozen=True):
     """A tick at which the state changed, with the new state; open: a response is awaited."""
 
     tick: Count
@@ -408,7 +412,7 @@ class Result(Record, frozen=True, kw_only=True):
     ticks: Count
     start_ns: Whole | None
     end_ns: Whole | None
-    states: tuple[State, ...]
+    states: tuple[StateChangeRecord, ...]
     answers: tuple[Answer, ...]
     triggers: tuple[Moment, ...]
     violations: tuple[Violation, ...]
@@ -433,8 +437,8 @@ class Result(Record, frozen=True, kw_only=True):
     exercised: Annotated[Count, about("number of ticks with a trigger")]
     latency_median_s: Seconds | None
     latency_max_s: Seconds | None
-    propositions: dict[str, Tally]
-    thresholds: tuple[Threshold, ...]
+    propositions: dict[str, PropositionTally]
+    thresholds: tuple[ThresholdRecord, ...]
     units: Annotated[dict[str, str], about("the base unit of each signal")]
     fingerprints: Hashes = field(name="hashes")
     health: Health
@@ -451,7 +455,7 @@ class Result(Record, frozen=True, kw_only=True):
         about("absent: the clock ticks by message, or the log could not be read"),
     ] = UNSET
     course: Annotated[
-        Course | UnsetType,
+        RunPlotData | UnsetType,
         about(
             "present in the first result of the run; absent if the bindings declare no map and "
             "no enumeration signal is read"
@@ -499,7 +503,7 @@ class Result(Record, frozen=True, kw_only=True):
 # The file --------------------------------------------------------------------------------------
 
 
-class Bindings(Record, frozen=True):
+class BindingsRecord(Record, frozen=True):
     """The bindings with which the logs were read."""
 
     file: str
@@ -512,21 +516,21 @@ class Bindings(Record, frozen=True):
     ]
 
 
-class Situation(Record, frozen=True):
+class SituationRecord(Record, frozen=True):
     """A way in which a run can meet a requirement."""
 
     key: Annotated[str, about("unique within the requirement")]
     words: Annotated[str, about("the title that people read")]
 
 
-class Requirement(Record, frozen=True):
+class RequirementRecord(Record, frozen=True):
     """A requirement of the audit."""
 
     id: Name
     sentence: str
     sha256: Annotated[Sha256, about("SHA-256 of the canonical wording")]
     situations: Annotated[
-        tuple[Situation, ...] | UnsetType,
+        tuple[SituationRecord, ...] | UnsetType,
         about("all situations that a run can reach; absent: they were not measured"),
     ] = UNSET
 
@@ -545,13 +549,13 @@ class Selection(Record, frozen=True):
     audited: Annotated[Count, about("logs")]
 
 
-class Document(Record, frozen=True):
+class EvidenceDocument(Record, frozen=True):
     """A whole evidence file."""
 
     schema: Literal["fretc-evidence-1"]
     fretc: Annotated[str, about("version of the tool")]
-    bindings: Bindings
-    requirements: tuple[Requirement, ...]
+    bindings: BindingsRecord
+    requirements: tuple[RequirementRecord, ...]
     results: tuple[Result, ...]
     probabilities: Annotated[
         Annotated[tuple[Estimated, ...], Meta(min_length=1)] | UnsetType,
@@ -568,7 +572,7 @@ class Document(Record, frozen=True):
 def schema() -> dict[str, Any]:
     """The JSON Schema of evidence files."""
     return json_schema(
-        Document,
+        EvidenceDocument,
         SCHEMA,
         "The results of audits, as `fretc audit --evidence` writes them",
         "Seconds count from the first tick of the run, ticks from 0, intervals include both ends; "

@@ -26,7 +26,7 @@ SUSPECT, CURRENT = "suspect", "current"
 """The currency of a verdict: whether its inputs are unchanged."""
 
 
-class Level(StrEnum):
+class MessageLevel(StrEnum):
     """The level of a verdict as a message."""
 
     ERROR = "error"
@@ -35,31 +35,31 @@ class Level(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class DisplayedVerdict:
     """A verdict with its symbol, its level and its JUnit element."""
 
     word: str
     sign: StatusSymbol
-    level: Level
+    level: MessageLevel
     junit: str
     """The element of JUnit; empty: the case passes."""
 
 
-_ERROR, _WARNING, _NONE = Level.ERROR, Level.WARNING, Level.NONE
-VERDICTS: Mapping[str, Verdict] = {
+_ERROR, _WARNING, _NONE = MessageLevel.ERROR, MessageLevel.WARNING, MessageLevel.NONE
+VERDICTS: Mapping[str, DisplayedVerdict] = {
     each.word: each
     for each in (
-        Verdict(kernel.VIOLATED, signs.BAD, _ERROR, "failure"),
-        Verdict(REFUTED, signs.BAD, _ERROR, "failure"),
-        Verdict(UNFORMALIZED, signs.FLAWED, _ERROR, "error"),
-        Verdict(kernel.NO_DATA, signs.UNKNOWN, _WARNING, "error"),
-        Verdict(kernel.INCONCLUSIVE, signs.OPEN, _WARNING, "skipped"),
-        Verdict(kernel.VACUOUS, signs.EMPTY, _WARNING, "skipped"),
-        Verdict(NOT_EXERCISED, signs.UNUSED, _WARNING, "skipped"),
-        Verdict(WAIVED, signs.WAIVED, _WARNING, "skipped"),
-        Verdict(SUPPORTED, signs.GOOD, _NONE, ""),
-        Verdict(kernel.SATISFIED, signs.GOOD, _NONE, ""),
-        Verdict(RETIRED, signs.RETIRED, _NONE, "skipped"),
+        DisplayedVerdict(kernel.VIOLATED, signs.BAD, _ERROR, "failure"),
+        DisplayedVerdict(REFUTED, signs.BAD, _ERROR, "failure"),
+        DisplayedVerdict(UNFORMALIZED, signs.FLAWED, _ERROR, "error"),
+        DisplayedVerdict(kernel.NO_DATA, signs.UNKNOWN, _WARNING, "error"),
+        DisplayedVerdict(kernel.INCONCLUSIVE, signs.OPEN, _WARNING, "skipped"),
+        DisplayedVerdict(kernel.VACUOUS, signs.EMPTY, _WARNING, "skipped"),
+        DisplayedVerdict(NOT_EXERCISED, signs.UNUSED, _WARNING, "skipped"),
+        DisplayedVerdict(WAIVED, signs.WAIVED, _WARNING, "skipped"),
+        DisplayedVerdict(SUPPORTED, signs.GOOD, _NONE, ""),
+        DisplayedVerdict(kernel.SATISFIED, signs.GOOD, _NONE, ""),
+        DisplayedVerdict(RETIRED, signs.RETIRED, _NONE, "skipped"),
     )
 }
 """Verdicts by word. The verdict of several runs is their worst."""
@@ -85,10 +85,10 @@ def severity(word: str, *, suspect: bool = False) -> tuple[int, bool]:
     return rank, suspect
 
 
-def level(word: str, *, suspect: bool = False) -> Level:
+def level(word: str, *, suspect: bool = False) -> MessageLevel:
     """The level of a verdict: a suspect one is a warning at least."""
     own = VERDICTS[word].level
-    return Level.WARNING if suspect and own is Level.NONE else own
+    return MessageLevel.WARNING if suspect and own is MessageLevel.NONE else own
 
 
 def junit(word: str, *, suspect: bool = False) -> str:

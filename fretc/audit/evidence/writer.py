@@ -11,34 +11,34 @@ from typing import TypeVar, cast
 from compiler.files.records import UNSET, UnsetType, decoded, plain
 from compiler.files.templating import to_json
 from fretc.audit.evidence.probabilities import Outcomes
-from fretc.audit.evidence.samples import Reading, Series, Surroundings, WordSeries
+from fretc.audit.evidence.samples import Reading, Surroundings, WindowSamples, WordSeries
 from fretc.audit.evidence.schema import (
     Answer,
-    Checked,
+    CheckedChunks,
     Comparison,
-    Document,
-    Finding,
+    EvidenceDocument,
     Gap,
     Hashes,
     Health,
     Instant,
+    LogFinding,
     PhaseStretch,
     PhaseVerdicts,
     Result,
     Situations,
-    State,
+    StateChangeRecord,
     StateWord,
-    Threshold,
-    Topic,
+    ThresholdRecord,
+    TopicRecord,
     Verdict,
     Violation,
 )
 from fretc.audit.measurements.margins import CROSSED, Margin
-from fretc.audit.measurements.tallies import Tally
+from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.measurements.trials import Trials
-from fretc.audit.measurements.violations import Moment, Window
-from fretc.audit.measurements.violations import Violation as Broken
-from fretc.audit.phases.by_shift import Phases, Stretch
+from fretc.audit.measurements.violations import Moment, SampleWindow
+from fretc.audit.measurements.violations import ViolationInterval as Broken
+from fretc.audit.phases.by_shift import PhaseInterval, Phases
 from fretc.logs.signals.enum_values import enum_value
 from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.samples import Topic as Read
@@ -75,7 +75,7 @@ class RunResult:
     """Triggers whose demand is open at the end of the log."""
     latencies: tuple[float, ...]
     """Seconds from each trigger to its answer, in the order of the triggers."""
-    propositions: Mapping[str, Tally]
+    propositions: Mapping[str, PropositionTally]
     """How often each proposition of the sentence was true, false and unknown."""
     margins: tuple[Margin, ...]
     """The distances of the signals to the thresholds of the propositions."""
@@ -100,7 +100,7 @@ def health(recording: Recording) -> Health:
     return Health(
         intact=recording.intact,
         size=recording.size,
-        checked=Checked(
+        checked=CheckedChunks(
             checked.by_index,
             checked.chunks,
             checked.crc_checked,
@@ -114,13 +114,13 @@ def health(recording: Recording) -> Health:
     )
 
 
-def _finding(diagnostic: Diagnostic) -> Finding:
+def _finding(diagnostic: Diagnostic) -> LogFinding:
     subject = {"subject": diagnostic.subject} if diagnostic.subject else {}
-    return decoded(as_json(diagnostic) | subject, Finding)
+    return decoded(as_json(diagnostic) | subject, LogFinding)
 
 
-def _topic(topic: Read) -> Topic:
-    return Topic(
+def _topic(topic: Read) -> TopicRecord:
+    return TopicRecord(
         topic.type,
         topic.count,
         topic.first_ns,
@@ -135,7 +135,7 @@ def _topic(topic: Read) -> Topic:
     )
 
 
-def text(document: Document) -> str:
+def text(document: EvidenceDocument) -> str:
     """The text of the evidence file: equal values give equal bytes."""
     return f"{to_json(plain(document))}\n"
 
@@ -218,8 +218,8 @@ def unjudged_result(
     )
 
 
-def _state(at: Moment, word: str) -> State:
-    return State(at.tick, at.ns, at.seconds, cast("StateWord", word))
+def _state(at: Moment, word: str) -> StateChangeRecord:
+    return StateChangeRecord(at.tick, at.ns, at.seconds, cast("StateWord", word))
 
 
 def _known(value: T | None, write: Callable[[T], U]) -> U | UnsetType:
@@ -247,14 +247,15 @@ def phase_verdicts(phases: Phases) -> PhaseVerdicts:
 def phases_of(record: PhaseVerdicts) -> Phases:
     """The verdict at each phase, from its record."""
     stretches = (
-        Stretch(stretch.first_ns, stretch.last_ns, stretch.verdict) for stretch in record.stretches
+        PhaseInterval(stretch.first_ns, stretch.last_ns, stretch.verdict)
+        for stretch in record.stretches
     )
     return Phases(record.period_ns, record.declared_ns, tuple(stretches))
 
 
-def _threshold(margin: Margin, first_ns: int) -> Threshold:
+def _threshold(margin: Margin, first_ns: int) -> ThresholdRecord:
     threshold, near = margin.threshold, margin.nearest_ns
-    return Threshold(
+    return ThresholdRecord(
         proposition=threshold.proposition,
         signal=threshold.text,
         operator=threshold.operator,
@@ -301,7 +302,7 @@ def _violation(broken: Broken) -> Violation:
     )
 
 
-def _surroundings(window: Window) -> Surroundings:
+def _surroundings(window: SampleWindow) -> Surroundings:
     numbers = {name: _series(each) for name, each in window.samples.items() if not each.words}
     words = {name: _words(each) for name, each in window.samples.items() if each.words}
     return Surroundings(window.start_ns, window.end_ns, numbers, words or UNSET)
@@ -312,5 +313,5 @@ def _words(samples: Samples) -> WordSeries:
     return WordSeries(tuple(samples.times.tolist()), tuple(words))
 
 
-def _series(samples: Samples) -> Series:
-    return Series(tuple(samples.times.tolist()), tuple(map(_reading, samples.base.tolist())))
+def _series(samples: Samples) -> WindowSamples:
+    return WindowSamples(tuple(samples.times.tolist()), tuple(map(_reading, samples.base.tolist())))

@@ -9,7 +9,7 @@ from compiler.files.records import Count, Record, about
 from monitors.kernel import Column
 
 
-class Tally(Record, frozen=True):
+class PropositionTally(Record, frozen=True):
     """The ticks of one proposition; unknown ticks between two values are no change."""
 
     true: Annotated[Count, about("the number of ticks")]
@@ -17,9 +17,9 @@ class Tally(Record, frozen=True):
     unknown: Count
     changes: Annotated[Count, about("the number of changes from one known value to another")]
 
-    def __add__(self, other: Tally) -> Tally:
+    def __add__(self, other: PropositionTally) -> PropositionTally:
         """The sum over two runs; from one run to the next nothing changes."""
-        return Tally(
+        return PropositionTally(
             self.true + other.true,
             self.false + other.false,
             self.unknown + other.unknown,
@@ -27,13 +27,13 @@ class Tally(Record, frozen=True):
         )
 
 
-NOTHING = Tally(0, 0, 0, 0)
+NOTHING = PropositionTally(0, 0, 0, 0)
 
 
-def tally(column: Column, ticks: int) -> Tally:
+def tally(column: Column, ticks: int) -> PropositionTally:
     """The tally of a column with the given number of ticks."""
     true, unknown = column.true.bit_count(), column.unknown.bit_count()
-    return Tally(true, ticks - true - unknown, unknown, _changes(column, ticks))
+    return PropositionTally(true, ticks - true - unknown, unknown, _changes(column, ticks))
 
 
 def _changes(column: Column, ticks: int) -> int:

@@ -36,7 +36,7 @@ class Moment(Record, frozen=True):
 
 
 @dataclass(frozen=True, slots=True)
-class Demand:
+class DemandText:
     """The demand of a requirement at each trigger, in words, and its deadline."""
 
     response: str = ""
@@ -46,7 +46,7 @@ class Demand:
 
 
 @dataclass(frozen=True, slots=True)
-class Window:
+class SampleWindow:
     """The samples around a violation, from `start_ns` to `end_ns`, both included."""
 
     start_ns: int
@@ -56,7 +56,7 @@ class Window:
 
 
 @dataclass(frozen=True, slots=True)
-class Violation:
+class ViolationInterval:
     """An interval of ticks at which a demand was broken, with the samples of the signals."""
 
     first: Moment
@@ -70,18 +70,18 @@ class Violation:
     values: Mapping[str, float | str | None]
     """Each signal of the sentence at the first tick, a number in base units or an enumeration
     value; None: unknown."""
-    window: Window | None
+    window: SampleWindow | None
     """The samples around the violation; None after the first `MOST_WINDOWS`."""
 
 
 def violations(
     outcome: Outcome,
-    demand: Demand,
+    demand: DemandText,
     horizon: int | None,
     at: Callable[[int], Moment],
     recording: Recording,
     signals: Sequence[str],
-) -> tuple[Violation, ...]:
+) -> tuple[ViolationInterval, ...]:
     """Each interval of ticks at which the requirement was violated, in their order.
 
     Args:
@@ -105,7 +105,9 @@ def violations(
             else None
         )
         values = {name: value_at(recording, name, broken.ns) for name in signals}
-        stretches.append(Violation(broken, at(last), begin, due, demand.response, values, window))
+        stretches.append(
+            ViolationInterval(broken, at(last), begin, due, demand.response, values, window)
+        )
     return tuple(stretches)
 
 
@@ -152,7 +154,7 @@ def value_at(recording: Recording, signal: str, ns: int) -> float | str | None:
 
 def _window(
     trigger: Moment, due: Moment, broken: Moment, recording: Recording, signals: Sequence[str]
-) -> Window:
+) -> SampleWindow:
     start = min(trigger.ns, broken.ns) - SURROUNDINGS
     end = max(due.ns, broken.ns) + SURROUNDINGS
     samples = {
@@ -160,7 +162,7 @@ def _window(
         for name in signals
         if name in recording.samples
     }
-    return Window(start, end, samples)
+    return SampleWindow(start, end, samples)
 
 
 def _around(samples: Samples, start: int, end: int, broken: int) -> Samples:

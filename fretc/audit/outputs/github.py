@@ -10,13 +10,17 @@ from collections.abc import Iterable, Sequence
 from fretc.audit.evidence import verdicts
 from fretc.audit.evidence.probabilities import AVERAGE, Estimated
 from fretc.audit.evidence.schema import Result
-from fretc.audit.evidence.verdicts import Level
+from fretc.audit.evidence.verdicts import MessageLevel
 from fretc.audit.outputs.violated_values import reason
 from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.source import Span
 from fretish.documents import RequirementEntry
 
-_GITHUB = {Level.ERROR: "error", Level.WARNING: "warning", Level.NONE: "notice"}
+_GITHUB = {
+    MessageLevel.ERROR: "error",
+    MessageLevel.WARNING: "warning",
+    MessageLevel.NONE: "notice",
+}
 
 
 def github(

@@ -8,7 +8,7 @@ from typing import Any
 
 from compiler.files.records import plain
 from fretc.audit.evidence.writer import health
-from fretc.logs.messages.leaves import Kind, Leaf
+from fretc.logs.messages.leaves import FieldKind, Leaf
 from fretc.logs.reader import Overview
 from fretc.logs.signals.samples import Recording, Topic
 from fretish.bindings import amounts
@@ -111,5 +111,5 @@ def _field(path: str, leaf: Leaf) -> str:
     if leaf.names:
         few = ", ".join(list(leaf.names)[:_MOST])
         return f".{path} ({few}{', ...' if len(leaf.names) > _MOST else ''})"
-    kinds = {Kind.NUMBER: "", Kind.FLAG: " (true or false)", Kind.TEXT: " (text)"}
+    kinds = {FieldKind.NUMBER: "", FieldKind.FLAG: " (true or false)", FieldKind.TEXT: " (text)"}
     return f".{path}{kinds[leaf.kind]}"

@@ -25,7 +25,7 @@ from compiler.formalization.record import wording
 from fretc.audit.evidence import verdicts
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result
-from fretc.audit.evidence.verdicts import CURRENT, SUSPECT, Level
+from fretc.audit.evidence.verdicts import CURRENT, SUSPECT, MessageLevel
 from fretc.audit.outputs.violated_values import reason
 from fretc.logs.storage.log_names import path_of
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -58,10 +58,10 @@ class OneRun:
         return OneRun(result, result.verdict)
 
     @property
-    def level(self) -> Level:
+    def level(self) -> MessageLevel:
         """The level; a run that alone decides nothing counts with all others, in `AllRuns`."""
         if self.result.trials is not None and self.result.verdict != kernel.NO_DATA:
-            return Level.NONE
+            return MessageLevel.NONE
         return verdicts.level(self.verdict, suspect=bool(self.suspicions))
 
 
@@ -80,7 +80,7 @@ class AllRuns:
         return AllRuns(one.requirement, one.answer, "; ".join((one.reason, *one.lines[1:])))
 
     @property
-    def level(self) -> Level:
+    def level(self) -> MessageLevel:
         """The level of the answer."""
         return verdicts.level(self.answer, suspect=bool(self.suspicions))
 
@@ -101,8 +101,8 @@ def sarif(
         estimates: the answers of all runs: each gives one more result.
         failed: requirements that could not be formalized.
     """
-    shown_results = [result for result in results if result.level is not Level.NONE]
-    of_all = [estimate for estimate in estimates if estimate.level is not Level.NONE]
+    shown_results = [result for result in results if result.level is not MessageLevel.NONE]
+    of_all = [estimate for estimate in estimates if estimate.level is not MessageLevel.NONE]
     ids = {one.result.requirement for one in shown_results} | {one.requirement for one in of_all}
     named = {r.id: r for r in (*(rule.entry for rule in rules), *failed)}
     occurring = [requirement for id, requirement in named.items() if id in ids]

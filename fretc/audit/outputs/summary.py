@@ -87,7 +87,7 @@ _TORN = f"""
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class QueryResult:
     """The result of a query."""
 
     columns: tuple[str, ...]
@@ -100,14 +100,14 @@ class Answer:
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class TableSummary:
     """The summary of a table."""
 
     whole: Mapping[str, Any]
-    requirements: Answer
-    failed: Answer
+    requirements: QueryResult
+    failed: QueryResult
     """Runs in which not every requirement is satisfied, the worst first."""
-    slowest: Answer
+    slowest: QueryResult
     remarks: tuple[Diagnostic, ...]
     """Requirements with several fingerprints, and logs with several verdicts."""
 
@@ -134,11 +134,11 @@ class Summary:
         }
 
 
-def summarize(known: EvidenceTables) -> Summary:
+def summarize(known: EvidenceTables) -> TableSummary:
     """The summary of all results."""
     with _asked(known, _COUNTED) as ask:
         (totals,) = _answer(ask, _WHOLE).records
-        return Summary(
+        return TableSummary(
             totals,
             _answer(ask, _REQUIREMENTS),
             _answer(ask, _FAILED),
@@ -150,7 +150,7 @@ def summarize(known: EvidenceTables) -> Summary:
         )
 
 
-def run_query(known: EvidenceTables, query: str) -> Answer | Diagnostic:
+def run_query(known: EvidenceTables, query: str) -> QueryResult | Diagnostic:
     """The answer to a query of the user, which can read only these tables."""
     import duckdb
 
@@ -163,10 +163,10 @@ def run_query(known: EvidenceTables, query: str) -> Answer | Diagnostic:
             return diagnostic("query_fails", message=str(error).strip().splitlines()[0])
 
 
-def _answer(ask: duckdb.DuckDBPyConnection, query: str) -> Answer:
+def _answer(ask: duckdb.DuckDBPyConnection, query: str) -> QueryResult:
     ask.execute(query)
     columns = tuple(str(column[0]) for column in ask.description or ())
-    return Answer(columns, tuple(ask.fetchall()) if columns else ())
+    return QueryResult(columns, tuple(ask.fetchall()) if columns else ())
 
 
 @contextmanager

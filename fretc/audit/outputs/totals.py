@@ -38,7 +38,7 @@ _SEVERITY = {
 
 
 @dataclass(frozen=True, slots=True)
-class Total:
+class ResultCount:
     """The number of results with one word."""
 
     word: str
@@ -185,7 +185,7 @@ def severity(word: str) -> int:
     return _SEVERITY[word]
 
 
-def totals(marks: VerdictWords) -> tuple[Total, ...]:
+def totals(marks: VerdictWords) -> tuple[ResultCount, ...]:
     """The number of results and estimates of each word, the worst word first."""
     counts: Counter[str] = Counter()
     ids: dict[str, set[str]] = {}
@@ -195,9 +195,11 @@ def totals(marks: VerdictWords) -> tuple[Total, ...]:
             ids.setdefault(word, set()).add(id)
         counts.update(of_run.values())
         of_runs.update({*of_run.values()})
-    single = [Total(word, count, len(ids[word]), of_runs[word]) for word, count in counts.items()]
+    single = [
+        ResultCount(word, count, len(ids[word]), of_runs[word]) for word, count in counts.items()
+    ]
     answers = Counter(marks.answers.values())
-    of_all = [Total(word, count, count, 0) for word, count in answers.items()]
+    of_all = [ResultCount(word, count, count, 0) for word, count in answers.items()]
     return tuple(sorted([*single, *of_all], key=lambda total: (severity(total.word), total.runs)))
 
 

@@ -35,7 +35,7 @@ _OVERHEAD = 4096
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class PhaseInterval:
     """The phases `first..last`, in nanoseconds and both included; None: not judged."""
 
     first: int
@@ -56,7 +56,7 @@ class Phases:
     """Nanoseconds of a tick."""
     declared: int
     """The phase that is audited."""
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[PhaseInterval, ...]
 
     @property
     def verdict(self) -> str:
@@ -140,13 +140,13 @@ def phases(
         return {}
     phases_of = {}
     for monitor in monitors:
-        search = _Search(slides, monitor, intact=recording.intact, end=end)
+        search = _PhaseSearch(slides, monitor, intact=recording.intact, end=end)
         stretches = tuple(_merged(search.stretches()))
         phases_of[monitor.REQUIREMENTS[0].id] = Phases(slides.period, slides.declared, stretches)
     return phases_of
 
 
-class _Search:
+class _PhaseSearch:
     """A search that divides the phases until each interval has one verdict, the longest first.
 
     A class is an interval of phases at which the values of all ticks are equal: `first..last`.
@@ -164,9 +164,9 @@ class _Search:
         self._starts = slides.starts(own, self._breaks)
         self._left = max(FEWEST, MOST // (slides.most_ticks + _OVERHEAD))
         self._waiting: list[tuple[int, int, int]] = []
-        self._found: list[Stretch] = []
+        self._found: list[PhaseInterval] = []
 
-    def stretches(self) -> list[Stretch]:
+    def stretches(self) -> list[PhaseInterval]:
         """The verdict of each interval, in order; an interval has one class or more."""
         declared = self._class_of(self._slides.declared)
         self._settle(declared, declared)
@@ -216,19 +216,19 @@ class _Search:
             stretch = self._stretch(first, last, None)
             heappush(self._waiting, (-stretch.length, first, last))
 
-    def _stretch(self, first: int, last: int, verdict: str | None) -> Stretch:
+    def _stretch(self, first: int, last: int, verdict: str | None) -> PhaseInterval:
         to_the_end = last + 1 == len(self._starts)
         after = self._slides.period if to_the_end else int(self._starts[last + 1])
-        return Stretch(int(self._starts[first]), after - 1, verdict)
+        return PhaseInterval(int(self._starts[first]), after - 1, verdict)
 
 
-def _merged(stretches: Sequence[Stretch]) -> Iterator[Stretch]:
+def _merged(stretches: Sequence[PhaseInterval]) -> Iterator[PhaseInterval]:
     """The intervals, with neighbours of one verdict merged."""
     first = stretches[0]
     for stretch in stretches[1:]:
         assert stretch.first == first.last + 1
         if stretch.verdict == first.verdict:
-            first = Stretch(first.first, stretch.last, first.verdict)
+            first = PhaseInterval(first.first, stretch.last, first.verdict)
         else:
             yield first
             first = stretch

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretc.logs.signals.past_values import PastValues, Places, past_values
-from fretc.logs.signals.propositions import UNKNOWN, States, Steps, evaluate, truth_values
+from fretc.logs.signals.propositions import UNKNOWN, States, StepFunction, evaluate, truth_values
 from fretc.logs.signals.samples import Late, Recording, Times, distinct
 from fretc.logs.signals.traces import (
     combined,
@@ -243,7 +243,7 @@ def _cut_of_past(past: PastValues, start: int, length: int, period: int) -> Seen
 
 
 def _first(
-    steps: Steps, proposition: Proposition, begun: tuple[int, int], start: int, more: int
+    steps: StepFunction, proposition: Proposition, begun: tuple[int, int], start: int, more: int
 ) -> Seen:
     """The values at the first tick, from each of these times on."""
     times = _within(steps.times, start, start + more)
@@ -251,7 +251,9 @@ def _first(
     return times, combined(steps, first_before(steps, begun, upto), upto, proposition)
 
 
-def _later(steps: Steps, proposition: Proposition, start: int, length: int, period: int) -> Seen:
+def _later(
+    steps: StepFunction, proposition: Proposition, start: int, length: int, period: int
+) -> Seen:
     """The values at a later tick, from each of these times on.
 
     Its window is one tick long: the value changes when a step enters it, and when one leaves it.
@@ -277,7 +279,9 @@ def _changes(times: Times, states: States) -> Seen:
     return times[new], states[new]
 
 
-def _cut(steps: Steps, proposition: Proposition, start: int, length: int, period: int) -> Seen:
+def _cut(
+    steps: StepFunction, proposition: Proposition, start: int, length: int, period: int
+) -> Seen:
     """The phases from which on the state at the cut tick changes, with the new state."""
     end = start + length
     lasts = _within(steps.times, end - period + 1, end)

@@ -27,7 +27,7 @@ class InexactError(ValueError):
     """A column cannot hold a value exactly."""
 
 
-class Column(Protocol):
+class ArrowColumn(Protocol):
     """The conversion of one kind of value between Python and Arrow. None and `UNSET` are null."""
 
     @property
@@ -163,7 +163,7 @@ class Field:
     """The name in the file."""
     attribute: str
     """The path of attributes to the field."""
-    column: Column
+    column: ArrowColumn
     absent: bool = False
     """Whether null means that the key is left out."""
 
@@ -224,7 +224,7 @@ def objects(fields: Sequence[Field], arrays: Sequence[pa.Array]) -> list[Any]:
 class Items:
     """A list of values of one kind."""
 
-    item: Column
+    item: ArrowColumn
 
     @property
     def type(self) -> pa.DataType:
@@ -246,7 +246,7 @@ class Items:
 class Entries:
     """A map from names to values."""
 
-    item: Column
+    item: ArrowColumn
 
     @property
     def type(self) -> pa.DataType:
@@ -303,7 +303,7 @@ def _cut(array: pa.Array, items: Sequence[Any]) -> list[Any]:
 class Tuple:
     """A tuple of values, each of its own kind."""
 
-    items: tuple[Column, ...]
+    items: tuple[ArrowColumn, ...]
 
     @property
     def type(self) -> pa.DataType:
@@ -364,7 +364,7 @@ def _fields(kind: Any) -> tuple[Field, ...]:
     )
 
 
-def column_of(kind: Any) -> Column:
+def column_of(kind: Any) -> ArrowColumn:
     """The column for a type, as `types.type_info` describes it."""
     options = _options(kind)
     names = {type(option) for option in options}

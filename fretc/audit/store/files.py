@@ -16,7 +16,7 @@ import pyarrow as pa
 from pyarrow.parquet import ParquetFile, write_table
 
 from compiler.files.checked_json import SchemaError
-from fretc.audit.store.manifest import Table
+from fretc.audit.store.manifest import TableFile
 
 LARGEST = 2**30
 """The most bytes of a table, as a file and in memory."""
@@ -26,16 +26,16 @@ MOST_VALUES = 2**27
 """The most values of a column of a table, with nested ones."""
 
 
-def encoded(table: pa.Table) -> tuple[bytes, Table]:
+def encoded(table: pa.Table) -> tuple[bytes, TableFile]:
     """The file of a table, and its entry in a manifest."""
     stream = pa.BufferOutputStream()
     whole = table.combine_chunks()  # the bytes must not depend on its chunks
     write_table(whole, stream, compression="zstd", row_group_size=ROWS)
     data = stream.getvalue().to_pybytes()
-    return data, Table(hashlib.sha256(data).hexdigest(), len(data), len(whole))
+    return data, TableFile(hashlib.sha256(data).hexdigest(), len(data), len(whole))
 
 
-def content(path: Path, file: Table) -> bytes:
+def content(path: Path, file: TableFile) -> bytes:
     """The bytes of a table.
 
     Raises:
@@ -66,7 +66,7 @@ def _opened(path: Path) -> int:
 
 
 def decoded(
-    data: bytes, file: Table, types: pa.Schema, columns: Sequence[str] | None = None
+    data: bytes, file: TableFile, types: pa.Schema, columns: Sequence[str] | None = None
 ) -> pa.Table:
     """A table, or some of its columns.
 
@@ -93,7 +93,7 @@ def _with_later(table: pa.Table, types: pa.Schema, wanted: Sequence[str]) -> pa.
 
 
 @contextmanager
-def _parquet(data: bytes, file: Table, types: pa.Schema) -> Iterator[ParquetFile]:
+def _parquet(data: bytes, file: TableFile, types: pa.Schema) -> Iterator[ParquetFile]:
     try:
         with ParquetFile(pa.BufferReader(data)) as parquet:
             _check(parquet, file, types)
@@ -110,7 +110,7 @@ class Rows:
     """
 
     data: bytes
-    file: Table
+    file: TableFile
     types: pa.Schema
 
     @property
@@ -152,7 +152,7 @@ def _spans(parquet: ParquetFile) -> Iterator[tuple[int, int, int]]:
         start = end
 
 
-def _check(parquet: ParquetFile, file: Table, types: pa.Schema) -> None:
+def _check(parquet: ParquetFile, file: TableFile, types: pa.Schema) -> None:
     about = parquet.metadata
     if about.num_rows != file.rows:
         raise SchemaError("a table does not have as many rows as the manifest says")

@@ -22,7 +22,7 @@ from compiler.files.records import (
 )
 from compiler.files.templating import to_json
 from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.schema import Bindings, Requirement, Selection
+from fretc.audit.evidence.schema import BindingsRecord, RequirementRecord, Selection
 from fretc.audit.store.tables import TableName
 
 SCHEMA: Final = "fretc-store-1"
@@ -37,7 +37,7 @@ _NAME = 32
 """Digits of a SHA-256 that form the name of a file."""
 
 
-class Table(Record, frozen=True):
+class TableFile(Record, frozen=True):
     """A table file of a store."""
 
     sha256: Sha256
@@ -50,22 +50,22 @@ class Part(Record, frozen=True):
 
     runs: Count
     results: Count
-    tables: dict[TableName, Table]
+    tables: dict[TableName, TableFile]
 
 
-class Manifest(Record, frozen=True):
+class StoreManifest(Record, frozen=True):
     """The manifest of a store."""
 
     schema: Literal["fretc-store-1"]
     fretc: Annotated[str, about("version of the tool")]
-    bindings: Bindings
-    requirements: tuple[Requirement, ...]
+    bindings: BindingsRecord
+    requirements: tuple[RequirementRecord, ...]
     confidence: Annotated[
         Annotated[float, Meta(gt=0.5, lt=1)] | None,
         about("over all runs, for a requirement with a probability; null: it is unknown"),
     ]
     parts: Annotated[tuple[Part, ...], about("in the order of the logs")]
-    register: Annotated[Table | UnsetType, about("how each log was identified")] = UNSET
+    register: Annotated[TableFile | UnsetType, about("how each log was identified")] = UNSET
     probabilities: Annotated[
         Annotated[tuple[Estimated, ...], Meta(min_length=1)] | UnsetType,
         about("what all runs together say of each requirement with a probability"),
@@ -75,12 +75,12 @@ class Manifest(Record, frozen=True):
     ] = UNSET
 
 
-def place(table: str, file: Table) -> PurePosixPath:
+def place(table: str, file: TableFile) -> PurePosixPath:
     """The path of a table in the folder of its store."""
     return PurePosixPath(table, f"{file.sha256[:_NAME]}{SUFFIX}")
 
 
-def text(manifest: Manifest) -> str:
+def text(manifest: StoreManifest) -> str:
     """The text of the manifest: equal values give equal bytes."""
     return f"{to_json(plain(manifest))}\n"
 
@@ -88,7 +88,7 @@ def text(manifest: Manifest) -> str:
 def schema() -> dict[str, Any]:
     """The JSON Schema of manifests."""
     return json_schema(
-        Manifest,
+        StoreManifest,
         SCHEMA,
         "The manifest of a store of evidence, as `fretc audit` writes it",
         "A table is a file in a folder with the name of the table; the file name is the first "

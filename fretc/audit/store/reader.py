@@ -24,15 +24,23 @@ from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.result_summaries import HeadProperties, ResultSummary, RunFacts, brief
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
 from fretc.audit.evidence.schema import (
-    Document,
+    EvidenceDocument,
     Result,
     Situations,
-    Threshold,
+    ThresholdRecord,
 )
-from fretc.audit.measurements.tallies import Tally
+from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.store import agreement, files, tables
 from fretc.audit.store.errors import StoreError
-from fretc.audit.store.manifest import FILE, REGISTER, UNFINISHED, Manifest, Part, Table, place
+from fretc.audit.store.manifest import (
+    FILE,
+    REGISTER,
+    UNFINISHED,
+    Part,
+    StoreManifest,
+    TableFile,
+    place,
+)
 from fretc.audit.store.register import Entry, entries, types
 from fretc.audit.store.tables import EVENTS, EXACT, RESULTS, RUNS, TABLES, TableName
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -58,7 +66,7 @@ def opened(path: str, name: str = FILE) -> Store | Diagnostic:
         is_begun = os.path.exists(f"{path}/{UNFINISHED}")
         return _wrong(path, "has no manifest: " + _BEGUN if is_begun else "has no manifest")
     try:
-        store_manifest = decoded(parsed(source.text), Manifest)
+        store_manifest = decoded(parsed(source.text), StoreManifest)
     except SchemaError as error:
         return _wrong(path, f"has a manifest that fretc did not write: {error}")
     store = Store(
@@ -71,11 +79,13 @@ def opened(path: str, name: str = FILE) -> Store | Diagnostic:
     return store
 
 
-def manifest(folder: Path, name: str) -> Manifest | None:
+def manifest(folder: Path, name: str) -> StoreManifest | None:
     """A manifest; None: the file does not exist."""
     source = read_text(str(folder / name))
     try:
-        return None if isinstance(source, Diagnostic) else decoded(parsed(source.text), Manifest)
+        return (
+            None if isinstance(source, Diagnostic) else decoded(parsed(source.text), StoreManifest)
+        )
     except SchemaError:
         return None
 
@@ -86,10 +96,10 @@ class Store(HeadProperties):
 
     file: str
     sha256: str
-    manifest: Manifest
+    manifest: StoreManifest
 
     @property
-    def head(self) -> Manifest:
+    def head(self) -> StoreManifest:
         """The facts of the audit as a whole."""
         return self.manifest
 
@@ -143,11 +153,11 @@ class Store(HeadProperties):
 
     def thresholds(
         self, requirements: Collection[str]
-    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+    ) -> Iterator[tuple[int, Sequence[ThresholdRecord]]]:
         """The thresholds of each result of some requirements, with its index, in order."""
         for at, value in self._nested(requirements, "thresholds"):
             try:
-                yield at, decoded(value, list[Threshold])
+                yield at, decoded(value, list[ThresholdRecord])
             except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
 
@@ -173,7 +183,7 @@ class Store(HeadProperties):
                 raise self._error(f"cannot be read: {error}") from None
             yield from ((start + row, value) for row, value in found)
 
-    def tallies(self) -> Iterator[dict[str, Tally]]:
+    def tallies(self) -> Iterator[dict[str, PropositionTally]]:
         """The tally of each proposition in each run."""
         for _, part in self._parts():
             tables_of_part: dict[TableName, pa.Table] = {
@@ -270,7 +280,7 @@ class Store(HeadProperties):
         file = part.tables[name]
         return files.Rows(self._content(name, file), file, tables.schema(name))
 
-    def _content(self, name: str, file: Table) -> bytes:
+    def _content(self, name: str, file: TableFile) -> bytes:
         path = Path(self.file, place(name, file))
         try:
             return files.content(path, file)
@@ -292,7 +302,7 @@ def evidence(store: Store) -> EvidenceFile:
     """
     manifest = store.manifest
     results = tuple(store.checked_results())
-    document = Document(
+    document = EvidenceDocument(
         schema=EVIDENCE,
         fretc=manifest.fretc,
         bindings=manifest.bindings,

@@ -25,9 +25,9 @@ from fretc.audit.evidence.result_summaries import ResultSummary, RunFacts, brief
 from fretc.audit.evidence.samples import Surroundings
 from fretc.audit.evidence.schema import Hashes, Health, Result, Violation
 from fretc.audit.evidence.writer import unjudged_result
-from fretc.audit.measurements.tallies import Tally
+from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.store.columns import (
-    Column,
+    ArrowColumn,
     Field,
     InexactError,
     Text,
@@ -110,7 +110,7 @@ class _Run:
 # Columns -----------------------------------------------------------------------------------------
 
 
-def _of(names: str, column: Column) -> Iterator[Field]:
+def _of(names: str, column: ArrowColumn) -> Iterator[Field]:
     for name in names.split():
         yield Field(name, name, column)
 
@@ -512,7 +512,7 @@ def _joined(groups: Sequence[Tables], name: TableName) -> pa.Table:
     return pa.concat_tables(parts)
 
 
-def tallies(tables: Tables) -> list[dict[str, Tally]]:
+def tallies(tables: Tables) -> list[dict[str, PropositionTally]]:
     """The tally of each proposition in each run.
 
     Args:
@@ -522,14 +522,14 @@ def tallies(tables: Tables) -> list[dict[str, Tally]]:
         SchemaError: the tables cannot be read.
     """
     (column,) = (field.column for field in _NESTED if field.name == "propositions")
-    tallies_of_runs: list[dict[str, Tally]] = [{} for _ in range(len(tables[RUNS]))]
+    tallies_of_runs: list[dict[str, PropositionTally]] = [{} for _ in range(len(tables[RUNS]))]
     rows = tables[RESULTS]["run_row"].to_pylist()
     values = column.values(_whole(tables[EVENTS], "propositions"))
-    tally_of_numbers: dict[tuple[int, ...], Tally] = {}
+    tally_of_numbers: dict[tuple[int, ...], PropositionTally] = {}
     for row, propositions in zip(rows, values, strict=True):
         for name, counts in propositions.items():
             numbers = tuple(counts.values())
             if numbers not in tally_of_numbers:
-                tally_of_numbers[numbers] = decoded(counts, Tally)
+                tally_of_numbers[numbers] = decoded(counts, PropositionTally)
             tallies_of_runs[row][name] = tally_of_numbers[numbers]
     return tallies_of_runs

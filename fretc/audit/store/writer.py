@@ -9,7 +9,7 @@ from pathlib import Path
 
 from compiler.files.checked_json import SchemaError
 from compiler.files.text_files import open_regular, sha256, write
-from fretc.audit.evidence.schema import Document
+from fretc.audit.evidence.schema import EvidenceDocument
 from fretc.audit.store import register
 from fretc.audit.store.files import content, encoded
 from fretc.audit.store.manifest import (
@@ -18,9 +18,9 @@ from fretc.audit.store.manifest import (
     REUSE,
     SCHEMA,
     UNFINISHED,
-    Manifest,
     Part,
-    Table,
+    StoreManifest,
+    TableFile,
     place,
     text,
 )
@@ -54,7 +54,7 @@ def write_part(folder: Path, tables: Tables) -> Part | Diagnostic:
     return Part(files_of_tables[RUNS].rows, files_of_tables[RESULTS].rows, files_of_tables)
 
 
-def _is_there(path: Path, file: Table) -> bool:
+def _is_there(path: Path, file: TableFile) -> bool:
     try:
         content(path, file)
     except (OSError, SchemaError):
@@ -62,13 +62,13 @@ def _is_there(path: Path, file: Table) -> bool:
     return True
 
 
-def write_register(folder: Path, entries: Sequence[Entry]) -> Table | Diagnostic:
+def write_register(folder: Path, entries: Sequence[Entry]) -> TableFile | Diagnostic:
     """Write the register of the logs."""
     data, file = encoded(register.table(entries))
     return write({folder / place(REGISTER, file): data}) or file
 
 
-def write_manifest(folder: Path, manifest: Manifest, name: str = FILE) -> str | Diagnostic:
+def write_manifest(folder: Path, manifest: StoreManifest, name: str = FILE) -> str | Diagnostic:
     """Write a manifest; gives its SHA-256."""
     content = text(manifest)
     return write({folder / name: content}) or sha256(content)
@@ -81,7 +81,9 @@ def files(folder: Path) -> set[Path]:
     return {path for path in paths if _OURS.fullmatch(path.name)}
 
 
-def remove_others(folder: Path, *manifests: Manifest, kept: Collection[Path] = frozenset()) -> None:
+def remove_others(
+    folder: Path, *manifests: StoreManifest, kept: Collection[Path] = frozenset()
+) -> None:
     """Remove the tables that none of the manifests lists.
 
     Args:
@@ -100,7 +102,7 @@ def remove_others(folder: Path, *manifests: Manifest, kept: Collection[Path] = f
 _OURS = re.compile(r"[0-9a-f]{32}\.parquet|\.[0-9a-f]{32}\.parquet\.[0-9a-f]{8}\.tmp")
 
 
-def _files(manifest: Manifest) -> Iterator[Path]:
+def _files(manifest: StoreManifest) -> Iterator[Path]:
     for part in manifest.parts:
         for name, file in part.tables.items():
             yield Path(place(name, file))
@@ -133,7 +135,7 @@ def remove(folder: Path) -> None:
 
 
 def write_document(
-    folder: Path, document: Document, confidence: float | None = None
+    folder: Path, document: EvidenceDocument, confidence: float | None = None
 ) -> str | Diagnostic:
     """Write evidence that is in memory as a store; gives the SHA-256 of its manifest."""
     runs = runs_of(document.results)
@@ -144,7 +146,7 @@ def write_document(
         if isinstance(part, Diagnostic):
             return part
         written.append(part)
-    manifest = Manifest(
+    manifest = StoreManifest(
         schema=SCHEMA,
         fretc=document.fretc,
         bindings=document.bindings,

@@ -19,7 +19,7 @@ SPARE = 64
 """Free bytes behind the unpacked ones: more than the head of a message."""
 
 
-class Arena:
+class ChunkBytes:
     """The unpacked bytes of chunks, one after the other."""
 
     def __init__(self, most: int) -> None:

@@ -70,7 +70,7 @@ class BrokenError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Stream:
+class ChannelDefinition:
     """A channel of the file, with the definition of its messages."""
 
     channel: Channel

@@ -18,7 +18,7 @@ from fretc.logs.mcap.container import (
     LARGEST,
     MAGIC,
     BrokenError,
-    Stream,
+    ChannelDefinition,
     Summary,
     parse,
 )
@@ -34,7 +34,7 @@ class Index:
 
     chunks: tuple[ChunkIndex, ...]
     """In the order of the file."""
-    streams: dict[int, Stream]
+    streams: dict[int, ChannelDefinition]
     """Streams by channel number."""
     statistics: Statistics
     data_end: int
@@ -67,7 +67,7 @@ def indexed(
     if not chunks:
         return None
     streams = {
-        id: Stream(channel, summary.schemas.get(channel.schema_id))
+        id: ChannelDefinition(channel, summary.schemas.get(channel.schema_id))
         for id, channel in summary.channels.items()
     }
     counts = statistics.channel_message_counts

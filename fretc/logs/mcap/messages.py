@@ -9,7 +9,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.payloads import Bytes, Payloads, Places
 
 _FIELDS = [("channel", "<u2"), ("sequence", "<u4"), ("log", "<u8"), ("publish", "<u8")]
@@ -96,15 +96,17 @@ def _gathered(data: Bytes, places: Places, kind: np.dtype[np.void]) -> NDArray[n
 class Sink(Protocol):
     """A receiver of messages in the order of the file."""
 
-    def declare(self, stream: Stream) -> None:
+    def declare(self, stream: ChannelDefinition) -> None:
         """Receive a stream of the file, before its messages, possibly more than once."""
         ...
 
-    def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
+    def add(
+        self, stream: ChannelDefinition, log_time: int, publish_time: int, payload: memoryview
+    ) -> None:
         """Receive one whole message."""
         ...
 
-    def add_all(self, stream: Stream, messages: Messages) -> None:
+    def add_all(self, stream: ChannelDefinition, messages: Messages) -> None:
         """Receive whole messages of one stream; no other stream of its topic comes between them."""
         ...
 
@@ -112,6 +114,6 @@ class Sink(Protocol):
         """Whether the messages of a stream are wanted, not only their number."""
         ...
 
-    def count(self, stream: Stream, count: int) -> None:
+    def count(self, stream: ChannelDefinition, count: int) -> None:
         """Count messages of a stream that is not wanted."""
         ...

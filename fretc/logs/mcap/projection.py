@@ -21,13 +21,13 @@ from mcap.opcode import Opcode
 from mcap.records import ChunkIndex
 from numpy.typing import NDArray
 
-from fretc.logs.mcap.arena import SIZE, Arena
+from fretc.logs.mcap.arena import SIZE, ChunkBytes
 from fretc.logs.mcap.container import (
     ENTRY,
     HEAD,
     INDEX,
     BrokenError,
-    Stream,
+    ChannelDefinition,
     crc32,
     is_absurd,
 )
@@ -78,7 +78,7 @@ class Projection:
         self._stream, self._index, self._sink = stream, index, sink
         streams = index.streams
         self._wanted = {id for id, each in streams.items() if sink.wants(each.channel.topic)}
-        self._arena = Arena(sum(chunk.uncompressed_size for chunk in index.chunks))
+        self._arena = ChunkBytes(sum(chunk.uncompressed_size for chunk in index.chunks))
         self._packed = bytearray()
         self._longest: Counter[int] = Counter(dict.fromkeys(self._wanted, _SLACK))
         self._batches: defaultdict[int, _Batch] = defaultdict(_Batch)
@@ -389,7 +389,9 @@ def _share(chunk: ChunkIndex, size: int) -> int:
     return min(likely, chunk.compressed_size)
 
 
-def _by_turns(parts: list[tuple[Stream, Messages]]) -> list[tuple[Stream, Messages]]:
+def _by_turns(
+    parts: list[tuple[ChannelDefinition, Messages]],
+) -> list[tuple[ChannelDefinition, Messages]]:
     """Messages of several channels of one topic: consecutive ones together, in the file's order."""
     owners = np.concatenate([np.full(len(some), i) for i, (_, some) in enumerate(parts)])
     inner = np.concatenate([np.arange(len(some)) for _, some in parts])

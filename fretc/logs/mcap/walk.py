@@ -28,7 +28,7 @@ from fretc.logs.mcap.container import (
     MAGIC,
     PADDING,
     BrokenError,
-    Stream,
+    ChannelDefinition,
     crc32,
     frames,
     no_summary,
@@ -85,7 +85,7 @@ class Walk:
         self._found: list[Described] = []
         self._summary = no_summary(size)
         self._schemas: dict[int, Schema] = {}
-        self._streams: dict[int, Stream] = {}
+        self._streams: dict[int, ChannelDefinition] = {}
         self._counts: Counter[int] = Counter()
         self._whole: set[int] = set()
         self._with_crc = 0
@@ -269,7 +269,7 @@ class Walk:
             description = f"it declares the topic `{channel.topic}` twice, differently"
             self.damages.add(at, description, anywhere=True)
             channel = first.channel
-        stream = Stream(channel, self._schemas.get(channel.schema_id))
+        stream = ChannelDefinition(channel, self._schemas.get(channel.schema_id))
         self._streams[channel.id] = stream
         self._sink.declare(stream)
 

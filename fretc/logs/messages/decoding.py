@@ -13,13 +13,13 @@ from io import StringIO
 
 from mcap.records import Schema
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.messages import idl, protobuf
 from fretc.logs.messages import json_messages as jsontext
-from fretc.logs.messages.definitions import TooLargeError, types
+from fretc.logs.messages.definitions import TypesTooLargeError, types
 from fretc.logs.messages.definitions import constants as constants_of_ros
-from fretc.logs.messages.layouts import Shape, Where
-from fretc.logs.messages.leaves import Kind, Leaf, Leaves
+from fretc.logs.messages.layouts import TopicType, Where
+from fretc.logs.messages.leaves import FieldKind, Leaf, Leaves
 from fretc.logs.signals.signals import Sparse, fields, optional_field
 from fretish.bindings.declarations import short_type
 
@@ -58,7 +58,7 @@ class MissingExtra(str):
     """The name of the extra for pip."""
 
 
-def decoder(stream: Stream) -> Decode | str:
+def decoder(stream: ChannelDefinition) -> Decode | str:
     """The decoder of the messages of a stream, or the reason why there is none."""
     encoding, schema = stream.channel.message_encoding, stream.schema
     if schema is None and encoding != "json":
@@ -88,7 +88,7 @@ def decoder(stream: Stream) -> Decode | str:
         return "the definition of its messages cannot be read"
 
 
-def shape(stream: Stream) -> Shape | None:
+def shape(stream: ChannelDefinition) -> TopicType | None:
     """The shape of the messages of a stream; None: only its decoder can read them."""
     schema = stream.schema
     if schema is None or schema.encoding not in _LAID_OUT:
@@ -96,7 +96,7 @@ def shape(stream: Stream) -> Shape | None:
     return _shape(schema.encoding, schema.name, schema.data)
 
 
-def is_single(stream: Stream, where: Sequence[str]) -> bool:
+def is_single(stream: ChannelDefinition, where: Sequence[str]) -> bool:
     """Whether the numbers of a field are 32-bit floats.
 
     Args:
@@ -110,7 +110,7 @@ def is_single(stream: Stream, where: Sequence[str]) -> bool:
     return field is not None and field.type == "float32"
 
 
-def constants(stream: Stream, where: Sequence[str]) -> Mapping[str, int] | None:
+def constants(stream: ChannelDefinition, where: Sequence[str]) -> Mapping[str, int] | None:
     """The names that the definition of messages has for the numbers of a field.
 
     In ROS they are the constants of the type that has the field, in Protobuf those of its enum.
@@ -144,7 +144,7 @@ def _constants(encoding: str, name: str, data: bytes) -> Mapping[str, Mapping[st
 
 
 @lru_cache(_MOST)
-def _shape(encoding: str, name: str, data: bytes) -> Shape | None:
+def _shape(encoding: str, name: str, data: bytes) -> TopicType | None:
     ros1 = encoding == "ros1msg"
     try:
         definition = data.decode()
@@ -154,10 +154,10 @@ def _shape(encoding: str, name: str, data: bytes) -> Shape | None:
             definitions = types(name, definition, ros1=ros1)
     except Exception:  # not UTF-8, unsupported, or an error of the parser
         return None
-    return Shape(short_type(name), definitions, cdr=not ros1)
+    return TopicType(short_type(name), definitions, cdr=not ros1)
 
 
-def leaves(stream: Stream, payloads: Sequence[bytes] = ()) -> Leaves | None:
+def leaves(stream: ChannelDefinition, payloads: Sequence[bytes] = ()) -> Leaves | None:
     """The numbers, truth values and texts in the messages of a stream.
 
     Args:
@@ -180,19 +180,19 @@ def leaves(stream: Stream, payloads: Sequence[bytes] = ()) -> Leaves | None:
     if layout is None:
         return {}
     numbers = dict(_number(stream, layout, where) for where in layout.numbers())
-    return numbers | {".".join(where): Leaf(Kind.TEXT) for where in layout.texts()}
+    return numbers | {".".join(where): Leaf(FieldKind.TEXT) for where in layout.texts()}
 
 
-def _number(stream: Stream, layout: Shape, where: Where) -> tuple[str, Leaf]:
+def _number(stream: ChannelDefinition, layout: TopicType, where: Where) -> tuple[str, Leaf]:
     """The path of a number, or of an array of numbers, and its kind."""
     field = layout.number(where)
     assert field is not None
-    kind = Kind.FLAG if field.type == "bool" else Kind.NUMBER
+    kind = FieldKind.FLAG if field.type == "bool" else FieldKind.NUMBER
     path = f"{'.'.join(where)}{'[:]' if field.many else ''}"
     return path, Leaf(kind, _named(stream, layout, where) if "int" in field.type else {})
 
 
-def _named(stream: Stream, layout: Shape, where: Where) -> Mapping[str, int]:
+def _named(stream: ChannelDefinition, layout: TopicType, where: Where) -> Mapping[str, int]:
     """The constants that are most likely meant for a field, which ROS does not define.
 
     Their names begin with the name of the field; or the field is the only whole number of its type.
@@ -253,7 +253,7 @@ def _measured(name: str, definition: str, *, ros1: bool) -> None:
     """
     try:
         types(name, definition, ros1=ros1)
-    except TooLargeError:
+    except TypesTooLargeError:
         raise
     except ValueError:  # the official parser knows more
         return

@@ -68,12 +68,12 @@ class DefinitionError(ValueError):
     """The definition contains something that this module does not support."""
 
 
-class TooLargeError(DefinitionError):
+class TypesTooLargeError(DefinitionError):
     """The types contain themselves, or are too large."""
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class MessageField:
     """One field of a message."""
 
     name: str
@@ -84,7 +84,7 @@ class Field:
     """The length of an array of fixed length; None: the length precedes its elements."""
 
 
-Types = Mapping[str, tuple[Field, ...]]
+Types = Mapping[str, tuple[MessageField, ...]]
 """The fields of each type, by its full name: `sensor_msgs/LaserScan`."""
 
 
@@ -100,7 +100,7 @@ def types(name: str, definition: str, *, ros1: bool) -> Types:
         DefinitionError: a line or a type is unknown, a type is defined twice, or types contain
             themselves.
     """
-    all_types: dict[str, tuple[Field, ...]] = {}
+    all_types: dict[str, tuple[MessageField, ...]] = {}
     for full, lines in _sections(short(name), definition):
         package = full.partition("/")[0]
         read = (_field(line, package, ros1=ros1) for line in lines)
@@ -149,9 +149,9 @@ def measured(all_types: Types) -> Types:
             ):
                 raise DefinitionError(f"the type `{field.type}` is not defined")
     if _largest(all_types, elements=False) > _MOST_FIELDS:
-        raise TooLargeError("the types are nested too deeply")
+        raise TypesTooLargeError("the types are nested too deeply")
     if _largest(all_types, elements=True) > _MOST_ELEMENTS:
-        raise TooLargeError("the arrays of fixed length are too long")
+        raise TypesTooLargeError("the arrays of fixed length are too long")
     return all_types
 
 
@@ -176,13 +176,13 @@ def _largest(all_types: Types, *, elements: bool) -> int:
         rest = {name: fields for name, fields in rest.items() if name not in ready}
         if not rest:
             return max(sizes.values())
-    raise TooLargeError("the types are nested too deeply")
+    raise TypesTooLargeError("the types are nested too deeply")
 
 
-def _builtin(*, ros1: bool) -> dict[str, tuple[Field, ...]]:
+def _builtin(*, ros1: bool) -> dict[str, tuple[MessageField, ...]]:
     times = _TIMES if ros1 else _ROS2_TIMES
     return {
-        name: tuple(Field(part, type_, many=False, count=None) for part, type_ in parts)
+        name: tuple(MessageField(part, type_, many=False, count=None) for part, type_ in parts)
         for name, parts in times.items()
     }
 
@@ -221,7 +221,7 @@ def _sections(name: str, definition: str) -> list[tuple[str, list[str]]]:
     return sections
 
 
-def _field(line: str, package: str, *, ros1: bool) -> Field | None:
+def _field(line: str, package: str, *, ros1: bool) -> MessageField | None:
     """The field of a line; None for a constant."""
     match = _FIELD.fullmatch(line.split("#")[0].strip() if "=" not in line else line.strip())
     if match is None:
@@ -235,7 +235,7 @@ def _field(line: str, package: str, *, ros1: bool) -> Field | None:
     type_ = _resolved(match["type"], package, many=many, ros1=ros1)
     bounded = many and "<=" in match["array"]
     count = int(match["count"]) if many and match["count"] and not bounded else None
-    return Field(match["name"], type_, many, count)
+    return MessageField(match["name"], type_, many, count)
 
 
 def _resolved(name: str, package: str, *, many: bool, ros1: bool) -> str:

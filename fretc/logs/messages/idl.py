@@ -12,12 +12,12 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.messages.definitions import (
     NUMBERS,
     TEXTS,
     DefinitionError,
-    Field,
+    MessageField,
     Types,
     measured,
     short,
@@ -48,7 +48,7 @@ _KINDS = {"byte": "uint8", "char": "uint8"}
 """The kind of these types; the decoder treats an octet as a signed number."""
 
 
-def decoder(stream: Stream) -> Callable[[bytes], object]:
+def decoder(stream: ChannelDefinition) -> Callable[[bytes], object]:
     """The decoder of the messages of a stream.
 
     Raises:
@@ -169,14 +169,16 @@ def _full(name: str) -> str:
     return name if name.count("/") != 1 else name.replace("/", "/msg/")
 
 
-def _field(name: str, kind: Any) -> Field:
+def _field(name: str, kind: Any) -> MessageField:
     from rosbags.interfaces import Nodetype
 
     node, detail = kind
     if node in (Nodetype.BASE, Nodetype.NAME):
-        return Field(name, _type(kind), many=False, count=None)
+        return MessageField(name, _type(kind), many=False, count=None)
     inner, count = detail
-    return Field(name, _type(inner), many=True, count=count if node == Nodetype.ARRAY else None)
+    return MessageField(
+        name, _type(inner), many=True, count=count if node == Nodetype.ARRAY else None
+    )
 
 
 def _type(kind: Any) -> str:

@@ -16,7 +16,7 @@ from itertools import islice
 from math import isfinite
 from typing import Any
 
-from fretc.logs.messages.leaves import Kind, Leaf
+from fretc.logs.messages.leaves import FieldKind, Leaf
 from fretc.logs.signals.signals import Sparse, UnstatedError
 
 _WORDS = {"NaN": float("nan"), "Infinity": float("inf"), "-Infinity": float("-inf")}
@@ -120,7 +120,7 @@ def message_leaves(payloads: Iterable[bytes]) -> dict[str, Leaf]:
     return dict(islice(leaves.items(), _MOST))
 
 
-def _some(leaves: Iterator[tuple[str, Kind]]) -> dict[str, Leaf]:
+def _some(leaves: Iterator[tuple[str, FieldKind]]) -> dict[str, Leaf]:
     first: dict[str, Leaf] = {}
     for path, kind in leaves:
         if len(first) == _MOST:
@@ -131,7 +131,7 @@ def _some(leaves: Iterator[tuple[str, Kind]]) -> dict[str, Leaf]:
 
 def _of_schema(
     root: Any,
-) -> Iterator[tuple[str, Kind]]:  # a schema may be any JSON value
+) -> Iterator[tuple[str, FieldKind]]:  # a schema may be any JSON value
     """The fields in a schema, the nearest ones first."""
     queue: list[tuple[Any, str, tuple[int, ...]]] = [(root, "", ())]
     for schema, path, within in queue:
@@ -150,14 +150,14 @@ def _of_schema(
 
 
 _KINDS = {
-    "number": Kind.NUMBER,
-    "integer": Kind.NUMBER,
-    "boolean": Kind.FLAG,
-    "string": Kind.TEXT,
+    "number": FieldKind.NUMBER,
+    "integer": FieldKind.NUMBER,
+    "boolean": FieldKind.FLAG,
+    "string": FieldKind.TEXT,
 }
 
 
-def _own(root: Any, schema: dict[Any, Any], path: str) -> Iterator[tuple[str, Kind]]:
+def _own(root: Any, schema: dict[Any, Any], path: str) -> Iterator[tuple[str, FieldKind]]:
     """The path, if it is itself a field that can be read."""
     kinds = schema.get("type")
     kinds = kinds if isinstance(kinds, list) else [kinds]
@@ -167,7 +167,7 @@ def _own(root: Any, schema: dict[Any, Any], path: str) -> Iterator[tuple[str, Ki
     if path and "array" in kinds:
         element = _resolved(root, schema.get("items"))
         kind = element.get("type") if isinstance(element, dict) else None
-        if isinstance(kind, str) and _KINDS.get(kind, Kind.TEXT) is not Kind.TEXT:
+        if isinstance(kind, str) and _KINDS.get(kind, FieldKind.TEXT) is not FieldKind.TEXT:
             yield f"{path}[:]", _KINDS[kind]
 
 
@@ -184,7 +184,7 @@ def _resolved(root: Any, schema: Any) -> Any:
     return None
 
 
-def _of_value(value: object, path: str, depth: int) -> Iterator[tuple[str, Kind]]:
+def _of_value(value: object, path: str, depth: int) -> Iterator[tuple[str, FieldKind]]:
     if isinstance(value, Object) and depth < _DEEPEST:
         for name in filter(_is_name, value.names):
             try:
@@ -193,15 +193,15 @@ def _of_value(value: object, path: str, depth: int) -> Iterator[tuple[str, Kind]
                 continue
             yield from _of_value(inner, f"{path}.{name}" if path else name, depth + 1)
     elif isinstance(value, int | float):
-        yield path, Kind.FLAG if isinstance(value, bool) else Kind.NUMBER
+        yield path, FieldKind.FLAG if isinstance(value, bool) else FieldKind.NUMBER
     elif isinstance(value, str):
-        yield path, Kind.TEXT
+        yield path, FieldKind.TEXT
     elif (
         isinstance(value, list)
         and any(isinstance(item, int | float) for item in value)
         and all(item is None or isinstance(item, int | float) for item in value)
     ):
-        yield f"{path}[:]", Kind.NUMBER
+        yield f"{path}[:]", FieldKind.NUMBER
 
 
 def _is_name(name: object) -> bool:

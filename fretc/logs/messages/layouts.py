@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretc.logs.mcap.payloads import Payloads, Places
-from fretc.logs.messages.definitions import CARRIED, NUMBERS, TEXTS, Field, Types
+from fretc.logs.messages.definitions import CARRIED, NUMBERS, TEXTS, MessageField, Types
 from fretc.logs.signals.samples import distinct
 
 Where = tuple[str, ...]
@@ -61,14 +61,14 @@ class Layout:
     """Positions and lengths of texts; the decoder refuses texts that are not UTF-8."""
 
 
-class Shape:
+class TopicType:
     """The type of a topic's messages."""
 
     def __init__(self, name: str, types: Types, *, cdr: bool) -> None:
         self.name, self.types, self.cdr = name, types, cdr
-        self._fields: dict[Where, Field | None] = {}
+        self._fields: dict[Where, MessageField | None] = {}
 
-    def number(self, where: Where) -> Field | None:
+    def number(self, where: Where) -> MessageField | None:
         """The number, or the array of numbers, at a path.
 
         None also for a time of ROS 1 in the message itself: its decoder carries nanoseconds over
@@ -78,7 +78,7 @@ class Shape:
             self._fields[where] = self._number(where)
         return self._fields[where]
 
-    def _number(self, where: Where) -> Field | None:
+    def _number(self, where: Where) -> MessageField | None:
         name = self.name
         for depth, part in enumerate(where, 1):
             fields = self.types.get(name, ())
@@ -117,7 +117,7 @@ class Shape:
             where for where, field in self._fields_below() if field.type in TEXTS and not field.many
         )
 
-    def _fields_below(self) -> Iterator[tuple[Where, Field]]:
+    def _fields_below(self) -> Iterator[tuple[Where, MessageField]]:
         """Each field with a fixed path; the nearest ones first."""
         below: list[tuple[Where, str]] = [((), self.name)]
         for where, name in below:
@@ -139,7 +139,7 @@ class Shape:
             LayoutError: the length of the payload differs from that of its fields, or is not plain
                 little-endian CDR; or a wanted field is missing, or not a number.
         """
-        walk = _Walk(payload, self.types, frozenset(wanted), cdr=self.cdr)
+        walk = _PayloadPass(payload, self.types, frozenset(wanted), cdr=self.cdr)
         try:
             walk.message(self.name, ())
         except struct.error:
@@ -152,7 +152,7 @@ class Shape:
         return Layout(len(payload), tuple(walk.marks), walk.locations, tuple(walk.texts))
 
 
-class _Walk:
+class _PayloadPass:
     """One pass through a payload."""
 
     def __init__(
@@ -178,7 +178,7 @@ class _Walk:
         if self.at > len(self._payload):  # raised here, to end arrays of empty elements
             raise LayoutError("the payload is cut off")
 
-    def _field(self, field: Field, where: Where) -> None:
+    def _field(self, field: MessageField, where: Where) -> None:
         count = (self._length() if field.count is None else field.count) if field.many else None
         if field.type in NUMBERS:
             self._numbers(NUMBERS[field.type], count, where)
@@ -223,7 +223,7 @@ class _Walk:
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class MessageGroup:
     """Messages of one layout; None: they fit no layout."""
 
     rows: Places
@@ -235,13 +235,13 @@ class Group:
 class Layouts:
     """The layouts of the messages of one stream, collected as they come."""
 
-    def __init__(self, shape: Shape, wanted: Sequence[Where]) -> None:
+    def __init__(self, shape: TopicType, wanted: Sequence[Where]) -> None:
         self._shape, self._wanted = shape, wanted
         self._layouts: dict[int, list[Layout]] = {}
         """Layouts by size; at most `_MOST_LAYOUTS` in all."""
         self._count = 0
 
-    def groups(self, payloads: Payloads) -> Iterator[Group]:
+    def groups(self, payloads: Payloads) -> Iterator[MessageGroup]:
         """All messages, grouped by layout."""
         rest = np.arange(len(payloads))
         if self._count:
@@ -254,7 +254,7 @@ class Layouts:
             try:
                 layout = self._shape.layout(payloads.payload(int(rest[0])), self._wanted)
             except LayoutError:
-                yield Group(rest[:1], None)
+                yield MessageGroup(rest[:1], None)
                 rest = rest[1:]
                 continue
             self._keep(layout)
@@ -269,13 +269,15 @@ class Layouts:
             self._layouts.setdefault(layout.size, []).append(layout)
 
 
-def _split(payloads: Payloads, rows: Places, layout: Layout, *, new: bool) -> Iterator[Group]:
+def _split(
+    payloads: Payloads, rows: Places, layout: Layout, *, new: bool
+) -> Iterator[MessageGroup]:
     """Separate messages with texts beyond ASCII, which the decoder checks."""
     plain = _plain(payloads, rows, layout)
     if plain.any():
-        yield Group(rows[plain], layout, new)
+        yield MessageGroup(rows[plain], layout, new)
     if not plain.all():
-        yield Group(rows[~plain], None)
+        yield MessageGroup(rows[~plain], None)
 
 
 def _same(payloads: Payloads, rows: Places, layout: Layout) -> NDArray[np.bool_]:

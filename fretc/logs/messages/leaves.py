@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 
-class Kind(StrEnum):
+class FieldKind(StrEnum):
     """The kind of a field."""
 
     NUMBER = "number"
@@ -20,7 +20,7 @@ class Kind(StrEnum):
 class Leaf:
     """A field, or the elements of one."""
 
-    kind: Kind
+    kind: FieldKind
     names: Mapping[str, int] = field(default_factory=dict)
     """The names of its numbers in the definition of the messages."""
 
@@ -31,4 +31,4 @@ Leaves = Mapping[str, Leaf]
 
 def numbers(leaves: Leaves) -> tuple[str, ...]:
     """The paths of all numbers and truth values."""
-    return tuple(path for path, leaf in leaves.items() if leaf.kind is not Kind.TEXT)
+    return tuple(path for path, leaf in leaves.items() if leaf.kind is not FieldKind.TEXT)

@@ -12,8 +12,8 @@ from functools import lru_cache, reduce
 import numpy as np
 
 from fretc.logs.messages.decoding import Decode
-from fretc.logs.messages.definitions import NUMBERS, TEXTS, Field, Types
-from fretc.logs.messages.layouts import Location, Shape
+from fretc.logs.messages.definitions import NUMBERS, TEXTS, MessageField, Types
+from fretc.logs.messages.layouts import Location, TopicType
 from fretc.logs.signals.samples import Numbers
 
 _PROBES = 8
@@ -23,13 +23,13 @@ _LARGEST = 2**18
 
 
 @lru_cache(256)
-def trusted(shape: Shape, decode: Decode) -> bool:
+def trusted(shape: TopicType, decode: Decode) -> bool:
     """Whether the decoder reads each number of some generated messages like the layout."""
     payloads = [probe(shape, seed) for seed in range(_PROBES)]
     return all(payload is not None and _same(shape, decode, payload) for payload in payloads)
 
 
-def probe(shape: Shape, seed: int) -> bytes | None:
+def probe(shape: TopicType, seed: int) -> bytes | None:
     """A payload with random contents; None: it would be too long."""
     probe = _Probe(shape.types, seed, cdr=shape.cdr)
     try:
@@ -39,7 +39,7 @@ def probe(shape: Shape, seed: int) -> bytes | None:
     return bytes(probe.payload)
 
 
-def _same(shape: Shape, decode: Decode, payload: bytes) -> bool:
+def _same(shape: TopicType, decode: Decode, payload: bytes) -> bool:
     wanted = shape.numbers()
     try:
         layout = shape.layout(memoryview(payload), wanted)
@@ -86,7 +86,7 @@ class _Probe:
         for field in fields:
             self._field(field)
 
-    def _field(self, field: Field) -> None:
+    def _field(self, field: MessageField) -> None:
         count = 1
         if field.many:
             count = self._next_length(4) if field.count is None else field.count

@@ -13,8 +13,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import Any
 
-from fretc.logs.mcap.container import Stream
-from fretc.logs.messages.leaves import Kind, Leaf
+from fretc.logs.mcap.container import ChannelDefinition
+from fretc.logs.messages.leaves import FieldKind, Leaf
 from fretc.logs.signals.signals import Sparse, UnstatedError
 
 _MOST = 2000
@@ -47,7 +47,7 @@ class Message(Sparse):
         return Message(value) if descriptor.message_type is not None else value
 
 
-def decoder(stream: Stream) -> Callable[[bytes], Message]:
+def decoder(stream: ChannelDefinition) -> Callable[[bytes], Message]:
     """The decoder of the messages of a stream.
 
     Raises:
@@ -58,13 +58,13 @@ def decoder(stream: Stream) -> Callable[[bytes], Message]:
     return lambda payload: Message(official(payload))
 
 
-def leaves(stream: Stream) -> dict[str, Leaf]:
+def leaves(stream: ChannelDefinition) -> dict[str, Leaf]:
     """The numbers, truth values and texts in its messages; `a.c[:]` for a repeated number."""
     descriptor = _official(stream)(b"").DESCRIPTOR
     return dict(islice(_leaves(descriptor), _MOST))
 
 
-def is_single(stream: Stream, where: Sequence[str]) -> bool:
+def is_single(stream: ChannelDefinition, where: Sequence[str]) -> bool:
     """Whether the numbers of a field are 32-bit floats."""
     descriptor, field = _official(stream)(b"").DESCRIPTOR, None
     for name in where:
@@ -73,7 +73,7 @@ def is_single(stream: Stream, where: Sequence[str]) -> bool:
     return field is not None and bool(field.type == field.TYPE_FLOAT)
 
 
-def constants(stream: Stream, where: Sequence[str]) -> Mapping[str, int] | None:
+def constants(stream: ChannelDefinition, where: Sequence[str]) -> Mapping[str, int] | None:
     """The names of the numbers of a field; None: it has no numbers."""
     descriptor, field = _official(stream)(b"").DESCRIPTOR, None
     for name in where:
@@ -84,7 +84,7 @@ def constants(stream: Stream, where: Sequence[str]) -> Mapping[str, int] | None:
     return _names(field)
 
 
-def _official(stream: Stream) -> Callable[[bytes], Any]:
+def _official(stream: ChannelDefinition) -> Callable[[bytes], Any]:
     from mcap_protobuf.decoder import DecoderFactory
 
     decode = DecoderFactory().decoder_for("protobuf", stream.schema)
@@ -107,14 +107,14 @@ def _leaves(descriptor: Any) -> Iterator[tuple[str, Leaf]]:
             elif field.cpp_type != field.CPPTYPE_STRING:
                 yield f"{where}[:]" if many else where, _number(field)
             elif field.type == field.TYPE_BYTES and not many:
-                yield f"{where}[:]", Leaf(Kind.NUMBER)
+                yield f"{where}[:]", Leaf(FieldKind.NUMBER)
             elif field.type == field.TYPE_STRING and not many:
-                yield where, Leaf(Kind.TEXT)
+                yield where, Leaf(FieldKind.TEXT)
 
 
 def _number(field: Any) -> Leaf:
     flag = field.cpp_type == field.CPPTYPE_BOOL
-    return Leaf(Kind.FLAG if flag else Kind.NUMBER, _names(field))
+    return Leaf(FieldKind.FLAG if flag else FieldKind.NUMBER, _names(field))
 
 
 def _names(field: Any) -> Mapping[str, int]:

@@ -27,7 +27,7 @@ Value = tuple[float, np.dtype[Any] | None, str]
 its signal (else empty)."""
 
 
-class Message(Sparse):
+class PythonMessage(Sparse):
     """A message in Python: a mapping, or an object with attributes.
 
     None is unknown; a missing field is an error.
@@ -60,10 +60,10 @@ class Message(Sparse):
         if isinstance(value, array):
             return np.asarray(value)
         inner = isinstance(value, Mapping) or fields(value)
-        return Message(value) if inner else value
+        return PythonMessage(value) if inner else value
 
 
-def sampled(signal: Signal, message: Message) -> Value:
+def sampled(signal: Signal, message: PythonMessage) -> Value:
     """The sample of a message.
 
     Raises:
@@ -81,14 +81,14 @@ def sampled(signal: Signal, message: Message) -> Value:
     return value, np.dtype(np.float32 if single and is_chosen(signal) else np.float64), ""
 
 
-def _named(signal: Signal, message: Message) -> Signal:
+def _named(signal: Signal, message: PythonMessage) -> Signal:
     """The signal with the numbers of its values, if the field's message has such constants."""
     if not signal.values or signal.numbers:
         return signal
     holder: object = message
     for name in signal.path.fields[:-1]:
         holder = optional_field(holder, name)
-    if not isinstance(holder, Message) or isinstance(
+    if not isinstance(holder, PythonMessage) or isinstance(
         optional_field(holder, signal.path.fields[-1]), str
     ):
         return signal
@@ -98,7 +98,7 @@ def _named(signal: Signal, message: Message) -> Signal:
     return replace(signal, numbers=numbers) if len(set(numbers)) == len(signal.values) else signal
 
 
-def _is_single(signal: Signal, message: Message) -> bool:
+def _is_single(signal: Signal, message: PythonMessage) -> bool:
     """Whether the field of the signal holds 32-bit floats."""
     value: object = message
     for name in signal.path.fields:

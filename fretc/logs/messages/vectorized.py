@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretc.logs.mcap.payloads import Places
-from fretc.logs.signals.measures import COMPARE, Measure, Scope, term, together
+from fretc.logs.signals.measures import COMPARE, Measure, NameValues, term, together
 from fretc.logs.signals.outline import distances, places
 from fretc.logs.signals.propositions import TRUE, truth
 from fretc.logs.signals.samples import EXACT, Numbers, Values, scaled
@@ -89,7 +89,7 @@ def _plain(
     return plain
 
 
-def _ends(reduce: Reduce, values: Values, limits: _Limits) -> tuple[Values, Truths]:
+def _ends(reduce: Reduce, values: Values, limits: _FloatLimits) -> tuple[Values, Truths]:
     """The least or the greatest measurement of each message, and whether there is one."""
     least, band = reduce is Reduce.MIN, limits.band()
     if band is not None and values.dtype == np.float32:
@@ -137,7 +137,7 @@ def _classes(
 
 
 @dataclass(frozen=True, slots=True)
-class _Limits:
+class _FloatLimits:
     """A test for measurements among 32-bit floats: each is finite, and compares as it should."""
 
     compared: Sequence[tuple[str, Singles]]
@@ -169,12 +169,14 @@ class _Limits:
 _GREATEST = np.finfo(np.float32).max
 
 
-def _limits(signal: Signal, sibling_values: Mapping[str, Numbers], count: int) -> _Limits | None:
+def _limits(
+    signal: Signal, sibling_values: Mapping[str, Numbers], count: int
+) -> _FloatLimits | None:
     """The test for measurements; None: comparisons with 32-bit floats are not enough."""
     bounds = [] if signal.valid is None else _bounds(signal.valid)
     if bounds is None:
         return None
-    scope = Scope(count, sibling_values, signal.unit)
+    scope = NameValues(count, sibling_values, signal.unit)
     field = Measure(np.zeros(1, np.float32))
     compared: list[tuple[str, Singles]] = []
     for op, side in bounds:
@@ -184,7 +186,7 @@ def _limits(signal: Signal, sibling_values: Mapping[str, Numbers], count: int) -
             return None
         same = bool((narrow == narrow[:1]).all())
         compared.append((op, narrow[:1, None] if same else narrow[:, None]))
-    return _Limits(compared)
+    return _FloatLimits(compared)
 
 
 @cache_by_identity
@@ -235,7 +237,7 @@ def _valid(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers]
     count, width = values.shape
     names = {name.id for name in e.names(signal.valid)} - {"x"}
     numbers = {name: _spread(sibling_values[name], width) for name in names}
-    scope = Scope(count * width, {"x": values.reshape(-1), **numbers}, signal.unit)
+    scope = NameValues(count * width, {"x": values.reshape(-1), **numbers}, signal.unit)
     accepted: Truths = (truth(signal.valid, scope) == TRUE).reshape(count, width)
     return finite & accepted
 

@@ -39,7 +39,7 @@ class ExpressionError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Scope:
+class NameValues:
     """The values of an expression's names, at `length` points.
 
     `numbers` have shape (length,), or one element for all points; NaN is unknown. Times their
@@ -54,7 +54,7 @@ class Scope:
     unit: Unit = ONE
     scales: Mapping[str, Fraction] = field(default_factory=dict)
     persistences: Mapping[e.Persistence, NDArray[np.int8]] = field(default_factory=dict)
-    earlier: Scope | None = None
+    earlier: NameValues | None = None
     words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
@@ -81,7 +81,7 @@ Term = Measure | Fraction
 _UNKNOWN = Measure(np.array([np.nan]))
 
 
-def number(expression: e.Expression, scope: Scope) -> Numbers:
+def number(expression: e.Expression, scope: NameValues) -> Numbers:
     """The number at each point in base units, shape (scope.length,) or (1,); NaN is unknown.
 
     Raises:
@@ -90,7 +90,7 @@ def number(expression: e.Expression, scope: Scope) -> Numbers:
     return _measure(term(expression, scope)).base
 
 
-def term(expression: e.Expression, scope: Scope) -> Term:
+def term(expression: e.Expression, scope: NameValues) -> Term:
     """The number at each point; a fraction where it is the same constant at all of them.
 
     What divides by zero is unknown. Infinity is a number: `1 / inf` is 0, `inf - inf` unknown.
@@ -203,7 +203,7 @@ def _nearest(exact: Fraction, kind: np.dtype[Any]) -> Values:
 # Computation
 
 
-def _before(initial: e.Expression, arg: e.Expression, scope: Scope) -> Measure:
+def _before(initial: e.Expression, arg: e.Expression, scope: NameValues) -> Measure:
     """The value of `arg` one tick before; at the first tick, the value of `initial`.
 
     It is a measured number: a constant is the nearest 64-bit float in the unit of the other side.

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fretc.logs.signals.measures import Scope
+from fretc.logs.signals.measures import NameValues
 from fretc.logs.signals.propositions import (
     FALSE,
     TRUE,
@@ -39,7 +39,7 @@ class PastValues:
     """The number of earlier ticks on which the truth value at a tick depends."""
     times: Times
     """The times of the events; between two events, the values of the first one are in force."""
-    _events: Scope
+    _events: NameValues
     """The values in force from each event on; the last index is for -1, with all values unknown."""
 
     def states(self, places: Sequence[Places]) -> States:
@@ -49,7 +49,7 @@ class PastValues:
             places: for each of the ticks the event in force at it, then at the tick before, and so
                 on: `back + 1` of them; or fewer, if the last one is the first tick of all.
         """
-        scope: Scope | None = None
+        scope: NameValues | None = None
         for at in reversed(places):
             scope = self._scope(at, scope)
         assert scope is not None, "there is a tick"
@@ -72,7 +72,7 @@ class PastValues:
         rest = [places[self.back - j : count - j] for j in range(self.back + 1)]
         return np.concatenate([*single, self.states(rest)])
 
-    def _scope(self, at: Places, earlier: Scope | None) -> Scope:
+    def _scope(self, at: Places, earlier: NameValues | None) -> NameValues:
         return replace(
             self._events,
             length=len(at),

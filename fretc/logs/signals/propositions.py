@@ -15,7 +15,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from fretc.logs.signals.measures import ExpressionError, Scope, Term, compared, term
+from fretc.logs.signals.measures import ExpressionError, NameValues, Term, compared, term
 from fretc.logs.signals.samples import Recording, Samples, Times, Values, distinct
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Proposition, Signal
@@ -32,7 +32,7 @@ _FOREVER = 2**62
 
 
 @dataclass(frozen=True, slots=True)
-class Steps:
+class StepFunction:
     """A step function: `states[i]` from `times[i]` on, until `times[i + 1]`.
 
     Both have shape (n,), n >= 1. Times do not decrease; of several steps at one time each was
@@ -53,7 +53,9 @@ def truth_values(states: States) -> list[bool | None]:
     return [_VALUES[state] for state in states.tolist()]
 
 
-def evaluate(proposition: Proposition, declarations: Declarations, recording: Recording) -> Steps:
+def evaluate(
+    proposition: Proposition, declarations: Declarations, recording: Recording
+) -> StepFunction:
     """The proposition's truth over the time of the recording.
 
     A step is taken at the start of the recording, at each sample of each signal that the
@@ -72,13 +74,13 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     assert not ticks_back(proposition.expression), "it has a truth at ticks only"
     signals = {name: declarations.signals[name] for name in proposition.signals}
     key = (id(proposition), *_read(signals))
-    cached: tuple[Proposition, Steps] | None = recording.derived.get(key)
+    cached: tuple[Proposition, StepFunction] | None = recording.derived.get(key)
     if cached is not None:
         return cached[1]
     steps = _steps(proposition.expression, history_of(signals, recording))
     last = max(recording.end_ns, recording.start_ns)
     count = int(np.searchsorted(steps.times, last, "right"))
-    steps = Steps(steps.times[:count], steps.states[:count])
+    steps = StepFunction(steps.times[:count], steps.states[:count])
     if len(steps.times) <= _KEPT:
         recording.derived[key] = proposition, steps  # the reference keeps the id of the key valid
     return steps
@@ -87,7 +89,7 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
 # Truth at points
 
 
-def truth(expression: e.Expression, scope: Scope) -> States:
+def truth(expression: e.Expression, scope: NameValues) -> States:
     """Kleene's truth of the expression at each point, shape (scope.length,).
 
     Raises:
@@ -125,7 +127,7 @@ def truth(expression: e.Expression, scope: Scope) -> States:
             raise ExpressionError("a truth value is needed, and this is a number")
 
 
-def _flag(id: str, scope: Scope) -> States:
+def _flag(id: str, scope: NameValues) -> States:
     """A plain number as a truth value: 1 is true, 0 is false, any other number is unknown."""
     if id not in scope.numbers:
         raise ExpressionError(f"there is no `{id}`")
@@ -182,9 +184,11 @@ class History:
         numbers = {name: values[chosen[order]] for name, values in self.numbers.items()}
         return replace(self, times=every[order], numbers=numbers)
 
-    def scope(self, persistences: Mapping[e.Persistence, States] = MappingProxyType({})) -> Scope:
+    def scope(
+        self, persistences: Mapping[e.Persistence, States] = MappingProxyType({})
+    ) -> NameValues:
         """The values of the names at the events."""
-        return Scope(
+        return NameValues(
             len(self.times),
             self.numbers,
             scales=self.scales,
@@ -312,9 +316,9 @@ def _values_at(
 # Durations
 
 
-def _steps(expression: e.Expression, history: History) -> Steps:
+def _steps(expression: e.Expression, history: History) -> StepFunction:
     history, states = with_persistences(expression, history)
-    return Steps(history.times, truth(expression, history.scope(states)))
+    return StepFunction(history.times, truth(expression, history.scope(states)))
 
 
 def with_persistences(
@@ -339,12 +343,12 @@ def _durations(expression: e.Expression) -> tuple[e.Persistence, ...]:
     return tuple(found for part in e.children(expression) for found in _durations(part))
 
 
-def _at(steps: Steps, times: Times) -> States:
+def _at(steps: StepFunction, times: Times) -> States:
     """The states of the step function at times that are not before its first step."""
     return steps.states[np.searchsorted(steps.times, times, "right") - 1]
 
 
-def _persistence(arg: Steps, duration: int) -> Steps:
+def _persistence(arg: StepFunction, duration: int) -> StepFunction:
     """The truth of `arg` throughout `[t - duration, t]`.
 
     False if it was false within the interval, else unknown if it was unknown within it (as it is
@@ -359,7 +363,7 @@ def _persistence(arg: Steps, duration: int) -> Steps:
         having = arg.states == state
         states[_reached(times, arg.times[having], ends[having] + duration)] = state
     changed = np.append(True, states[1:] != states[:-1])
-    return Steps(times[changed], states[changed])
+    return StepFunction(times[changed], states[changed])
 
 
 def _reached(times: Times, starts: Times, ends: Times) -> NDArray[np.bool_]:

@@ -73,7 +73,7 @@ def widest(values: NDArray[Any]) -> Values:
         return values.astype(EXACT if values.dtype == EXACT else np.float64)
 
 
-class Series:
+class NumberList:
     """A growing list of numbers, in the narrowest type that holds all of them."""
 
     def __init__(self) -> None:

@@ -17,7 +17,7 @@ from typing import Any, assert_never
 import numpy as np
 from numpy.typing import NDArray
 
-from fretc.logs.signals.measures import ExpressionError, Scope
+from fretc.logs.signals.measures import ExpressionError, NameValues
 from fretc.logs.signals.outline import blind_share, distances, places
 from fretc.logs.signals.propositions import TRUE, truth
 from fretc.logs.signals.samples import EXACT, WHOLE, Values, scaled, widest
@@ -264,7 +264,7 @@ def _valid(signal: Signal, message: object, values: Values) -> NDArray[np.bool_]
         return finite
     names = {name.id for name in e.names(signal.valid)} - {"x"}
     siblings = {name: np.array([_sibling(message, name)]) for name in names}
-    scope = Scope(len(values), {"x": values, **siblings}, signal.unit)
+    scope = NameValues(len(values), {"x": values, **siblings}, signal.unit)
     try:
         accepted: NDArray[np.bool_] = truth(signal.valid, scope) == TRUE
     except ExpressionError as error:

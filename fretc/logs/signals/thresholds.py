@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import isfinite
 
-from fretc.logs.signals.measures import Scope, number
+from fretc.logs.signals.measures import NameValues, number
 from fretish import expressions as e
 from fretish.bindings.declarations import Proposition, Signal
 from fretish.bindings.expressions import dimension, ticks_back
@@ -82,7 +82,7 @@ def _threshold(
         (part.right, part.left, mirrored),
     ):
         if any(e.names(term)) and not any(e.names(other)):
-            bound = float(number(other, Scope(1, {}))[0])
+            bound = float(number(other, NameValues(1, {}))[0])
             unit = _unit(term, signals)
             return (
                 Threshold(proposition.name, term, operator, bound, unit, other)

@@ -17,7 +17,7 @@ from fretc.logs.signals.propositions import (
     TRUE,
     UNKNOWN,
     States,
-    Steps,
+    StepFunction,
     evaluate,
     truth_values,
 )
@@ -28,7 +28,7 @@ from monitors.kernel import Column
 
 
 @dataclass(frozen=True, slots=True)
-class Timeline:
+class WholeTicks:
     """The whole ticks of one recording.
 
     `times` has shape (n,), the time of each tick in nanoseconds; it does not decrease. `period` is
@@ -47,7 +47,7 @@ class Trace:
     duration counts it. None: the log ends with a whole tick.
     """
 
-    timeline: Timeline
+    timeline: WholeTicks
     columns: Mapping[str, Column]
     cut: Mapping[str, bool | None] | None
 
@@ -92,7 +92,7 @@ def bits(values: NDArray[np.bool_]) -> int:
     return int.from_bytes(np.packbits(values, bitorder="little").tobytes(), "little")
 
 
-def timeline(declarations: Declarations, recording: Recording) -> Timeline:
+def timeline(declarations: Declarations, recording: Recording) -> WholeTicks:
     """The whole ticks of the declared clock over the recording.
 
     Every `period` from the start on, not later than the last bound message; or one for each
@@ -103,10 +103,10 @@ def timeline(declarations: Declarations, recording: Recording) -> Timeline:
     """
     period = declarations.clock.period
     if period is None:
-        return Timeline(recording.ticks, None)
+        return WholeTicks(recording.ticks, None)
     start, phase = origin(declarations, recording, period), declarations.clock.phase
     count = (max(0, recording.end_ns - start) - phase) // period + 1
-    return Timeline(start + phase + np.arange(count, dtype=np.int64) * period, period)
+    return WholeTicks(start + phase + np.arange(count, dtype=np.int64) * period, period)
 
 
 def origin(declarations: Declarations, recording: Recording, period: int) -> int:
@@ -172,7 +172,7 @@ def complete_from(proposition: Proposition, recording: Recording) -> int:
 
 
 def states_at(
-    steps: Steps, ticks: Times, proposition: Proposition, begun: tuple[int, int] | None
+    steps: StepFunction, ticks: Times, proposition: Proposition, begun: tuple[int, int] | None
 ) -> States:
     """The state of each tick, shape (ticks,).
 
@@ -186,7 +186,9 @@ def states_at(
     return combined(steps, before, upto, proposition)
 
 
-def first_before(steps: Steps, begun: tuple[int, int], upto: NDArray[np.intp]) -> NDArray[np.intp]:
+def first_before(
+    steps: StepFunction, begun: tuple[int, int], upto: NDArray[np.intp]
+) -> NDArray[np.intp]:
     """The first step that the first tick covers, of those below `upto`; `begun` as in `states_at`.
 
     It is the first step that is known or counts as unknown; if there is none, the last one.
@@ -198,7 +200,7 @@ def first_before(steps: Steps, begun: tuple[int, int], upto: NDArray[np.intp]) -
 
 
 def combined(
-    steps: Steps, before: NDArray[np.intp], upto: NDArray[np.intp], proposition: Proposition
+    steps: StepFunction, before: NDArray[np.intp], upto: NDArray[np.intp], proposition: Proposition
 ) -> States:
     """The states of ticks with the steps `before <= i < upto`, each of shape (ticks,)."""
     states = steps.states

@@ -19,7 +19,7 @@ from urllib.parse import quote
 
 from mcap.records import Channel, Schema
 
-from fretc.logs.mcap.container import BrokenError, Stream, largest, unpacked_lz4
+from fretc.logs.mcap.container import BrokenError, ChannelDefinition, largest, unpacked_lz4
 from fretc.logs.mcap.damage import LATEST, Damage
 from fretc.logs.mcap.messages import Sink
 from fretc.logs.messages.ros2_types import standard
@@ -180,7 +180,7 @@ class _Way:
         self._damages: list[tuple[Damage, bool]] = []
         """Each damage, with True if all later messages are lost; False: messages of any time may be
         lost."""
-        self._streams: dict[int, Stream] = {}
+        self._streams: dict[int, ChannelDefinition] = {}
         self._stated = self._ends()
         self._counts: dict[int, int] = {}
 
@@ -269,7 +269,7 @@ class _Way:
 
     # Streams
 
-    def _stream(self, connection: Any) -> Stream:
+    def _stream(self, connection: Any) -> ChannelDefinition:
         if not isinstance(connection.topic, str) or not isinstance(connection.msgtype, str):
             raise ValueError("a topic has no name, or no type")
         schema = self._schema(connection)
@@ -281,7 +281,7 @@ class _Way:
             metadata={},
             schema_id=connection.id if schema is not None else 0,
         )
-        return Stream(channel, schema)
+        return ChannelDefinition(channel, schema)
 
     def _schema(self, connection: Any) -> Schema | None:
         name, kind, text = connection.msgtype, connection.msgdef.format, connection.msgdef.data

@@ -44,7 +44,7 @@ _SMALL = 2**20
 
 
 @dataclass(frozen=True, slots=True)
-class Input:
+class OpenLog:
     """A log that is open for reading."""
 
     stream: io.BufferedReader
@@ -60,13 +60,13 @@ class Input:
     changed: Callable[[], bool] = lambda: False
     """Whether the file was written to since it was opened, or its name now belongs to another
     file."""
-    beginning: Callable[[], Input | None] = lambda: None
+    beginning: Callable[[], OpenLog | None] = lambda: None
     """A copy of the bytes that were there when the file was opened; None: it has changed otherwise
     than by growing."""
 
 
 @contextmanager
-def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
+def opened(path: str, *, whole: bool = True) -> Iterator[OpenLog | Diagnostic]:
     """The log at a path, open within the context; or why it cannot be opened.
 
     Args:
@@ -85,7 +85,7 @@ def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
         yield log
 
 
-def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
+def _opened(path: str, stack: ExitStack, *, whole: bool) -> OpenLog | Diagnostic:
     if path == STDIN:
         return _stdin(stack)
     if is_url(path):
@@ -106,7 +106,7 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
             return True
         return any(_mark(now) != _mark(before) for now in statuses)
 
-    def beginning() -> Input | None:
+    def beginning() -> OpenLog | None:
         now = os.stat(path)
         if _mark(now)[:2] != _mark(before)[:2] or now.st_size <= size:
             return None
@@ -120,10 +120,10 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
     if content is not None:
         held = cast("io.BufferedReader", io.BytesIO(content))
         size, sha256 = len(content), partial(_sha256, content)
-        return Input(held, size, sha256, _nothing, path, same, changed, beginning)
+        return OpenLog(held, size, sha256, _nothing, path, same, changed, beginning)
     digest = _Digest(file, size)
     sha256 = digest.result
-    return Input(stream, size, sha256, digest.begin, path, same, changed, beginning)
+    return OpenLog(stream, size, sha256, digest.begin, path, same, changed, beginning)
 
 
 def _sha256(content: bytes) -> str:
@@ -185,18 +185,18 @@ class _Digest:
             os.close(own)
 
 
-def _copy(stream: io.BufferedReader) -> Input:
+def _copy(stream: io.BufferedReader) -> OpenLog:
     """A copy of a file without a path."""
     digest = hashlib.file_digest(stream, "sha256").hexdigest()
     size = stream.tell()
     stream.seek(0)
-    return Input(stream, size, lambda: digest, lambda: None, None, None)
+    return OpenLog(stream, size, lambda: digest, lambda: None, None, None)
 
 
 # Standard input
 
 
-def _stdin(stack: ExitStack) -> Input | Diagnostic:
+def _stdin(stack: ExitStack) -> OpenLog | Diagnostic:
     if sys.stdin is None or sys.stdin.closed:
         return storage_diagnostics.no_stdin("it is closed")
     if sys.stdin.isatty():
@@ -272,7 +272,7 @@ class _HashingFile(io.RawIOBase):
         return self._digest.hexdigest()
 
 
-def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
+def _remote(url: str, stack: ExitStack, *, whole: bool) -> OpenLog | Diagnostic:
     place = Source(name_of(url), "").span()
     try:
         import fsspec
@@ -295,12 +295,14 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         raise as_os_error(error) from error
     hashed = _HashingFile(file, size)
     stream = stack.enter_context(io.BufferedReader(hashed, _SMALL_BLOCK))
-    return Input(cast("io.BufferedReader", stream), size, hashed.sha256, lambda: None, None, None)
+    return OpenLog(cast("io.BufferedReader", stream), size, hashed.sha256, lambda: None, None, None)
 
 
 def _stream(system: Any, path: str) -> Any:
     """All bytes from the beginning on, if the server does not support ranges."""
-    return web.Stream(system, path) if web.is_web(path) else system.open(path, "rb", block_size=0)
+    return (
+        web.WebStream(system, path) if web.is_web(path) else system.open(path, "rb", block_size=0)
+    )
 
 
 class _PacedStream:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Messages, Sink
 from fretc.logs.mcap.metadata import Described
@@ -18,7 +18,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class FileContents:
     """The contents of one file, without its messages."""
 
     sha256: str
@@ -41,23 +41,25 @@ class RenumberingSink:
         self.counted = 0
         """The number of messages so far."""
         self._sink = sink
-        self._streams: dict[Hashable, Stream] = {}
-        self._of_file: dict[int, tuple[Stream, Stream]] = {}
+        self._streams: dict[Hashable, ChannelDefinition] = {}
+        self._of_file: dict[int, tuple[ChannelDefinition, ChannelDefinition]] = {}
 
     def next_file(self) -> None:
         """Begin with another file."""
         self._of_file.clear()
 
-    def declare(self, stream: Stream) -> None:
+    def declare(self, stream: ChannelDefinition) -> None:
         """A stream of the file."""
         self._sink.declare(self._renumbered(stream))
 
-    def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
+    def add(
+        self, stream: ChannelDefinition, log_time: int, publish_time: int, payload: memoryview
+    ) -> None:
         """One whole message."""
         self.counted += 1
         self._sink.add(self._renumbered(stream), log_time, publish_time, payload)
 
-    def add_all(self, stream: Stream, messages: Messages) -> None:
+    def add_all(self, stream: ChannelDefinition, messages: Messages) -> None:
         """Whole messages of one stream."""
         self.counted += len(messages.starts)
         self._sink.add_all(self._renumbered(stream), messages)
@@ -66,12 +68,12 @@ class RenumberingSink:
         """Whether the messages themselves are wanted, not only their number."""
         return self._sink.wants(topic)
 
-    def count(self, stream: Stream, count: int) -> None:
+    def count(self, stream: ChannelDefinition, count: int) -> None:
         """Count messages of a stream that is not wanted."""
         self.counted += count
         self._sink.count(self._renumbered(stream), count)
 
-    def _renumbered(self, stream: Stream) -> Stream:
+    def _renumbered(self, stream: ChannelDefinition) -> ChannelDefinition:
         """The stream with its number in the whole run."""
         of_file = self._of_file.get(stream.channel.id)
         if of_file is not None and of_file[0] is stream:
@@ -81,7 +83,7 @@ class RenumberingSink:
         key = (channel.topic, channel.message_encoding, definition)
         if key not in self._streams:
             number = len(self._streams) + 1
-            self._streams[key] = Stream(
+            self._streams[key] = ChannelDefinition(
                 replace(channel, id=number, schema_id=number if schema is not None else 0),
                 replace(schema, id=number) if schema is not None else None,
             )
@@ -90,7 +92,7 @@ class RenumberingSink:
         return renumbered
 
 
-def around(parts: Sequence[Part | None], i: int) -> tuple[int | None, int | None]:
+def around(parts: Sequence[FileContents | None], i: int) -> tuple[int | None, int | None]:
     """The last message before file `i`, and the first one after it; None: there is none."""
     before = [part.span[1] for part in parts[:i] if part is not None and part.span is not None]
     after = [part.span[0] for part in parts[i + 1 :] if part is not None and part.span is not None]
@@ -98,7 +100,7 @@ def around(parts: Sequence[Part | None], i: int) -> tuple[int | None, int | None
 
 
 def widened(
-    part: Part, before: int | None, after: int | None
+    part: FileContents, before: int | None, after: int | None
 ) -> Iterator[tuple[Damage, Gap | None]]:
     """The damages of one file, extended by its neighbours in the run.
 

@@ -57,7 +57,7 @@ def _client(scheme: str, **arguments: Any) -> Any:
     )
 
 
-class Stream:
+class WebStream:
     """The bytes at a URL, in pieces as they arrive; each has to arrive within `PATIENCE`."""
 
     def __init__(self, system: Any, url: str) -> None:

@@ -11,14 +11,14 @@ from fretc.audit.evidence.schema import Result
 from fretc.report.across.lanes import (
     Known,
     LanePlan,
-    Tally,
+    RunTally,
     left_out,
     plan,
     with_marks,
     worst_first,
     worst_runs,
 )
-from fretc.report.across.maps import MOST_MAPS, RunResult, run_map
+from fretc.report.across.maps import MOST_MAPS, MapResult, run_map
 from fretc.report.across.uses import RunThresholds, uses
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -93,7 +93,7 @@ def _plan(assessment: Assessment, details: Details, most: int, marks: int) -> La
 
 
 def _plan_of_all(
-    active: Sequence[Assessment], tallies: Mapping[str, Tally], details: Details
+    active: Sequence[Assessment], tallies: Mapping[str, RunTally], details: Details
 ) -> LanePlan:
     """The lanes of the worst runs over all requirements; other runs are only counted."""
     chosen = {*worst_runs(tallies)}
@@ -103,15 +103,15 @@ def _plan_of_all(
     return plan(title, of, left=left, courses=_courses(details), ranked=bool(left))
 
 
-def _tallies(active: Sequence[Assessment], details: Details) -> Mapping[str, Tally]:
+def _tallies(active: Sequence[Assessment], details: Details) -> Mapping[str, RunTally]:
     """Run → its worst verdict and counts, in the order of the runs."""
-    tallies: dict[str, Tally] = {}
+    tallies: dict[str, RunTally] = {}
     for assessment in active:
         for audit in assessment.reviewed_audits:
             run, known = details.runs[run_key(audit.result)].anchor, _count(audit.result)
             before = tallies.get(run)
             tallies[run] = (
-                before.with_one(audit.mark, known) if before else Tally(audit.mark, known)
+                before.with_one(audit.mark, known) if before else RunTally(audit.mark, known)
             )
     return {
         run.anchor: tallies[run.anchor] for run in details.runs.values() if run.anchor in tallies
@@ -127,7 +127,7 @@ def _courses(details: Details) -> Mapping[str, int]:
 
 
 def _maps(
-    active: Sequence[Assessment], tallies: Mapping[str, Tally], details: Details
+    active: Sequence[Assessment], tallies: Mapping[str, RunTally], details: Details
 ) -> tuple[tuple[RunMap, ...], str]:
     """The maps of the worst runs, and a sentence about runs without a map."""
     judged = {
@@ -166,7 +166,7 @@ def _map(of: Sequence[ResultRow], first: int, details: Details) -> RunMap | None
     course = found[first].course
     if not course or course.way is None:
         return None
-    return run_map(course.way, [RunResult(summary, found.get(summary.place)) for summary in of])
+    return run_map(course.way, [MapResult(summary, found.get(summary.place)) for summary in of])
 
 
 # What the evidence says ------------------------------------------------------------------------

@@ -33,20 +33,20 @@ Known = tuple[Stretches, tuple[WordLane, ...]]
 
 
 @dataclass(frozen=True, slots=True)
-class Tally:
+class RunTally:
     """The worst verdict and the counts of a run."""
 
     mark: Mark
     count: tuple[int, int, int]
 
-    def with_one(self, mark: Mark, count: tuple[int, int, int]) -> Tally:
+    def with_one(self, mark: Mark, count: tuple[int, int, int]) -> RunTally:
         """The tally with one more result."""
         worst = min(self.mark, mark, key=lambda each: each.severity)
         a, b, c = self.count
-        return Tally(worst, (a + count[0], b + count[1], c + count[2]))
+        return RunTally(worst, (a + count[0], b + count[1], c + count[2]))
 
 
-def worst_runs(tallies: Mapping[str, Tally], most: int = MOST_LANES) -> Sequence[str]:
+def worst_runs(tallies: Mapping[str, RunTally], most: int = MOST_LANES) -> Sequence[str]:
     """The runs that get a lane: all in their order, or the worst if there are too many."""
     if len(tallies) <= most:
         return [*tallies]
@@ -111,7 +111,7 @@ class LanePlan:
 
     title: str
     chosen: tuple[_Lane, ...]
-    left: tuple[Tally | _Lane, ...]
+    left: tuple[RunTally | _Lane, ...]
     marks: int
     """Approximate maximum number of marks."""
     note: str
@@ -144,7 +144,7 @@ def plan(
     most: int = MOST_LANES,
     marks: int = _MOST_MARKS,
     note: str = "",
-    left: Sequence[Tally] = (),
+    left: Sequence[RunTally] = (),
     courses: Mapping[str, int] = NO_COURSES,
     *,
     ranked: bool = False,
@@ -175,7 +175,7 @@ def with_marks(results: Sequence[ResultRow]) -> list[ResultRow]:
     return [result for result in results if any(result.count)]
 
 
-def worst_first(lane: Tally | _Lane) -> tuple[tuple[int, bool], tuple[int, ...]]:
+def worst_first(lane: RunTally | _Lane) -> tuple[tuple[int, bool], tuple[int, ...]]:
     """Sort key of runs, worst first."""
     return lane.mark.severity, tuple(-count for count in lane.count)
 
@@ -267,7 +267,7 @@ def _worded(mark: LaneMark) -> LaneMark:
     )
 
 
-def left_out(left: Sequence[Tally | _Lane], what: str) -> str:
+def left_out(left: Sequence[RunTally | _Lane], what: str) -> str:
     """A sentence with the number of runs without a lane or map, and their worst verdict."""
     if not left:
         return ""
@@ -280,7 +280,7 @@ def left_out(left: Sequence[Tally | _Lane], what: str) -> str:
     )
 
 
-def _counted(lanes: Sequence[Tally | _Lane]) -> str:
+def _counted(lanes: Sequence[RunTally | _Lane]) -> str:
     violations, unknown, waiting = (
         sum(each) for each in zip(*(x.count for x in lanes), strict=True)
     )

@@ -8,7 +8,7 @@ from itertools import pairwise
 from math import dist
 
 from fretc.audit.evidence.run_plot_data import position_at
-from fretc.audit.evidence.schema import Result, Way
+from fretc.audit.evidence.schema import Result, RobotPath
 from fretc.report.model import phrases
 from fretc.report.model.pictures import PlaceMark, RunMap
 from fretc.report.model.results import ResultRow
@@ -20,7 +20,7 @@ _NAMED = 3
 
 
 @dataclass(frozen=True, slots=True)
-class RunResult:
+class MapResult:
     """A result of a run with a path, and its names."""
 
     of: ResultRow
@@ -28,7 +28,7 @@ class RunResult:
     """None if the result was not read, because it has no violation."""
 
 
-def run_map(way: Way, results: Sequence[RunResult]) -> RunMap | None:
+def run_map(way: RobotPath, results: Sequence[MapResult]) -> RunMap | None:
     """The map of a run; None if the path has no point.
 
     Args:
@@ -58,7 +58,7 @@ def extent(points: Iterable[tuple[float, float]]) -> float:
     return float(max(max(xs) - min(xs), max(ys) - min(ys), 1.0))
 
 
-def _marks(one: RunResult, way: Way) -> Iterable[PlaceMark]:
+def _marks(one: MapResult, way: RobotPath) -> Iterable[PlaceMark]:
     violations = one.result.violations if one.result else ()
     for number, violation in enumerate(violations, 1):
         at = position_at(way, violation.start_ns)
@@ -98,7 +98,7 @@ def _worded(mark: PlaceMark) -> PlaceMark:
 
 
 def _text(
-    lines: Sequence[Sequence[tuple[float, float]]], way: Way, violations: int, unplaced: int
+    lines: Sequence[Sequence[tuple[float, float]]], way: RobotPath, violations: int, unplaced: int
 ) -> str:
     (x, y), (u, v) = lines[0][0], lines[-1][-1]
     parts = [

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from math import inf, isfinite
 
 from fretc.audit.evidence.samples import number
-from fretc.audit.evidence.schema import Threshold
+from fretc.audit.evidence.schema import ThresholdRecord
 from fretc.report.model import phrases
 from fretc.report.model.pictures import Use, UseRow, Uses
 from fretc.report.model.results import ResultRow
@@ -26,7 +26,7 @@ _LETTERS = "abcdefgh"
 _ROUNDING = 1e-9
 
 
-RunThresholds = tuple[ResultRow, Sequence[Threshold]]
+RunThresholds = tuple[ResultRow, Sequence[ThresholdRecord]]
 """A result and its thresholds, in declared units."""
 _Key = tuple[str, str, str, float, str]
 
@@ -74,16 +74,16 @@ def uses(
     )
 
 
-def _grouped(runs: Sequence[RunThresholds]) -> dict[_Key, list[tuple[ResultRow, Threshold]]]:
+def _grouped(runs: Sequence[RunThresholds]) -> dict[_Key, list[tuple[ResultRow, ThresholdRecord]]]:
     """The thresholds of all runs, grouped by comparison."""
-    grouped: dict[_Key, list[tuple[ResultRow, Threshold]]] = {}
+    grouped: dict[_Key, list[tuple[ResultRow, ThresholdRecord]]] = {}
     for run, thresholds in runs:
         for threshold in thresholds:
             grouped.setdefault(_key(threshold), []).append((run, threshold))
     return grouped
 
 
-def _key(each: Threshold) -> _Key:
+def _key(each: ThresholdRecord) -> _Key:
     return each.proposition, each.signal, each.operator, each.bound, each.unit
 
 
@@ -97,7 +97,7 @@ class _Bound:
     """The value by which distances are divided."""
 
 
-def _bound(of: Sequence[tuple[ResultRow, Threshold]]) -> _Bound | None:
+def _bound(of: Sequence[tuple[ResultRow, ThresholdRecord]]) -> _Bound | None:
     """The bound; None if runs that satisfy the requirement are on both sides of the threshold."""
     good = [each.comparison for run, each in of if run.mark.word == kernel.SATISFIED]
     kept = {comparison for comparison in good if comparison is not None}
@@ -122,7 +122,7 @@ def _named(key: _Key | None, allowed: float | None) -> str:
 
 def _row(
     run: ResultRow,
-    thresholds: Sequence[Threshold],
+    thresholds: Sequence[ThresholdRecord],
     allowed: float | None,
     bounds: Mapping[_Key, _Bound],
     letters: Mapping[_Key | None, str],
@@ -174,7 +174,7 @@ def _of_latency(
 # Thresholds ------------------------------------------------------------------------------------
 
 
-def _of_threshold(each: Threshold, of: _Bound, letter: str, *, worded: bool) -> Use:
+def _of_threshold(each: ThresholdRecord, of: _Bound, letter: str, *, worded: bool) -> Use:
     side = of.side or (each.comparison if each.comparison != "crossed" else None)
     beyond = each.comparison != side
     worst = _worst(each, side)
@@ -186,19 +186,19 @@ def _of_threshold(each: Threshold, of: _Bound, letter: str, *, worded: bool) -> 
     return Use(letter, share, beyond, _measured(each, worst) if worded else "")
 
 
-def _measured(each: Threshold, worst: float | None) -> str:
+def _measured(each: ThresholdRecord, worst: float | None) -> str:
     bound = exact(each.bound, each.unit)
     if worst is None:
         return f"crossed {bound}"
     return f"{phrases.value(worst, each.unit, [each.bound])}, bound {bound}"
 
 
-def _reach(each: Threshold) -> float:
+def _reach(each: ThresholdRecord) -> float:
     ends = (number(each.least), number(each.greatest))
     return max((abs(end) for end in ends if end is not None and isfinite(end)), default=0.0)
 
 
-def _worst(each: Threshold, side: str | None) -> float | None:
+def _worst(each: ThresholdRecord, side: str | None) -> float | None:
     """The value nearest to the bound, or farthest beyond it; None if the side is unknown."""
     if side is None:
         return None
@@ -206,7 +206,7 @@ def _worst(each: Threshold, side: str | None) -> float | None:
     return number(each.greatest if is_upper else each.least)
 
 
-def _beyond(each: Threshold, side: str | None) -> float | None:
+def _beyond(each: ThresholdRecord, side: str | None) -> float | None:
     worst = _worst(each, side)
     return None if worst is None else abs(worst - each.bound)
 

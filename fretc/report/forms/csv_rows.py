@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from fretc.audit.evidence.verdicts import CURRENT, SUSPECT
 from fretc.report.model.marks import Mark
 from fretc.report.model.results import ResultRow
-from fretc.report.model.views import Report, RequirementView
+from fretc.report.model.views import ReportView, RequirementView
 
 HEAD = (
     "hazards", "requirement", "title", "status", "coverage", "verdict", "currency",
@@ -30,7 +30,7 @@ _NUMBER = re.compile(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 Cell = str | int | float | None
 
 
-def csv_text(report: Report) -> str:
+def csv_text(report: ReportView) -> str:
     """The CSV table with its header."""
     stream = io.StringIO()
     writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC)
@@ -43,7 +43,7 @@ def csv_text(report: Report) -> str:
 
 
 def _rows(
-    report: Report, view: RequirementView, hashes: dict[str, str]
+    report: ReportView, view: RequirementView, hashes: dict[str, str]
 ) -> Iterator[tuple[Cell, ...]]:
     hazards = dict.fromkeys(row.hazard for row in report.matrix if row.anchor == view.anchor)
     head = (

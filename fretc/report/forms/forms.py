@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from compiler.project.project import Project
-    from fretc.report.model.views import Report
+    from fretc.report.model.views import ReportView
     from fretc.report.page.html import Inset
     from fretc.report.sections.details import Details
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
+class FormInput:
     """The input of the writer of a format."""
 
-    report: Report
+    report: ReportView
     project: Project
     details: Details
     """The evidence behind its rows."""
@@ -42,7 +42,7 @@ class Form:
     name: str
     """The name of the option."""
     help: str
-    text: Callable[[Subject], str | Iterable[str]]
+    text: Callable[[FormInput], str | Iterable[str]]
     """Writes the whole text, or pieces if it may not fit into memory."""
     default: str | None = None
     """The default path of the file; None if the format is only written on request."""
@@ -50,31 +50,31 @@ class Form:
     """A diagnostic if a library for the format is not installed."""
 
 
-def _html(subject: Subject) -> str:
+def _html(subject: FormInput) -> str:
     from fretc.report.page.html import html
 
     return html(subject.report, subject.details, subject.project.formalized, subject.inset)
 
 
-def _json(subject: Subject) -> Iterable[str]:
+def _json(subject: FormInput) -> Iterable[str]:
     from fretc.report.forms.json_text import json_pieces
 
     return json_pieces(subject.report, subject.details)
 
 
-def _csv(subject: Subject) -> str:
+def _csv(subject: FormInput) -> str:
     from fretc.report.forms.csv_rows import csv_text
 
     return csv_text(subject.report)
 
 
-def _junit(subject: Subject) -> str:
+def _junit(subject: FormInput) -> str:
     from fretc.report.forms.junit import junit
 
     return junit(subject.report)
 
 
-def _sarif(subject: Subject) -> str:
+def _sarif(subject: FormInput) -> str:
     from fretc.report.forms.sarif import sarif
 
     project = subject.project
@@ -84,19 +84,19 @@ def _sarif(subject: Subject) -> str:
     )
 
 
-def _markdown(subject: Subject) -> str:
+def _markdown(subject: FormInput) -> str:
     from fretc.report.forms.markdown import markdown
 
     return markdown(subject.report, subject.details)
 
 
-def _reqif(subject: Subject) -> str:
+def _reqif(subject: FormInput) -> str:
     from fretc.report.forms.reqif import reqif
 
     return reqif(subject.report)
 
 
-def _gsn(subject: Subject) -> str:
+def _gsn(subject: FormInput) -> str:
     from fretc.report.forms.gsn import gsn
 
     return gsn(subject.report)

@@ -10,11 +10,11 @@ from typing import Any
 
 import yaml
 
-from fretc.report.model.views import Report
+from fretc.report.model.views import ReportView
 from fretc.report.sections.argument import Element, argument
 
 
-def gsn(report: Report) -> str:
+def gsn(report: ReportView) -> str:
     """The argument as YAML."""
     head = f"# The argument of the report by fretc {report.fretc}; for gsn2x.\n"
     elements = {element.id: _attributes(element) for element in argument(report)}

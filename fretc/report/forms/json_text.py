@@ -11,14 +11,14 @@ from typing import Any
 
 from compiler.files.templating import to_json
 from fretc.report.across.assembly import across
-from fretc.report.model.views import Report, RequirementView
+from fretc.report.model.views import ReportView, RequirementView
 from fretc.report.sections.details import Details
 
 _AT_ONCE = 2_000
 """Maximum number of results that are read at once, unless one requirement has more."""
 
 
-def json_pieces(report: Report, details: Details) -> Iterator[str]:
+def json_pieces(report: ReportView, details: Details) -> Iterator[str]:
     """The JSON text in pieces."""
     anchors = [view.anchor for view in report.requirements]
     report = replace(report, across=across(details, anchors, len(anchors)))

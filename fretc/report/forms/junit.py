@@ -15,11 +15,11 @@ from fretc.audit.evidence import verdicts
 from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.audit.outputs.junit import Case, Suite, xml
 from fretc.report.model.results import ResultRow
-from fretc.report.model.views import Report, RequirementView
+from fretc.report.model.views import ReportView, RequirementView
 from fretc.report.sections.proofs import is_refuted, refutations
 
 
-def junit(report: Report) -> str:
+def junit(report: ReportView) -> str:
     """The JUnit XML; a case is a failure or an error if `--strict` would exit with 1."""
     withdrawn = {withdrawal.requirement for withdrawal in report.withdrawn}
     views = [view for view in report.requirements if view.id not in withdrawn]

@@ -19,7 +19,7 @@ from fretc.report.model import phrases
 from fretc.report.model.changes import follows
 from fretc.report.model.marks import Mark
 from fretc.report.model.results import ResultRow, ResultView
-from fretc.report.model.views import Report, RequirementView, worst_first
+from fretc.report.model.views import ReportView, RequirementView, worst_first
 from fretc.report.sections.details import Details
 from fretc.report.sections.proofs import is_refuted, refutations
 from fretc.report.sections.signatures import BROKEN as DOES_NOT_VERIFY
@@ -33,12 +33,12 @@ _LONGEST = 240
 T = TypeVar("T")
 
 
-def markdown(report: Report, details: Details) -> str:
+def markdown(report: ReportView, details: Details) -> str:
     """The Markdown text."""
     return "".join(f"{line}\n" for line in _lines(report, details))
 
 
-def _lines(report: Report, details: Details) -> Iterator[str]:
+def _lines(report: ReportView, details: Details) -> Iterator[str]:
     claimed = [view for view in worst_first(report.requirements) if view.mark.word != RETIRED]
     violated = [view for view in claimed if _is_violated(view)]
     not_shown = [view for view in claimed if not _is_violated(view) and not view.mark.shows]
@@ -62,7 +62,7 @@ def _is_violated(view: RequirementView) -> bool:
     return view.mark.word in BROKEN or is_refuted(view)
 
 
-def _figures(report: Report, claimed: int, violated: int, not_shown: int) -> Iterator[str]:
+def _figures(report: ReportView, claimed: int, violated: int, not_shown: int) -> Iterator[str]:
     yield "| claimed | shown | violated | not shown | changed since the review |"
     yield "|---|---|---|---|---|"
     shown, changed = claimed - violated - not_shown, len(report.changes)
@@ -131,7 +131,7 @@ def _verdict(mark: Mark) -> str:
 # What else a reviewer must know ----------------------------------------------------------------
 
 
-def _changes(report: Report) -> list[str]:
+def _changes(report: ReportView) -> list[str]:
     """Changed verdicts first if there are new violations; then each change."""
     names = {view.id: view.name for view in report.requirements}
     followed = sorted(
@@ -154,7 +154,7 @@ def _change(name: str, texts: Sequence[str]) -> str:
     return f"**{_plain(name)}**: {_plain('; '.join(texts[:_OTHERS]))}{more}"
 
 
-def _accepted(report: Report) -> Iterator[str]:
+def _accepted(report: ReportView) -> Iterator[str]:
     """The accepted warnings with their reasons."""
     accepted = [
         f"**{remark.code}** {_plain(remark.message)} ({_plain(remark.accepted)})"
@@ -165,7 +165,7 @@ def _accepted(report: Report) -> Iterator[str]:
         yield f"Accepted warnings: {len(accepted)}: {_some(accepted)}"
 
 
-def _signatures(report: Report) -> Iterator[str]:
+def _signatures(report: ReportView) -> Iterator[str]:
     """Missing and invalid signatures; those that do not verify come first."""
     signed = sorted(
         report.signatures.signed,

@@ -40,22 +40,22 @@ from fretc.report.forms.reqif_attributes import (
     HAZARD,
     REQUIREMENT,
     WORDS,
-    Kind,
+    AttributeType,
     of_hazard,
     of_requirement,
 )
-from fretc.report.model.views import Report
+from fretc.report.model.views import ReportView
 
 _KINDS = {
-    Kind.ID: SpecObjectAttributeType.STRING,
-    Kind.TEXT: SpecObjectAttributeType.XHTML,
-    Kind.WORD: SpecObjectAttributeType.ENUMERATION,
+    AttributeType.ID: SpecObjectAttributeType.STRING,
+    AttributeType.TEXT: SpecObjectAttributeType.XHTML,
+    AttributeType.WORD: SpecObjectAttributeType.ENUMERATION,
 }
 _HAZARDS, _REQUIREMENTS, _PARENT = "type-hazard", "type-requirement", "type-parent"
 _NEVER = datetime.fromtimestamp(0, UTC)
 
 
-def reqif(report: Report) -> str:
+def reqif(report: ReportView) -> str:
     """The ReqIF XML; equal reports give equal bytes.
 
     The time of change is `SOURCE_DATE_EPOCH`, or the beginning of 1970 if that is not set, so that
@@ -65,7 +65,7 @@ def reqif(report: Report) -> str:
 
 
 class _Exchange:
-    def __init__(self, report: Report) -> None:
+    def __init__(self, report: ReportView) -> None:
         self._report = report
         self._changed = (source_date() or _NEVER).isoformat()
         self._hazards = {hazard.id: f"hazard-{_name(hazard.id)}" for hazard in report.hazards}
@@ -129,15 +129,17 @@ class _Exchange:
             is_self_closed=True,
         )
 
-    def _type(self, id: str, name: str, attributes: Mapping[str, Kind]) -> ReqIFSpecObjectType:
+    def _type(
+        self, id: str, name: str, attributes: Mapping[str, AttributeType]
+    ) -> ReqIFSpecObjectType:
         definitions = [
             SpecAttributeDefinition(
                 attribute_type=_KINDS[kind],
                 identifier=_attribute(id, attribute),
-                datatype_definition=attribute.lower() if kind is Kind.WORD else kind.value,
+                datatype_definition=attribute.lower() if kind is AttributeType.WORD else kind.value,
                 last_change=self._changed,
                 long_name=attribute,
-                multi_valued=False if kind is Kind.WORD else None,
+                multi_valued=False if kind is AttributeType.WORD else None,
             )
             for attribute, kind in attributes.items()
         ]
@@ -158,7 +160,7 @@ class _Exchange:
         self,
         id: str,
         kind_of: str,
-        attributes: Mapping[str, Kind],
+        attributes: Mapping[str, AttributeType],
         values: Mapping[str, str],
     ) -> ReqIFSpecObject:
         """A specification object; empty values are left out."""
@@ -167,7 +169,7 @@ class _Exchange:
                 _KINDS[kind], _attribute(kind_of, name), _value(kind, name, values[name])
             )
             for name, kind in attributes.items()
-            if (values[name] if kind is Kind.ID else values[name].strip())
+            if (values[name] if kind is AttributeType.ID else values[name].strip())
         ]
         return ReqIFSpecObject(id, attributes_, kind_of, last_change=self._changed)
 
@@ -230,7 +232,7 @@ class _Exchange:
         )
 
 
-def _objects(report: Report) -> Iterator[str]:
+def _objects(report: ReportView) -> Iterator[str]:
     """The identifier of each requirement; distinct even for duplicate ids."""
     counts: Counter[str] = Counter()
     for view in report.requirements:
@@ -242,10 +244,10 @@ def _objects(report: Report) -> Iterator[str]:
 # XML -------------------------------------------------------------------------------------------
 
 
-def _value(kind: Kind, name: str, text: str) -> str | list[str]:
-    if kind is Kind.WORD:
+def _value(kind: AttributeType, name: str, text: str) -> str | list[str]:
+    if kind is AttributeType.WORD:
         return [_word(name, text)]
-    return _xhtml(text) if kind is Kind.TEXT else valid(text)
+    return _xhtml(text) if kind is AttributeType.TEXT else valid(text)
 
 
 def _xhtml(text: str) -> str:

@@ -15,7 +15,7 @@ from fretish.documents import STATUSES
 _LISTED = 50
 
 
-class Kind(StrEnum):
+class AttributeType(StrEnum):
     """The data type of an attribute; the values are its name.
 
     Texts of people are XHTML, as tools expect for `ReqIF.Text`: a string has no line ends, and
@@ -27,32 +27,32 @@ class Kind(StrEnum):
     WORD = "enumeration"
 
 
-HAZARD: Mapping[str, Kind] = {
-    "ReqIF.ForeignID": Kind.ID,
-    "ReqIF.Name": Kind.TEXT,
-    "ReqIF.Text": Kind.TEXT,
-    "Severity": Kind.TEXT,
-    "Source": Kind.TEXT,
+HAZARD: Mapping[str, AttributeType] = {
+    "ReqIF.ForeignID": AttributeType.ID,
+    "ReqIF.Name": AttributeType.TEXT,
+    "ReqIF.Text": AttributeType.TEXT,
+    "Severity": AttributeType.TEXT,
+    "Source": AttributeType.TEXT,
 }
-REQUIREMENT: Mapping[str, Kind] = {
-    "ReqIF.ForeignID": Kind.ID,
-    "ReqIF.Name": Kind.TEXT,
-    "ReqIF.Text": Kind.TEXT,
-    "Rationale": Kind.TEXT,
-    "Parents": Kind.TEXT,
-    "Sentence": Kind.TEXT,
-    "Meaning": Kind.TEXT,
-    "FT": Kind.TEXT,
-    "FT finite": Kind.TEXT,
-    "PT": Kind.TEXT,
-    "Status": Kind.WORD,
-    "Coverage": Kind.ID,  # Tools would read the commas in two of its values as separators.
-    "Verdict": Kind.WORD,
-    "Currency": Kind.WORD,
-    "Reasons": Kind.TEXT,
-    "Runs": Kind.TEXT,
-    "Review": Kind.TEXT,
-    "Fingerprint SHA-256": Kind.ID,
+REQUIREMENT: Mapping[str, AttributeType] = {
+    "ReqIF.ForeignID": AttributeType.ID,
+    "ReqIF.Name": AttributeType.TEXT,
+    "ReqIF.Text": AttributeType.TEXT,
+    "Rationale": AttributeType.TEXT,
+    "Parents": AttributeType.TEXT,
+    "Sentence": AttributeType.TEXT,
+    "Meaning": AttributeType.TEXT,
+    "FT": AttributeType.TEXT,
+    "FT finite": AttributeType.TEXT,
+    "PT": AttributeType.TEXT,
+    "Status": AttributeType.WORD,
+    "Coverage": AttributeType.ID,  # Tools would read the commas in two of its values as separators.
+    "Verdict": AttributeType.WORD,
+    "Currency": AttributeType.WORD,
+    "Reasons": AttributeType.TEXT,
+    "Runs": AttributeType.TEXT,
+    "Review": AttributeType.TEXT,
+    "Fingerprint SHA-256": AttributeType.ID,
 }
 """Attributes of a requirement, in the order in which tools show them."""
 WORDS: Mapping[str, tuple[str, ...]] = {

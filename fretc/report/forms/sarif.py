@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.evidence.declared_units import bare
 from fretc.audit.outputs import sarif as results
-from fretc.report.model.views import Report
+from fretc.report.model.views import ReportView
 from fretc.report.sections.details import Details
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.documents import RequirementEntry
 
 
 def sarif(
-    report: Report,
+    report: ReportView,
     details: Details,
     requirements: Sequence[FormalizedRequirement],
     diagnostics: Sequence[Diagnostic],
@@ -35,14 +35,14 @@ def sarif(
     )
 
 
-def _single_runs(report: Report, details: Details) -> Iterator[results.OneRun]:
+def _single_runs(report: ReportView, details: Details) -> Iterator[results.OneRun]:
     """The results of single runs, with the verdicts of the report, in the order of the evidence."""
     views = {view.id: view.results for view in report.requirements}
     for row, result in details.audited(row for rows in views.values() for row in rows):
         yield results.OneRun(bare(result), row.mark.word, row.suspicions)
 
 
-def _all_runs(report: Report) -> Iterator[results.AllRuns]:
+def _all_runs(report: ReportView) -> Iterator[results.AllRuns]:
     """The estimate over all runs for each requirement with a probability."""
     for view in report.requirements:
         probability = view.probability

@@ -12,7 +12,7 @@ from fretc.audit.evidence.verdicts import (
     WAIVED,
 )
 from fretc.report.model import phrases
-from fretc.report.model.front import FigureLine, Link
+from fretc.report.model.front import FigureLine, SectionLink
 from fretc.report.model.marks import Mark
 from fretc.report.model.views import RequirementView, RunSummary
 from monitors import kernel
@@ -35,12 +35,12 @@ _ORDER = (
 )  # fmt: skip
 
 
-def link(view: RequirementView) -> Link:
+def link(view: RequirementView) -> SectionLink:
     """A link with the id of a requirement to its section."""
-    return Link(view.id, view.title, view.anchor)
+    return SectionLink(view.id, view.title, view.anchor)
 
 
-def line(text: str, names: Sequence[Link]) -> FigureLine:
+def line(text: str, names: Sequence[SectionLink]) -> FigureLine:
     """A line with the first names."""
     most = _NAMED if len(names) > _NAMED + 1 else len(names)
     return FigureLine(text, tuple(names[:most]), len(names) - most)
@@ -60,7 +60,7 @@ def causes(
     """
     damaged = [run for run in runs if not run.intact]
     bad = {run.anchor for run in damaged}
-    by_cause: dict[str, list[Link]] = {}
+    by_cause: dict[str, list[SectionLink]] = {}
     for view in unshown:
         for cause in dict.fromkeys(_of(view, bad)):
             by_cause.setdefault(cause, []).append(link(view))

@@ -20,11 +20,11 @@ from fretc.report.front.groups import run_groups
 from fretc.report.front.speech import capital, day, days, duration
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
-from fretc.report.model.changes import Change
+from fretc.report.model.changes import RequirementChanges
 from fretc.report.model.front import Figure, FigureLine, Front
-from fretc.report.model.views import Overall, RequirementView, Row, RunSummary
+from fretc.report.model.views import HazardRequirement, Overall, RequirementView, RunSummary
 from fretc.report.sections.proofs import is_proved_layer, is_refuted
-from fretc.report.sections.runs import Run
+from fretc.report.sections.runs import AuditedFile
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Severity
 
@@ -36,11 +36,11 @@ def front(
     title: str,
     overall: Overall,
     sections: Sequence[RequirementView],
-    rows: Sequence[Row],
+    rows: Sequence[HazardRequirement],
     assessed: Sequence[Assessment],
-    runs: Sequence[Run],
+    runs: Sequence[AuditedFile],
     views: Sequence[RunSummary],
-    changes: Sequence[Change],
+    changes: Sequence[RequirementChanges],
     notes: Sequence[str],
 ) -> Front:
     """The view of the front page.
@@ -80,7 +80,7 @@ def front(
 
 
 def _facts(
-    active: Sequence[RequirementView], runs: Sequence[Run], assessed: Sequence[Assessment]
+    active: Sequence[RequirementView], runs: Sequence[AuditedFile], assessed: Sequence[Assessment]
 ) -> Iterator[str]:
     yield phrases.times(len(active), "requirement")
     yield _runs(runs) if runs else "no run"
@@ -92,7 +92,7 @@ def _facts(
     yield f"fretc {__version__}"
 
 
-def _runs(runs: Sequence[Run]) -> str:
+def _runs(runs: Sequence[AuditedFile]) -> str:
     """`16 runs of 21 November 2026, 58 min`."""
     results = [run.facts for run in runs]
     dates = [each for result in results if (each := day(result.start_ns))]
@@ -105,7 +105,9 @@ def _runs(runs: Sequence[Run]) -> str:
 
 
 def _claimed(
-    sections: Sequence[RequirementView], active: Sequence[RequirementView], rows: Sequence[Row]
+    sections: Sequence[RequirementView],
+    active: Sequence[RequirementView],
+    rows: Sequence[HazardRequirement],
 ) -> Figure:
     in_force = {view.anchor for view in active}
     hazards = {row.hazard for row in rows if row.hazard and row.anchor in in_force}
@@ -159,7 +161,7 @@ def _not_shown(active: Sequence[RequirementView], runs: Sequence[RunSummary]) ->
     return Figure("not shown", len(unshown), "not shown", kind, "not-shown", lines)
 
 
-def _changed(active: Sequence[RequirementView], changes: Sequence[Change]) -> Figure:
+def _changed(active: Sequence[RequirementView], changes: Sequence[RequirementChanges]) -> Figure:
     words = "changed since the review"
     unreviewed = [link(view) for view in active if view.review.signature is None]
     if active and len(unreviewed) == len(active) and not changes:

@@ -6,13 +6,13 @@ import re
 from collections.abc import Sequence
 
 from fretc.report.model.front import ColumnRun, RunGroup
-from fretc.report.sections.runs import Run, alike, file_names, inner_paths
+from fretc.report.sections.runs import AuditedFile, alike, file_names, inner_paths
 
 _NUMBERED = re.compile(r"([^\W\d](?:\D*[^\W\d_])?)[-_ .]?\d+")
 """`safety-off-2`: a name with a number at its end; dates do not match."""
 
 
-def run_groups(runs: Sequence[Run]) -> tuple[RunGroup, ...]:
+def run_groups(runs: Sequence[AuditedFile]) -> tuple[RunGroup, ...]:
     """The runs in groups, in the order of first appearance.
 
     Args:
@@ -30,7 +30,7 @@ def run_groups(runs: Sequence[Run]) -> tuple[RunGroup, ...]:
 
 
 def _groups(
-    runs: Sequence[Run], paths: Sequence[Sequence[str]], names: Sequence[str]
+    runs: Sequence[AuditedFile], paths: Sequence[Sequence[str]], names: Sequence[str]
 ) -> Sequence[str]:
     """The group of each run; all "" if there are no groups."""
     scenarios = [_scenario(run) for run in runs]
@@ -44,7 +44,7 @@ def _groups(
     return series if len({*series}) < len(runs) == len(series) else [""] * len(runs)
 
 
-def _scenario(run: Run) -> str:
+def _scenario(run: AuditedFile) -> str:
     labels = run.facts.labels
     return labels.get("scenario", "")
 

@@ -20,7 +20,7 @@ import numpy as np
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import atom, variable
 from fretc.audit.evidence.schema import Result, Violation
-from fretc.logs.signals.measures import ExpressionError, Measure, Scope, term
+from fretc.logs.signals.measures import ExpressionError, Measure, NameValues, term
 from fretc.report.model import phrases
 from fretish import expressions as e
 from fretish import syntax as s
@@ -109,7 +109,7 @@ def causes(
     wanted = _wanted(requirement.sentence.timing)
     if wanted is None:
         return ()
-    at = _Tick(violation, result, requirement.declarations)
+    at = _ViolationTick(violation, result, requirement.declarations)
     found = _against(requirement.sentence.response, wanted=wanted, at=at)
     return tuple(dict.fromkeys(found or ()))
 
@@ -134,7 +134,7 @@ def in_words(found: Sequence[Cause]) -> str:
     return "; ".join([*texts[:_MOST], *([f"{more} more"] if more > 0 else [])])
 
 
-def _against(tree: e.Expression, *, wanted: bool, at: _Tick) -> list[Cause] | None:
+def _against(tree: e.Expression, *, wanted: bool, at: _ViolationTick) -> list[Cause] | None:
     """Why a part of the sentence does not have the wanted value; None if it may have it."""
     match tree:
         case e.Name() | e.Comparison():
@@ -145,7 +145,9 @@ def _against(tree: e.Expression, *, wanted: bool, at: _Tick) -> list[Cause] | No
             return _composed(tree, wanted, partial(_against, at=at))
 
 
-def _of_proposition(proposition: Proposition, wanted: bool, at: _Tick) -> list[Cause] | None:
+def _of_proposition(
+    proposition: Proposition, wanted: bool, at: _ViolationTick
+) -> list[Cause] | None:
     tree = proposition.expression
     if ticks_back(tree):
         return None
@@ -166,7 +168,7 @@ def _decides(aggregate: Aggregate, *, value: bool) -> bool:
     return aggregate == Aggregate.LAST or aggregate == (Aggregate.ANY if value else Aggregate.ALL)
 
 
-def _is_unknown(tree: e.Expression, at: _Tick) -> bool:
+def _is_unknown(tree: e.Expression, at: _ViolationTick) -> bool:
     """Whether every part of an expression certainly is unknown."""
     if isinstance(tree, e.Persistence | e.Truth):
         return False
@@ -179,7 +181,7 @@ def _is_unknown(tree: e.Expression, at: _Tick) -> bool:
 # An expression of the bindings -----------------------------------------------------------------
 
 
-def _texts(tree: e.Expression, *, wanted: bool, at: _Tick) -> list[str] | None:
+def _texts(tree: e.Expression, *, wanted: bool, at: _ViolationTick) -> list[str] | None:
     """Why an expression does not have the wanted truth value; None if it may have it."""
     match tree:
         case e.Name(id):
@@ -207,7 +209,7 @@ _NEEDED = {
 }
 
 
-def _of_comparison(tree: e.Comparison, wanted: bool, at: _Tick) -> list[str] | None:
+def _of_comparison(tree: e.Comparison, wanted: bool, at: _ViolationTick) -> list[str] | None:
     left, op, right = tree.left, str(tree.op), tree.right
     if not any(True for _ in e.names(left)) or isinstance(left, e.Word):
         left, right, op = right, left, e.MIRRORED.get(op, op)
@@ -251,7 +253,11 @@ def _holds(op: str, left: float, right: float) -> bool | None:
 
 
 def _measured(
-    left: e.Expression, right: e.Expression, needed: str, sides: tuple[float, float], at: _Tick
+    left: e.Expression,
+    right: e.Expression,
+    needed: str,
+    sides: tuple[float, float],
+    at: _ViolationTick,
 ) -> str:
     """The measured value and the allowed one, in the unit of the sentence."""
     name = f"`{_written(left)}`"
@@ -279,7 +285,7 @@ def _over(number: float, factor: Fraction) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class _Tick:
+class _ViolationTick:
     """The monitor's inputs at the first tick of a violation, as far as the evidence has them."""
 
     violation: Violation
@@ -347,7 +353,7 @@ class _Tick:
         numbers = {n: v for n, v in values.items() if isinstance(v, float | int)}
         if len(numbers) < len(names):
             return None
-        scope = Scope(
+        scope = NameValues(
             1,
             {name: np.array([float(value)]) for name, value in numbers.items()},
             scales={name: self.declarations.signals[name].unit.factor for name in names},

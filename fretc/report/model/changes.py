@@ -33,7 +33,7 @@ class ChangeGroup:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class RequirementChanges:
     """The changes of a requirement since its review; `verdicts` are (run, before, now)."""
 
     requirement: str
@@ -54,18 +54,20 @@ class Change:
     verdicts: tuple[tuple[str, str, str], ...]
 
 
-def follows(change: Change) -> tuple[str, ...]:
+def follows(change: RequirementChanges) -> tuple[str, ...]:
     """Changed verdicts, contradictions, and how a requirement was withdrawn."""
     own = change.lines[len(change.texts) :]
     return (*own, *change.consequences, *change.contradictions)
 
 
-def only_change(group: ChangeGroup, changes: Sequence[Change]) -> Change | None:
+def only_change(
+    group: ChangeGroup, changes: Sequence[RequirementChanges]
+) -> RequirementChanges | None:
     """The requirement, if this change affects only it and it has no other change."""
     own = [change for change in changes if change.texts == (group.change,)]
     return own[0] if len(group.requirements) == len(own) == 1 else None
 
 
-def new_violations(change: Change) -> int:
+def new_violations(change: RequirementChanges) -> int:
     """Number of runs that violate the requirement now, but did not at its review."""
     return sum(now == kernel.VIOLATED for _, _, now in change.verdicts)

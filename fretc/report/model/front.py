@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
+class SectionLink:
     """A name with a link to its section; `title` is a tooltip."""
 
     name: str
@@ -19,7 +19,7 @@ class FigureLine:
     """A line below a figure: `never triggered: R1 R3`; `more` counts the names left out."""
 
     text: str
-    names: tuple[Link, ...]
+    names: tuple[SectionLink, ...]
     more: int
 
 

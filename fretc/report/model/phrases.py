@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath, PureWindowsPath
 
 from fretc.logs.storage.log_names import path_of
-from fretc.traceability.chain import Node
+from fretc.traceability.chain import ChainItem
 from fretish.bindings import amounts
 from fretish.bindings.amounts import duration as duration
 from fretish.bindings.amounts import exact_duration as exact_duration
@@ -68,7 +68,7 @@ def place(path: str) -> str:
     return path
 
 
-def thing(node: Node) -> str:
+def thing(node: ChainItem) -> str:
     """The name of a node for a reader: `artefact r1_monitor.py`, `the clock`."""
     return "the clock" if node.kind == "clock" else f"{node.kind} {place(node.name)}"
 

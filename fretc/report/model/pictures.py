@@ -30,7 +30,7 @@ class Lane:
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class SignalPiece:
     """A signal while it is known; a point `(seconds, least, greatest)` holds up to the next one."""
 
     points: tuple[tuple[float, float, float], ...]
@@ -38,7 +38,7 @@ class Piece:
 
 
 @dataclass(frozen=True, slots=True)
-class Level:
+class ThresholdLine:
     """The bound of a threshold and its label."""
 
     value: float
@@ -53,8 +53,8 @@ class Panel:
     unit: str
     low: float
     high: float
-    pieces: tuple[Piece, ...]
-    levels: tuple[Level, ...]
+    pieces: tuple[SignalPiece, ...]
+    levels: tuple[ThresholdLine, ...]
     unknown: tuple[SpanMark, ...]
     infinite: tuple[tuple[float, float, str], ...]
     """From, to, and `+inf` or `-inf`."""
@@ -69,7 +69,7 @@ class WordLane:
 
 
 @dataclass(frozen=True, slots=True)
-class Flag:
+class NamedInstant:
     """An instant with a name: the trigger, the deadline."""
 
     kind: str
@@ -87,7 +87,7 @@ class Timeline:
     text: str
     panels: tuple[Panel, ...] = ()
     words: tuple[WordLane, ...] = ()
-    flags: tuple[Flag, ...] = ()
+    flags: tuple[NamedInstant, ...] = ()
     broken: SpanMark | None = None
     cause: str = ""
     """Cause of the violation in words; "" without a violation."""

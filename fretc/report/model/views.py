@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from fretc.report.model.changes import Change, ChangeGroup
+from fretc.report.model.changes import ChangeGroup, RequirementChanges
 from fretc.report.model.front import Front
 from fretc.report.model.marks import Mark
 from fretc.report.model.pictures import Across, Histogram
@@ -90,7 +90,7 @@ class RunView(RunSummary):
 
 
 @dataclass(frozen=True, slots=True)
-class Count:
+class MarkCount:
     """The number of requirements and of single audits with one mark."""
 
     mark: Mark
@@ -139,7 +139,7 @@ class SituationsView:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class HazardRequirement:
     """A requirement and a hazard above it; `hazard` is "" if there is none."""
 
     hazard: str
@@ -301,7 +301,7 @@ class PropositionView:
 
 
 @dataclass(frozen=True, slots=True)
-class Parent:
+class ParentView:
     """A parent of a requirement; `anchor` is "" if the parent has no section."""
 
     id: str
@@ -332,7 +332,7 @@ class RequirementView:
     formulas: tuple[Formula, ...]
     propositions: tuple[PropositionView, ...]
     clock: str
-    parents: tuple[Parent, ...]
+    parents: tuple[ParentView, ...]
     rationale: str
     params: Mapping[str, str]
     planned: tuple[Planned, ...]
@@ -389,7 +389,7 @@ class Hash:
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class ReportView:
     """The whole report."""
 
     schema: str
@@ -403,7 +403,7 @@ class Report:
     runs: tuple[RunSummary, ...]
     """Runs with errors first; `--json` has each with its topics, as a `RunView`."""
     claims: str
-    counts: tuple[Count, ...]
+    counts: tuple[MarkCount, ...]
     not_shown: tuple[NotShown, ...]
     reservations: tuple[str, ...]
     planned: tuple[Planned, ...]
@@ -413,11 +413,11 @@ class Report:
     """The file with all proofs, or ""."""
     remarks: tuple[Remark, ...]
     hazards: tuple[HazardView, ...]
-    matrix: tuple[Row, ...]
+    matrix: tuple[HazardRequirement, ...]
     orphans: Orphans
     reviewed: str
     """Sentences with the number of reviews and whether they are valid."""
-    changes: tuple[Change, ...]
+    changes: tuple[RequirementChanges, ...]
     withdrawn: tuple[Withdrawal, ...]
     """Reviewed requirements that are no longer in force."""
     waivers: tuple[WaiverView, ...]

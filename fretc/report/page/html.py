@@ -9,17 +9,17 @@ from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 from compiler.explanation.diagram import diagram
-from compiler.explanation.drawing import Drawing
+from compiler.explanation.drawing import DiagramDrawing
 from compiler.explanation.drawing import drawing as diagram_drawing
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.report.across.layout import drawn_lanes, drawn_map, drawn_uses
-from fretc.report.model.changes import Change, follows, new_violations
+from fretc.report.model.changes import RequirementChanges, follows, new_violations
 from fretc.report.model.phrases import joined, visible
 from fretc.report.model.sets import SetConflict
-from fretc.report.model.views import Report
+from fretc.report.model.views import ReportView
 from fretc.report.page.matrix import Picture, picture
-from fretc.report.page.selection import Selection, selection, slimmed
+from fretc.report.page.selection import PageContent, selection, slimmed
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
 from fretc.report.pictures.plots import drawing, histogram, probability
 from fretc.report.sections.argument import argument
@@ -44,7 +44,7 @@ class Inset:
 
 
 def html(
-    report: Report,
+    report: ReportView,
     details: Details,
     requirements: Sequence[FormalizedRequirement] = (),
     inset: Inset | None = None,
@@ -85,7 +85,7 @@ def html(
     )
 
 
-def _consequences(changes: Sequence[Change]) -> list[dict[str, Any]]:
+def _consequences(changes: Sequence[RequirementChanges]) -> list[dict[str, Any]]:
     """The changes with consequences, those with the most new violations first."""
     found = [
         {
@@ -107,7 +107,7 @@ def hash_source(text: str) -> str:
     return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"
 
 
-def _pictures(choice: Selection) -> dict[str, list[dict[str, Any]]]:
+def _pictures(choice: PageContent) -> dict[str, list[dict[str, Any]]]:
     """Anchor of a result with details → its timelines."""
     return {
         result.anchor: [
@@ -119,7 +119,7 @@ def _pictures(choice: Selection) -> dict[str, list[dict[str, Any]]]:
     }
 
 
-def _plays(report: Report) -> dict[str, list[dict[str, Any] | None]]:
+def _plays(report: ReportView) -> dict[str, list[dict[str, Any] | None]]:
     """The pictures of the runs of conflicts and of inconsistencies."""
     if report.analysis is None:
         return {}
@@ -138,7 +138,7 @@ def _play(conflict: SetConflict, id: str, *, breaks: bool) -> dict[str, Any] | N
     return play_drawing(conflict.play, id, f"A run with {names}", breaks=breaks)
 
 
-def _links(choice: Selection) -> frozenset[str]:
+def _links(choice: PageContent) -> frozenset[str]:
     """The anchors of pictures, results and runs on the page, to which pictures can link."""
     return choice.anchors | {
         f"picture-{result.anchor}.{number}"
@@ -148,7 +148,7 @@ def _links(choice: Selection) -> frozenset[str]:
     }
 
 
-def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[str, Any]:
+def _across(report: ReportView, choice: PageContent, links: frozenset[str]) -> dict[str, Any]:
     """The pictures over all runs, for all requirements and for the worst ones by their anchors."""
     everything = report.across.lanes
     return {
@@ -168,7 +168,7 @@ def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[st
     }
 
 
-def _histograms(choice: Selection, details: Details) -> dict[str, list[dict[str, Any]]]:
+def _histograms(choice: PageContent, details: Details) -> dict[str, list[dict[str, Any]]]:
     whole = [] if choice.is_compact else [*choice.by_anchor]
     drawn: dict[str, list[dict[str, Any]]] = {anchor: [] for anchor in choice.by_anchor}
     for anchor, some in details.histograms(whole):
@@ -184,7 +184,9 @@ def _rows(matrix: Picture) -> dict[str, str]:
     return {line.row.anchor: line.id for line in lines}
 
 
-def _diagrams(page: Report, requirements: Sequence[FormalizedRequirement]) -> Mapping[str, Drawing]:
+def _diagrams(
+    page: ReportView, requirements: Sequence[FormalizedRequirement]
+) -> Mapping[str, DiagramDrawing]:
     """Anchor of a requirement → diagram of its meaning, with escaped texts."""
     rules_by_key = {
         (requirement.id, requirement.fingerprint): requirement for requirement in requirements
@@ -197,7 +199,7 @@ def _diagrams(page: Report, requirements: Sequence[FormalizedRequirement]) -> Ma
     return diagrams
 
 
-def _argument(report: Report) -> dict[str, Any]:
+def _argument(report: ReportView) -> dict[str, Any]:
     """The argument as a tree and as a list, and the number of its elements."""
     whole = argument(report)
     groups = grouped(whole)
@@ -230,7 +232,7 @@ def _nested(flat: Sequence[Placement]) -> list[dict[str, Any]]:
     return items
 
 
-def _scales(page: Report) -> dict[str, dict[str, Any]]:
+def _scales(page: ReportView) -> dict[str, dict[str, Any]]:
     """Anchor of a requirement → scale of its probability."""
     return {
         view.anchor: probability(

@@ -15,7 +15,7 @@ from fretc.audit.evidence.verdicts import BROKEN
 from fretc.report.model import phrases
 from fretc.report.model.front import ColumnRun, RunGroup
 from fretc.report.model.marks import Mark
-from fretc.report.model.views import Report, RequirementView, Row
+from fretc.report.model.views import HazardRequirement, ReportView, RequirementView
 from fretc.report.sections.matrix import FACTS
 
 MOST = 10_000
@@ -29,7 +29,7 @@ _LISTED = 40
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class MatrixCell:
     """The verdict of a requirement in a run; `anchor` is the anchor of its details."""
 
     mark: Mark
@@ -37,19 +37,19 @@ class Cell:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class MatrixRow:
     """A row of the matrix; a cell is None if the run has no result for the requirement."""
 
     id: str
-    row: Row
+    row: HazardRequirement
     order: int
     words: str
     """The verdicts in the row, for the filter."""
-    cells: tuple[Cell | None, ...]
+    cells: tuple[MatrixCell | None, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Tally:
+class CellTally:
     """A cell of the small matrix: number of cells by mark, worst first."""
 
     place: str
@@ -63,20 +63,20 @@ class Tally:
 class Unsatisfied:
     """A requirement that is not satisfied in some runs, in words, for the small matrix."""
 
-    row: Row
+    row: HazardRequirement
     text: str
     is_red: bool
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class HazardRows:
     """The requirements of a hazard, worst first, or a part of them."""
 
     hazard: str
     title: str
     mark: Mark
-    lines: tuple[Line, ...]
-    tallies: tuple[Tally, ...]
+    lines: tuple[MatrixRow, ...]
+    tallies: tuple[CellTally, ...]
     unsatisfied: tuple[Unsatisfied, ...]
     left_out: str
 
@@ -86,7 +86,7 @@ class Picture:
     """The matrix for the page."""
 
     groups: tuple[RunGroup, ...]
-    blocks: tuple[Block, ...]
+    blocks: tuple[HazardRows, ...]
     is_small: bool
     """Whether the cells are of hazards and groups of runs."""
     is_titled: bool
@@ -98,20 +98,20 @@ class Picture:
     """All cells for the script; None for a full matrix."""
 
 
-def marks(view: RequirementView) -> dict[str, Cell]:
+def marks(view: RequirementView) -> dict[str, MatrixCell]:
     """Run → its cell, in the order of the runs.
 
     A run with several results has the worst mark.
     """
-    cells: dict[str, Cell] = {}
+    cells: dict[str, MatrixCell] = {}
     for result in view.results:
         known = cells.get(result.run)
         if known is None or result.mark.severity < known.mark.severity:
-            cells[result.run] = Cell(result.mark, result.anchor)
+            cells[result.run] = MatrixCell(result.mark, result.anchor)
     return cells
 
 
-def picture(report: Report, anchors: Collection[str], most: int = MOST) -> Picture:
+def picture(report: ReportView, anchors: Collection[str], most: int = MOST) -> Picture:
     """The matrix of a report.
 
     Args:
@@ -139,11 +139,11 @@ def picture(report: Report, anchors: Collection[str], most: int = MOST) -> Pictu
 
 
 def _lines(
-    rows: Sequence[Row],
+    rows: Sequence[HazardRequirement],
     columns: Sequence[ColumnRun],
-    known: Mapping[str, Mapping[str, Cell]],
+    known: Mapping[str, Mapping[str, MatrixCell]],
     anchors: Collection[str],
-) -> list[Line]:
+) -> list[MatrixRow]:
     """The rows, by hazard and worst first; the first row of a requirement has an id."""
     lines = []
     seen = set[str]()
@@ -155,28 +155,30 @@ def _lines(
             words = dict.fromkeys([row.mark.text, *(c.mark.text for c in cells if c)])
             id = "" if row.anchor in seen else f"row-{row.anchor.removeprefix('req-')}"
             seen.add(row.anchor)
-            lines.append(Line(id, row, order[row.anchor], "|".join(words), cells))
+            lines.append(MatrixRow(id, row, order[row.anchor], "|".join(words), cells))
     return lines
 
 
-def _badness(row: Row) -> tuple[tuple[int, bool], int]:
+def _badness(row: HazardRequirement) -> tuple[tuple[int, bool], int]:
     return row.mark.severity, -row.runs if row.mark.word in BROKEN else 0
 
 
-def _placed(cell: Cell | None, row: Row, anchors: Collection[str]) -> Cell | None:
+def _placed(
+    cell: MatrixCell | None, row: HazardRequirement, anchors: Collection[str]
+) -> MatrixCell | None:
     if cell is None or cell.anchor in anchors:
         return cell
-    return Cell(cell.mark, row.anchor)
+    return MatrixCell(cell.mark, row.anchor)
 
 
-def _blocks(lines: Sequence[Line]) -> Iterator[Block]:
+def _blocks(lines: Sequence[MatrixRow]) -> Iterator[HazardRows]:
     for hazard, below in groupby(lines, key=lambda line: line.row.hazard):
         those = tuple(below)
         title, worst = those[0].row.hazard_title, _worst(those)
-        yield Block(hazard, title, worst, those, (), (), "")
+        yield HazardRows(hazard, title, worst, those, (), (), "")
 
 
-def _worst(lines: Sequence[Line]) -> Mark:
+def _worst(lines: Sequence[MatrixRow]) -> Mark:
     return min((line.row.mark for line in lines), key=lambda mark: mark.severity)
 
 
@@ -196,7 +198,7 @@ def _parts(groups: Sequence[RunGroup]) -> Iterator[RunGroup]:
             yield RunGroup(name, part)
 
 
-def _small(lines: Sequence[Line], groups: Sequence[RunGroup]) -> Iterator[Block]:
+def _small(lines: Sequence[MatrixRow], groups: Sequence[RunGroup]) -> Iterator[HazardRows]:
     first = 0
     for block in _blocks(lines):
         for start in range(0, len(block.lines), _PART):
@@ -206,7 +208,7 @@ def _small(lines: Sequence[Line], groups: Sequence[RunGroup]) -> Iterator[Block]
             unsatisfied = [*_unsatisfied(part, groups)]
             kept = [each for n, each in enumerate(unsatisfied) if n < _LISTED or each.is_red]
             left = len(unsatisfied) - len(kept)
-            yield Block(
+            yield HazardRows(
                 block.hazard,
                 title,
                 _worst(part),
@@ -218,7 +220,9 @@ def _small(lines: Sequence[Line], groups: Sequence[RunGroup]) -> Iterator[Block]
             first += len(part)
 
 
-def _tallies(part: Sequence[Line], first: int, groups: Sequence[RunGroup]) -> Iterator[Tally]:
+def _tallies(
+    part: Sequence[MatrixRow], first: int, groups: Sequence[RunGroup]
+) -> Iterator[CellTally]:
     start = 0
     for group in groups:
         end = start + len(group.runs)
@@ -226,11 +230,11 @@ def _tallies(part: Sequence[Line], first: int, groups: Sequence[RunGroup]) -> It
         counts = Counter(cell.mark for cell in cells)
         ordered = sorted(counts.items(), key=lambda item: item[0].severity)
         text = ", ".join(f"{phrases.whole(count)} {mark.text}" for mark, count in ordered)
-        yield Tally(f"{first}.{first + len(part)}.{start}.{end}", tuple(ordered), text)
+        yield CellTally(f"{first}.{first + len(part)}.{start}.{end}", tuple(ordered), text)
         start = end
 
 
-def _unsatisfied(part: Sequence[Line], groups: Sequence[RunGroup]) -> Iterator[Unsatisfied]:
+def _unsatisfied(part: Sequence[MatrixRow], groups: Sequence[RunGroup]) -> Iterator[Unsatisfied]:
     """The numbers of unsatisfied runs of a requirement, by group, in words."""
     for line in part:
         open_ = Counter(cell.mark for cell in line.cells if cell and not cell.mark.shows)
@@ -244,7 +248,7 @@ def _unsatisfied(part: Sequence[Line], groups: Sequence[RunGroup]) -> Iterator[U
             yield Unsatisfied(line.row, "; ".join(texts) or line.row.mark.text, red)
 
 
-def _among(mark: Mark, line: Line, groups: Sequence[RunGroup]) -> str:
+def _among(mark: Mark, line: MatrixRow, groups: Sequence[RunGroup]) -> str:
     """` (safety-off 10, walker 2)`: the groups of violations."""
     if mark.word not in BROKEN:
         return ""
@@ -261,7 +265,7 @@ _LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
 
 def _data(
-    lines: Sequence[Line], columns: Sequence[ColumnRun], ordered: Sequence[Mark]
+    lines: Sequence[MatrixRow], columns: Sequence[ColumnRun], ordered: Sequence[Mark]
 ) -> dict[str, object]:
     """All cells, run-length encoded: a letter for each mark, and `-` for no result."""
     letters = {mark: _LETTERS[number] for number, mark in enumerate(ordered)}
@@ -287,7 +291,7 @@ def _data(
     }
 
 
-def _run_lengths(cells: Sequence[Cell | None], letters: Mapping[Mark, str]) -> str:
+def _run_lengths(cells: Sequence[MatrixCell | None], letters: Mapping[Mark, str]) -> str:
     """`a2b` for `aab`."""
     signs = ("-" if cell is None else letters[cell.mark] for cell in cells)
     lengths = ((sign, sum(1 for _ in same)) for sign, same in groupby(signs))

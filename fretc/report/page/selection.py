@@ -12,7 +12,7 @@ from itertools import islice, zip_longest
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
 from fretc.report.model.results import ResultRow, ResultView
-from fretc.report.model.views import Report, RequirementView, RunSummary, RunView
+from fretc.report.model.views import ReportView, RequirementView, RunSummary, RunView
 from fretc.report.sections.details import Details
 
 COMPACT = 1_000
@@ -62,7 +62,7 @@ class SectionRuns:
 
 
 @dataclass(frozen=True, slots=True)
-class Selection:
+class PageContent:
     """The content of the page for each requirement and for the runs."""
 
     by_anchor: Mapping[str, SectionRuns]
@@ -77,7 +77,7 @@ class Selection:
     """The anchors of all results and runs in the page."""
 
 
-def selection(report: Report, details: Details) -> Selection:
+def selection(report: ReportView, details: Details) -> PageContent:
     """The content of the page for a report; only the details of selected results are read."""
     total = sum(len(view.results) for view in report.requirements)
     compact = total > COMPACT
@@ -112,7 +112,7 @@ def selection(report: Report, details: Details) -> Selection:
         ),
         *(run.anchor for run in (*sections, *run_rows)),
     }
-    return Selection(
+    return PageContent(
         by_anchor=by_anchor,
         runs=sections,
         run_rows=run_rows,
@@ -258,7 +258,7 @@ def _left_out(
 # The report for the page -----------------------------------------------------------------------
 
 
-def slimmed(report: Report, chosen: Selection) -> Report:
+def slimmed(report: ReportView, chosen: PageContent) -> ReportView:
     """The report without the omitted content."""
     views = tuple(_slim(view, chosen) for view in report.requirements)
     not_shown = tuple(
@@ -267,7 +267,7 @@ def slimmed(report: Report, chosen: Selection) -> Report:
     return replace(report, requirements=views, not_shown=not_shown, runs=chosen.runs)
 
 
-def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
+def _slim(view: RequirementView, chosen: PageContent) -> RequirementView:
     """A section without its results, which the template takes from the selection."""
     where = "in the table of its runs"
     reasons = _few(view.reasons, where) if chosen.is_compact else view.reasons

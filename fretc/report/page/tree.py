@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
-from fretc.report.sections.argument import Element, Kind
+from fretc.report.sections.argument import Element, ElementKind
 
 MOST = 120
 """Maximum elements of a drawing; a larger argument is drawn without supported goals."""
@@ -27,11 +27,16 @@ _TALL = 880
 """Maximum height of a piece, which fits on a page of A4."""
 _ASSUMED = 4
 """Above this number, the assumptions of a goal are merged into one shape."""
-_ROUND = (Kind.SOLUTION, Kind.COUNTER_SOLUTION, Kind.ASSUMPTION, Kind.JUSTIFICATION)
-NAMES = {kind: kind.name.capitalize().replace("_", "-") for kind in Kind}
+_ROUND = (
+    ElementKind.SOLUTION,
+    ElementKind.COUNTER_SOLUTION,
+    ElementKind.ASSUMPTION,
+    ElementKind.JUSTIFICATION,
+)
+NAMES = {kind: kind.name.capitalize().replace("_", "-") for kind in ElementKind}
 
 
-class Relation(StrEnum):
+class ElementRelation(StrEnum):
     """The relation of an element to the one above it."""
 
     SUPPORT = "support"
@@ -45,7 +50,7 @@ class Placement:
 
     element: Element
     depth: int
-    relation: Relation
+    relation: ElementRelation
     is_reference: bool = False
     """Whether this is a reference to the same element further up."""
     is_challenged: bool = False
@@ -73,7 +78,7 @@ def placements(elements: Sequence[Element]) -> tuple[Placement, ...]:
     doubtful = _above(set(against), by_id)
     drawn: set[str] = set()
     tree: list[Placement] = []
-    waiting = [(element.id, 0, Relation.SUPPORT) for element in elements[:1]]
+    waiting = [(element.id, 0, ElementRelation.SUPPORT) for element in elements[:1]]
     while waiting:
         id, depth, relation = waiting.pop()
         element = by_id[id]
@@ -82,9 +87,9 @@ def placements(elements: Sequence[Element]) -> tuple[Placement, ...]:
             continue
         drawn.add(id)
         below = [
-            *((other, depth + 1, Relation.CONTEXT) for other in element.in_context_of),
-            *((other, depth + 1, Relation.CHALLENGE) for other in against.get(id, ())),
-            *((other, depth + 1, Relation.SUPPORT) for other in element.supported_by),
+            *((other, depth + 1, ElementRelation.CONTEXT) for other in element.in_context_of),
+            *((other, depth + 1, ElementRelation.CHALLENGE) for other in against.get(id, ())),
+            *((other, depth + 1, ElementRelation.SUPPORT) for other in element.supported_by),
         ]
         waiting.extend(reversed(below))
     return tuple(tree)
@@ -148,7 +153,7 @@ def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
     kept: list[Element] = []
     replaced: set[str] = set()
     for element in elements:
-        assumed = [id for id in element.in_context_of if kinds[id] is Kind.ASSUMPTION]
+        assumed = [id for id in element.in_context_of if kinds[id] is ElementKind.ASSUMPTION]
         if len(assumed) <= _ASSUMED:
             kept.append(element)
             continue
@@ -156,7 +161,9 @@ def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
         id = f"{assumed[0]}_and_others"
         around = tuple(each for each in element.in_context_of if each not in assumed)
         kept.append(replace(element, in_context_of=(*around, id)))
-        kept.append(Element(id, Kind.ASSUMPTION, f"{len(assumed)} assumptions, listed in part 6"))
+        kept.append(
+            Element(id, ElementKind.ASSUMPTION, f"{len(assumed)} assumptions, listed in part 6")
+        )
     return tuple(element for element in kept if element.id not in replaced)
 
 
@@ -183,7 +190,7 @@ def _clusters(flat: Sequence[Placement]) -> Iterator[list[Placement]]:
     height = 0.0
     for placement in flat:
         height += _height(placement)
-        if cluster and (placement.relation is Relation.SUPPORT or height > _TALL):
+        if cluster and (placement.relation is ElementRelation.SUPPORT or height > _TALL):
             yield cluster
             cluster, height = [], _height(placement)
         cluster.append(placement)
@@ -193,7 +200,7 @@ def _clusters(flat: Sequence[Placement]) -> Iterator[list[Placement]]:
 
 def _begins(each: Placement, height: float) -> bool:
     """Whether a new page begins here: no hazard begins near the end of a page."""
-    return each.depth <= 2 and each.relation is Relation.SUPPORT and height > 0.75 * _TALL
+    return each.depth <= 2 and each.relation is ElementRelation.SUPPORT and height > 0.75 * _TALL
 
 
 def _piece(group: Sequence[Placement], number: int, count: int) -> dict[str, Any]:
@@ -213,10 +220,10 @@ def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> 
     """An element laid out; `path` is its outline, `link` leads from the element above."""
     element, depth = each.element, each.depth
     x = _MARGIN + _INDENT * depth + 10
-    width = _WIDTH - x - _MARGIN - (0 if each.relation is Relation.CONTEXT else 160)
+    width = _WIDTH - x - _MARGIN - (0 if each.relation is ElementRelation.CONTEXT else 160)
     lines = _lines(each)
     height = _LINE * len(lines) + 2 * _PAD
-    inset = x + (26 if element.kind in _ROUND or element.kind is Kind.STRATEGY else 12)
+    inset = x + (26 if element.kind in _ROUND or element.kind is ElementKind.STRATEGY else 12)
     middle, right = y + height / 2, x + width
     whole = each.is_reference or not element.undeveloped
     link = arrow = ""
@@ -242,28 +249,30 @@ def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> 
     }
 
 
-def _link(relation: Relation, x: float, y: float, to_x: float, to_y: float) -> tuple[str, str]:
+def _link(
+    relation: ElementRelation, x: float, y: float, to_x: float, to_y: float
+) -> tuple[str, str]:
     """A line and its arrowhead: it points at the challenged element, or at the element below."""
-    if relation is Relation.CHALLENGE:
+    if relation is ElementRelation.CHALLENGE:
         return f"M{x:g} {y + 1:g}V{to_y:g}H{to_x:g}", f"M{x - 5:g} {y + 9:g}L{x:g} {y + 1:g}l5 8"
     return f"M{x:g} {y:g}V{to_y:g}H{to_x - 7:g}", f"M{to_x:g} {to_y:g}l-8 -4v8z"
 
 
-def _letter(kind: Kind, right: float, bottom: float) -> tuple[float, float, str] | None:
-    if kind not in (Kind.ASSUMPTION, Kind.JUSTIFICATION):
+def _letter(kind: ElementKind, right: float, bottom: float) -> tuple[float, float, str] | None:
+    if kind not in (ElementKind.ASSUMPTION, ElementKind.JUSTIFICATION):
         return None
     return right - 8, bottom + 2, kind.value
 
 
-def _outline(kind: Kind, x: float, y: float, width: float, height: float) -> str:
+def _outline(kind: ElementKind, x: float, y: float, width: float, height: float) -> str:
     """Rectangle, parallelogram, ellipse-ended or rounded, as the standard draws each kind."""
     right, bottom, half = x + width, y + height, height / 2
     match kind:
-        case Kind.GOAL:
+        case ElementKind.GOAL:
             return f"M{x:g} {y:g}H{right:g}V{bottom:g}H{x:g}Z"
-        case Kind.STRATEGY:
+        case ElementKind.STRATEGY:
             return f"M{x + 14:g} {y:g}H{right:g}L{right - 14:g} {bottom:g}H{x:g}Z"
-        case Kind.CONTEXT:
+        case ElementKind.CONTEXT:
             r = 10
             return (
                 f"M{x + r:g} {y:g}H{right - r:g}a{r} {r} 0 0 1 {r} {r}V{bottom - r:g}"
@@ -284,7 +293,7 @@ def _height(each: Placement) -> float:
 
 def _lines(each: Placement) -> list[str]:
     """The text in at most three lines; the list beside the drawing has the whole text."""
-    aside = 0 if each.relation is Relation.CONTEXT else 160
+    aside = 0 if each.relation is ElementRelation.CONTEXT else 160
     room = _WIDTH - 2 * _MARGIN - 10 - _INDENT * each.depth - 60 - aside
     letters = max(24, int(room / _LETTER))
     lines = list(_wrapped(each.text.replace("`", ""), letters))

@@ -10,7 +10,7 @@ from statistics import median
 
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.evidence.result_summaries import ResultSummary
-from fretc.audit.evidence.schema import Threshold
+from fretc.audit.evidence.schema import ThresholdRecord
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.pictures import Bin, Histogram
@@ -57,7 +57,7 @@ def exercise(assessment: Assessment) -> str:
 def histograms(
     assessment: Assessment,
     latencies: Mapping[int, Sequence[float]],
-    thresholds: Mapping[int, Sequence[Threshold]],
+    thresholds: Mapping[int, Sequence[ThresholdRecord]],
 ) -> tuple[Histogram, ...]:
     """A histogram of latencies, then one for each threshold; each needs at least two values.
 
@@ -151,9 +151,9 @@ def _late(late: Sequence[float], bound: float | None) -> str:
     return longest if len(late) == 1 else f"median {middle}, longest {longest}"
 
 
-def _margins(runs: Iterable[Sequence[Threshold]]) -> Iterator[Histogram]:
+def _margins(runs: Iterable[Sequence[ThresholdRecord]]) -> Iterator[Histogram]:
     """A histogram for each threshold with a margin in at least two runs, ordered by proposition."""
-    grouped: dict[tuple[str, str, str, float, str], list[Threshold]] = defaultdict(list)
+    grouped: dict[tuple[str, str, str, float, str], list[ThresholdRecord]] = defaultdict(list)
     for thresholds in runs:
         for threshold in thresholds:
             name = (

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from fretc.report.model.phrases import decimal, whole
-from fretc.report.model.pictures import Flag, Histogram, Panel, Piece, Timeline
+from fretc.report.model.pictures import Histogram, NamedInstant, Panel, SignalPiece, Timeline
 from fretc.report.model.results import ProbabilityView
 from fretc.report.pictures.scales import RIGHT, WIDTH, Scale, frame, words
 
@@ -62,7 +62,7 @@ def drawing(timeline: Timeline, id: str) -> dict[str, Any]:
     )
 
 
-def _flag(flag: Flag, y: int, scale: Scale) -> dict[str, Any]:
+def _flag(flag: NamedInstant, y: int, scale: Scale) -> dict[str, Any]:
     """A flag in a row of its own, so that labels never overlap."""
     x = scale(flag.at)
     label = f"{flag.kind} {decimal(flag.at)} s"
@@ -99,7 +99,7 @@ def _panel(panel: Panel, y: int, x: Scale) -> dict[str, Any]:
     }
 
 
-def _line(piece: Piece, scale: Scale, at: Scale) -> str:
+def _line(piece: SignalPiece, scale: Scale, at: Scale) -> str:
     """The path of a step line."""
     path: list[str] = []
     for seconds, least, greatest in piece.points:
@@ -110,7 +110,7 @@ def _line(piece: Piece, scale: Scale, at: Scale) -> str:
     return "".join([*path, f"H{scale(piece.end):g}"])
 
 
-def _bands(piece: Piece, scale: Scale, at: Scale) -> Iterator[str]:
+def _bands(piece: SignalPiece, scale: Scale, at: Scale) -> Iterator[str]:
     """Boxes from the least to the greatest value, where several values share a coordinate."""
     ends = [*(point[0] for point in piece.points[1:]), piece.end]
     for (seconds, least, greatest), end in zip(piece.points, ends, strict=True):

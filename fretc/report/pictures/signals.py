@@ -8,10 +8,10 @@ from math import inf, isinf
 from statistics import median
 from typing import TypeVar
 
-from fretc.audit.evidence.samples import Samples
-from fretc.audit.evidence.schema import Result, Threshold, Violation
+from fretc.audit.evidence.samples import SignalSamples
+from fretc.audit.evidence.schema import Result, ThresholdRecord, Violation
 from fretc.audit.measurements.violations import EVEN_SAMPLES
-from fretc.report.model.pictures import Level, Panel, Piece, SpanMark, WordLane
+from fretc.report.model.pictures import Panel, SignalPiece, SpanMark, ThresholdLine, WordLane
 from fretish.bindings.amounts import exact
 
 MOST_PANELS = 4
@@ -87,7 +87,7 @@ def left_out(
     return tuple(name for name in known if name not in names)
 
 
-def _bounds(signal: str, result: Result) -> tuple[Threshold, ...]:
+def _bounds(signal: str, result: Result) -> tuple[ThresholdRecord, ...]:
     """Thresholds on the signal itself, or on its absolute value, in its own unit."""
     unit = result.units.get(signal, "")
     return tuple(
@@ -97,21 +97,21 @@ def _bounds(signal: str, result: Result) -> tuple[Threshold, ...]:
     )
 
 
-def _levels(signal: str, bounds: Sequence[Threshold]) -> Iterator[Level]:
+def _levels(signal: str, bounds: Sequence[ThresholdRecord]) -> Iterator[ThresholdLine]:
     for bound in bounds:
         label = f"{bound.operator} {exact(bound.bound, bound.unit)}"
         if bound.signal == signal:
-            yield Level(bound.bound, label)
+            yield ThresholdLine(bound.bound, label)
         else:
-            yield Level(bound.bound, f"|{signal}| {label}")
-            yield Level(-bound.bound, "")
+            yield ThresholdLine(bound.bound, f"|{signal}| {label}")
+            yield ThresholdLine(-bound.bound, "")
 
 
 # What is known when ----------------------------------------------------------------------------
 
 
 def _stretches(
-    samples: Samples[T], age: float, start: float, end: float, broken: float
+    samples: SignalSamples[T], age: float, start: float, end: float, broken: float
 ) -> list[tuple[float, float, T | None]]:
     """The time of the picture as intervals with one value, or None.
 
@@ -133,7 +133,7 @@ def _stretches(
     return [(a, b, v) for a, b, v in inside if b - a > _EMPTY or (b == a and v is not None)]
 
 
-def _longest(samples: Samples[T], age: float) -> float:
+def _longest(samples: SignalSamples[T], age: float) -> float:
     """How long a sample holds; thinned samples hold longer, to bridge what thinning removed."""
     if len(samples.times) < EVEN_SAMPLES:
         return age
@@ -144,7 +144,7 @@ def _longest(samples: Samples[T], age: float) -> float:
 def _panel(
     signal: str,
     unit: str,
-    bounds: Sequence[Threshold],
+    bounds: Sequence[ThresholdRecord],
     stretches: Sequence[Known],
     start: float,
     end: float,
@@ -196,7 +196,7 @@ def _unknown(stretches: Sequence[Known]) -> Iterator[SpanMark]:
             yield SpanMark(_short(begin), _short(end), 1)
 
 
-def _pieces(stretches: Sequence[Known], width: float) -> Iterator[Piece]:
+def _pieces(stretches: Sequence[Known], width: float) -> Iterator[SignalPiece]:
     """An envelope with few points for each run of finite values."""
     run: list[tuple[float, float, float]] = []
     for begin, end, value in stretches:
@@ -210,7 +210,7 @@ def _pieces(stretches: Sequence[Known], width: float) -> Iterator[Piece]:
         yield _piece(run, width)
 
 
-def _piece(run: Sequence[tuple[float, float, float]], width: float) -> Piece:
+def _piece(run: Sequence[tuple[float, float, float]], width: float) -> SignalPiece:
     points: list[tuple[float, float, float]] = []
     for begin, end, value in run:
         if points and begin - points[-1][0] < width:
@@ -220,7 +220,7 @@ def _piece(run: Sequence[tuple[float, float, float]], width: float) -> Piece:
                 points.append((_short(at + width), value, value))
         elif not points or points[-1][1:] != (value, value):
             points.append((_short(begin), value, value))
-    return Piece(tuple(points), _short(run[-1][1]))
+    return SignalPiece(tuple(points), _short(run[-1][1]))
 
 
 def _short(seconds: float) -> float:

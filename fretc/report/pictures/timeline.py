@@ -11,7 +11,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.evidence.schema import Moment, Result, Violation
 from fretc.report.model.causes import causes, falsity, in_words
 from fretc.report.model.phrases import duration, joined, seconds, times, value
-from fretc.report.model.pictures import Flag, Lane, Panel, SpanMark, Timeline, WordLane
+from fretc.report.model.pictures import Lane, NamedInstant, Panel, SpanMark, Timeline, WordLane
 from fretc.report.pictures.first_tick import reading
 from fretc.report.pictures.signals import left_out, panels, word_lanes
 
@@ -24,7 +24,7 @@ _AROUND = 10
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class TimeInterval:
     """From `start` to `end`, in seconds."""
 
     start: float
@@ -49,7 +49,7 @@ def timelines(
         return ()
     events = _Events(result, tick)
     if not result.violations:
-        return (events.timeline("The whole run", Stretch(0.0, result.ticks * tick)),)
+        return (events.timeline("The whole run", TimeInterval(0.0, result.ticks * tick)),)
     return tuple(
         _explained(
             events.timeline(f"Violation {number}", stretch),
@@ -96,10 +96,10 @@ def _explained(
     )
 
 
-def _flags(violation: Violation) -> Iterable[Flag]:
+def _flags(violation: Violation) -> Iterable[NamedInstant]:
     for kind, moment in (("trigger", violation.trigger), ("deadline", violation.deadline)):
         if moment is not None:
-            yield Flag(kind, round(moment.seconds, 6))
+            yield NamedInstant(kind, round(moment.seconds, 6))
 
 
 def cause(
@@ -171,16 +171,16 @@ def _total(stretches: Sequence[tuple[float, float]]) -> str:
     return duration(sum(end - start for start, end in stretches))
 
 
-def _around(violation: Violation, tick: float) -> Stretch:
+def _around(violation: Violation, tick: float) -> TimeInterval:
     first = violation.trigger or violation.first
     start, end = min(first.seconds, violation.first.seconds), violation.last.seconds + tick
     margin = max(_AROUND * tick, (end - start) / 8, 1e-3)
-    stretch = Stretch(max(0.0, start - margin), max(end, start) + margin)
+    stretch = TimeInterval(max(0.0, start - margin), max(end, start) + margin)
     window = violation.window
     if window is None or not (window.samples or window.words):
         return stretch
     # The evidence has no samples outside the window, and without samples it would look unknown.
-    inside = Stretch(max(stretch.start, window.start), min(stretch.end, window.end))
+    inside = TimeInterval(max(stretch.start, window.start), min(stretch.end, window.end))
     return inside if inside.end - inside.start > tick / 2 else stretch
 
 
@@ -188,31 +188,31 @@ class _Events:
     """The events of a result as time intervals, by lane."""
 
     def __init__(self, result: Result, tick: float) -> None:
-        self.lanes: list[tuple[str, str, list[Stretch]]] = [
+        self.lanes: list[tuple[str, str, list[TimeInterval]]] = [
             (
                 "triggered",
                 "trigger",
-                [Stretch(m.seconds, m.seconds + tick) for m in result.triggers],
+                [TimeInterval(m.seconds, m.seconds + tick) for m in result.triggers],
             ),
             ("waiting", "waiting", _waiting(result)),
             ("violated", "violated", [_violated(v, tick) for v in result.violations]),
             (
                 "unknown",
                 "unknown",
-                [Stretch(first * tick, (last + 1) * tick) for first, last in result.unknown],
+                [TimeInterval(first * tick, (last + 1) * tick) for first, last in result.unknown],
             ),
             ("open at end", "open", _open(result, tick)),
         ]
 
-    def timeline(self, title: str, window: Stretch) -> Timeline:
+    def timeline(self, title: str, window: TimeInterval) -> Timeline:
         lanes = [_lane(name, kind, events, window) for name, kind, events in self.lanes]
         visible = tuple(lane for lane in lanes if lane.marks or lane.kind == "trigger")
         return Timeline(title, window.start, window.end, visible, _in_words(visible, window))
 
 
-def _waiting(result: Result) -> list[Stretch]:
+def _waiting(result: Result) -> list[TimeInterval]:
     return [
-        Stretch(trigger.seconds, trigger.seconds + latency)
+        TimeInterval(trigger.seconds, trigger.seconds + latency)
         for trigger, latency in answered(result)
         if latency > 0
     ]
@@ -227,17 +227,17 @@ def answered(result: Result) -> list[tuple[Moment, float]]:
     return list(zip(closed, result.latencies, strict=True))
 
 
-def _violated(violation: Violation, tick: float) -> Stretch:
+def _violated(violation: Violation, tick: float) -> TimeInterval:
     start = violation.first.seconds
-    return Stretch(start, max(start, violation.last.seconds) + tick)
+    return TimeInterval(start, max(start, violation.last.seconds) + tick)
 
 
-def _open(result: Result, tick: float) -> list[Stretch]:
+def _open(result: Result, tick: float) -> list[TimeInterval]:
     end = result.ticks * tick
-    return [Stretch(m.seconds, max(m.seconds + tick, end)) for m in result.open]
+    return [TimeInterval(m.seconds, max(m.seconds + tick, end)) for m in result.open]
 
 
-def _lane(name: str, kind: str, events: Sequence[Stretch], window: Stretch) -> Lane:
+def _lane(name: str, kind: str, events: Sequence[TimeInterval], window: TimeInterval) -> Lane:
     inside = sorted(
         (max(event.start, window.start), min(event.end, window.end))
         for event in events
@@ -269,7 +269,7 @@ _NAMED = 3
 """Maximum number of intervals of a lane that the text names."""
 
 
-def _in_words(lanes: Sequence[Lane], window: Stretch) -> str:
+def _in_words(lanes: Sequence[Lane], window: TimeInterval) -> str:
     what = [_lane_in_words(lane) for lane in lanes]
     return f"From {seconds(window.start)} to {seconds(window.end)}: {joined(what)}."
 

@@ -15,16 +15,16 @@ from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 
-from compiler.logic.claims import METHODS, Layer, Result
+from compiler.logic.claims import METHODS, ClaimResult, Layer
 from fretc.audit.evidence.verdicts import BROKEN
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.report.model import phrases
 from fretc.report.model.results import ResultRow
-from fretc.report.model.views import ProofView, Report, RequirementView
+from fretc.report.model.views import ProofView, ReportView, RequirementView
 from fretc.report.sections.proofs import SHARED, covering, is_proved
 
 
-class Kind(StrEnum):
+class ElementKind(StrEnum):
     """The elements of GSN; the values are the prefixes of gsn2x."""
 
     GOAL = "G"
@@ -41,7 +41,7 @@ class Element:
     """One element; ids are unique and begin with the prefix of their kind."""
 
     id: str
-    kind: Kind
+    kind: ElementKind
     text: str
     supported_by: tuple[str, ...] = ()
     in_context_of: tuple[str, ...] = ()
@@ -76,7 +76,7 @@ _NAMED = 3
 """Maximum number of violating runs that an element names; others are counted."""
 
 
-def argument(report: Report) -> tuple[Element, ...]:
+def argument(report: ReportView) -> tuple[Element, ...]:
     """All elements, the top goal first, each after those that refer to it."""
     return tuple(_Argument(report).elements())
 
@@ -84,7 +84,7 @@ def argument(report: Report) -> tuple[Element, ...]:
 class _Argument:
     """Yields the elements of a report, each once."""
 
-    def __init__(self, report: Report) -> None:
+    def __init__(self, report: ReportView) -> None:
         self._report = report
         self._views = {view.anchor: view for view in report.requirements}
         self._shared = {
@@ -105,22 +105,24 @@ class _Argument:
         assumed = [f"A_{number}" for number, _ in enumerate(report.assumptions, 1)]
         context = ("C_project", *assumed)
         text = f"{name} satisfies its safety requirements"
-        yield Element("G_top", Kind.GOAL, text, below, context, undeveloped=not below)
+        yield Element("G_top", ElementKind.GOAL, text, below, context, undeveloped=not below)
         yield Element(
-            "C_project", Kind.CONTEXT, f"Requirements in {report.project}; {report.claims}"
+            "C_project", ElementKind.CONTEXT, f"Requirements in {report.project}; {report.claims}"
         )
         for id, words in zip(assumed, report.assumptions, strict=True):
-            yield Element(id, Kind.ASSUMPTION, words)
+            yield Element(id, ElementKind.ASSUMPTION, words)
         if hazards:
             goals = tuple(_id("G_hazard", hazard) for hazard in hazards)
-            yield Element("S_hazards", Kind.STRATEGY, "Argument over each declared hazard", goals)
+            yield Element(
+                "S_hazards", ElementKind.STRATEGY, "Argument over each declared hazard", goals
+            )
             for hazard in report.hazards:
                 anchors = [row.anchor for row in report.matrix if row.hazard == hazard.id]
                 yield from self._hazard(hazard.id, hazard.title, anchors)
         if untraced:
             goals = tuple(_id("G", anchor) for anchor in dict.fromkeys(untraced))
             words = "Argument over the requirements that are not traced to a hazard"
-            yield Element("S_others", Kind.STRATEGY, words, goals)
+            yield Element("S_others", ElementKind.STRATEGY, words, goals)
             yield from self._requirements(untraced)
         for name, proofs in self._shared.items():
             if proofs:
@@ -130,7 +132,13 @@ class _Argument:
         below = tuple(_id("G", anchor) for anchor in dict.fromkeys(anchors))
         text = f"{id} is controlled: {title}"
         yield Element(
-            _id("G_hazard", id), Kind.GOAL, text, below, (), not below, name=f"{id} is controlled"
+            _id("G_hazard", id),
+            ElementKind.GOAL,
+            text,
+            below,
+            (),
+            not below,
+            name=f"{id} is controlled",
         )
         yield from self._requirements(anchors)
 
@@ -156,7 +164,7 @@ class _Argument:
         context, waived = goal.replace("G_", "C_", 1), goal.replace("G_", "J_", 1)
         yield Element(
             goal,
-            Kind.GOAL,
+            ElementKind.GOAL,
             f"{view.id} holds: {view.sentence}",
             (*evidence, *subjects),
             (*([context] if view.meaning else []), *([waived] if view.waiver else [])),
@@ -165,18 +173,20 @@ class _Argument:
             name=f"{view.id} holds",
         )
         if view.meaning:
-            yield Element(context, Kind.CONTEXT, view.meaning)
+            yield Element(context, ElementKind.CONTEXT, view.meaning)
         if view.waiver:
             note = "" if view.waiver.signature.is_good else " (unauthenticated)"
             by = f"{view.waiver.by}{note}"
             words = f"Waived until {view.waiver.until} by {by}: {view.waiver.reason}"
-            yield Element(waived, Kind.JUSTIFICATION, words)
+            yield Element(waived, ElementKind.JUSTIFICATION, words)
         for counter in counters:
-            yield Element(counter.id, Kind.COUNTER_SOLUTION, counter.text, challenges=goal)
+            yield Element(counter.id, ElementKind.COUNTER_SOLUTION, counter.text, challenges=goal)
         if is_shown:
-            yield Element(solution, Kind.SOLUTION, _support(view))
+            yield Element(solution, ElementKind.SOLUTION, _support(view))
         elif subjects:
-            yield Element(runs, Kind.GOAL, f"The audited runs show {view.id}", undeveloped=True)
+            yield Element(
+                runs, ElementKind.GOAL, f"The audited runs show {view.id}", undeveloped=True
+            )
         for layer, proofs in layers.items():
             subject = _SUBJECTS[layer].format(id=view.id)
             yield from _subject(f"{goal}_{layer}", subject, proofs)
@@ -247,7 +257,7 @@ def _violated(view: RequirementView, violating: Sequence[ResultRow], old: bool) 
 def _subject(goal: str, text: str, proofs: Sequence[ProofView]) -> Iterator[Element]:
     """The goal of one layer, with its claims that are proved, refuted, and open."""
     proved = [proof for proof in proofs if is_proved(proof)]
-    against = [proof for proof in proofs if proof.mark.word == Result.COUNTEREXAMPLE]
+    against = [proof for proof in proofs if proof.mark.word == ClaimResult.COUNTEREXAMPLE]
     left = [proof for proof in proofs if proof not in proved and proof not in against]
     solution, counter = goal.replace("G_", "Sn_", 1), goal.replace("G_", "CSn_", 1)
     assumption, rest = goal.replace("G_", "A_", 1), f"{goal}_rest"
@@ -255,7 +265,7 @@ def _subject(goal: str, text: str, proofs: Sequence[ProofView]) -> Iterator[Elem
     below = (*([solution] if proved else []), *([rest] if proved and left else []))
     yield Element(
         goal,
-        Kind.GOAL,
+        ElementKind.GOAL,
         text,
         below,
         (assumption,) if assumed else (),
@@ -263,14 +273,14 @@ def _subject(goal: str, text: str, proofs: Sequence[ProofView]) -> Iterator[Elem
         defeated=any(not proof.suspicions for proof in against),
     )
     if assumed:
-        yield Element(assumption, Kind.ASSUMPTION, "; ".join(assumed))
+        yield Element(assumption, ElementKind.ASSUMPTION, "; ".join(assumed))
     if against:
         words = _claims("Counterexample to", against)
-        yield Element(counter, Kind.COUNTER_SOLUTION, words, challenges=goal)
+        yield Element(counter, ElementKind.COUNTER_SOLUTION, words, challenges=goal)
     if proved:
-        yield Element(solution, Kind.SOLUTION, _claims("Proved:", proved))
+        yield Element(solution, ElementKind.SOLUTION, _claims("Proved:", proved))
     if rest in below:
-        yield Element(rest, Kind.GOAL, _claims("Not shown:", left), undeveloped=True)
+        yield Element(rest, ElementKind.GOAL, _claims("Not shown:", left), undeveloped=True)
 
 
 def _claims(head: str, proofs: Sequence[ProofView]) -> str:

@@ -14,17 +14,17 @@ from typing import Any
 from compiler.project.project import Project
 from fretc.audit.evidence.declared_units import in_declared_units, thresholds_in_declared_units
 from fretc.audit.evidence.result_summaries import EvidenceSource
-from fretc.audit.evidence.schema import Result, Threshold
+from fretc.audit.evidence.schema import Result, ThresholdRecord
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.pictures import Histogram
 from fretc.report.model.results import ResultRow, ResultView
 from fretc.report.model.views import RunSummary, RunView
 from fretc.report.pictures.histograms import histograms
 from fretc.report.sections.results import result_view
-from fretc.report.sections.runs import Run, RunKey, run_key, topic_views
+from fretc.report.sections.runs import AuditedFile, RunKey, run_key, topic_views
 
 Latencies = Mapping[int, Sequence[float]]
-Thresholds = Mapping[int, Sequence[Threshold]]
+Thresholds = Mapping[int, Sequence[ThresholdRecord]]
 """Index of a result → its thresholds."""
 _AT_ONCE = 10_000
 """Maximum number of results that are read at once, unless one requirement has more."""
@@ -39,7 +39,7 @@ class Details:
     project: Project
     assessments: Mapping[str, Assessment]
     """Anchor of a requirement → its assessment."""
-    runs: Mapping[RunKey, Run]
+    runs: Mapping[RunKey, AuditedFile]
 
     @property
     def logs(self) -> tuple[str, ...]:

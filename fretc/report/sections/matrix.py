@@ -12,7 +12,7 @@ from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.marks import Mark, sign_mark
-from fretc.report.model.views import HazardView, Orphans, RequirementView, Row
+from fretc.report.model.views import HazardRequirement, HazardView, Orphans, RequirementView
 from fretc.report.sections.proofs import is_proved_layer, is_refuted
 from fretish.diagnostics import status_symbols as signs
 from fretish.reading.natural_order import natural
@@ -39,7 +39,7 @@ def matrix(
     project: Project,
     assessments: Sequence[Assessment],
     sections: Sequence[RequirementView],
-) -> tuple[Row, ...]:
+) -> tuple[HazardRequirement, ...]:
     """A row for each hazard and requirement below it, then requirements without a hazard."""
     parents = {assessment.id: assessment.entry.parents for assessment in assessments}
     chains = [_chains(assessment.id, parents, project) for assessment in assessments]
@@ -79,8 +79,8 @@ def _row(
     assessment: Assessment,
     section: RequirementView,
     project: Project,
-) -> Row:
-    return Row(
+) -> HazardRequirement:
+    return HazardRequirement(
         hazard=hazard,
         hazard_title=project.hazards[hazard].title if hazard else "",
         via=phrases.joined(via),

@@ -14,7 +14,7 @@ from fretc.report.model.marks import sign_mark
 from fretc.report.model.views import Overall, Planned, RequirementView, Signatures
 from fretc.report.sections.matrix import orphans
 from fretc.report.sections.proofs import is_refuted
-from fretc.report.sections.runs import Run, trust
+from fretc.report.sections.runs import AuditedFile, trust
 from fretc.report.sections.signatures import BROKEN
 from fretc.traceability.lock import WithdrawnRequirement
 from fretish.diagnostics import status_symbols as signs
@@ -30,7 +30,7 @@ def overall(
     project: Project,
     assessments: Sequence[Assessment],
     sections: Sequence[RequirementView],
-    runs: Sequence[Run],
+    runs: Sequence[AuditedFile],
     reservations: Sequence[str],
     withdrawn: Sequence[WithdrawnRequirement],
     signatures: Signatures,

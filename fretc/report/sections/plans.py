@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from compiler.emit import TARGETS
-from compiler.logic.claims import METHODS, Result
+from compiler.logic.claims import METHODS, ClaimResult
 from fretc.audit.evidence.verdicts import UNFORMALIZED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -37,7 +37,7 @@ def _planned(assessment: Assessment, method: str, proofs: Sequence[ProofView]) -
 def _by_proofs(assessment: Assessment, method: str, proofs: Sequence[ProofView]) -> Planned:
     """A method by its proofs: the worst one decides; vacuous and unchecked ones are not results."""
     decisive = worst(proofs)
-    refuted = decisive.mark.word == Result.COUNTEREXAMPLE
+    refuted = decisive.mark.word == ClaimResult.COUNTEREXAMPLE
     has_result = refuted or is_proved(decisive)
     return Planned(assessment.id, assessment.anchor, method, has_result, in_words(proofs), refuted)
 

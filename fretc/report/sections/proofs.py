@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.claims import ALL, PROVERS, Proof, Result
+from compiler.logic.claims import ALL, PROVERS, ClaimResult, Proof
 from compiler.targets.interceptor_options import ASSUMED
 from fretc.report.model import phrases
 from fretc.report.model.marks import Mark, sign_mark
@@ -115,7 +115,7 @@ def in_words(proofs: Sequence[ProofView]) -> str:
 
 def is_proved(proof: ProofView) -> bool:
     """Whether the claim is proved and current."""
-    return proof.mark.word == Result.PROVED and not proof.mark.suspect
+    return proof.mark.word == ClaimResult.PROVED and not proof.mark.suspect
 
 
 def is_proved_layer(view: RequirementView, layer: str) -> bool:
@@ -131,4 +131,4 @@ def is_refuted(view: RequirementView) -> bool:
 
 def refutations(view: RequirementView) -> tuple[ProofView, ...]:
     """The counterexamples of a requirement, including suspect ones."""
-    return tuple(proof for proof in view.proofs if proof.mark.word == Result.COUNTEREXAMPLE)
+    return tuple(proof for proof in view.proofs if proof.mark.word == ClaimResult.COUNTEREXAMPLE)

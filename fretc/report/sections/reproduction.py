@@ -23,14 +23,14 @@ from fretc.logs.storage.log_names import STDIN, name_of, path_of, shell_word
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Inputs
 from fretc.report.model.views import Command, Hash, RequirementView
-from fretc.report.sections.runs import Run
+from fretc.report.sections.runs import AuditedFile
 
 if TYPE_CHECKING:
     pass
 
 
 def commands(
-    inputs: Inputs, sections: Sequence[RequirementView], runs: Sequence[Run]
+    inputs: Inputs, sections: Sequence[RequirementView], runs: Sequence[AuditedFile]
 ) -> tuple[Command, ...]:
     """The commands, in the order in which a reader runs them.
 
@@ -99,7 +99,7 @@ def _folder(path: str) -> str:
     return str(folder) if phrases.place(path) == path else folder.name or str(folder)
 
 
-def _check(runs: Sequence[Run]) -> str:
+def _check(runs: Sequence[AuditedFile]) -> str:
     facts = [run.facts for run in runs if run.facts.log and _is_file(run.facts.run)]
     return check_of((fact.log, phrases.place(path_of(fact.run))) for fact in facts)
 
@@ -143,7 +143,7 @@ def _of_bindings(project: Project) -> str:
 
 
 def manifest(
-    inputs: Inputs, sections: Sequence[RequirementView], runs: Sequence[Run]
+    inputs: Inputs, sections: Sequence[RequirementView], runs: Sequence[AuditedFile]
 ) -> tuple[Hash, ...]:
     """The hashes of all inputs of the report."""
     project = inputs.project

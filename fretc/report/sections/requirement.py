@@ -23,7 +23,7 @@ from fretc.report.model.marks import verdict_mark
 from fretc.report.model.results import BoundsView, ProbabilityView
 from fretc.report.model.views import (
     Formula,
-    Parent,
+    ParentView,
     PropositionView,
     Remark,
     RequirementView,
@@ -35,7 +35,7 @@ from fretc.report.sections.plans import planned
 from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.results import reasons, result_rows
 from fretc.report.sections.reviews import review, waiver
-from fretc.report.sections.runs import Run, RunKey
+from fretc.report.sections.runs import AuditedFile, RunKey
 from fretc.traceability.artefacts import Product
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.clock import Clock
@@ -48,7 +48,7 @@ from fretish.printer import sentence
 def section(
     assessment: Assessment,
     inputs: Inputs,
-    runs: Mapping[RunKey, Run],
+    runs: Mapping[RunKey, AuditedFile],
     anchors: Mapping[str, str],
     shared_products: Sequence[Product],
     joint: Collection[str],
@@ -184,15 +184,15 @@ def _clock(clock: Clock | None) -> str:
     )
 
 
-def _parent(id: str, project: Project, anchors: Mapping[str, str]) -> Parent:
+def _parent(id: str, project: Project, anchors: Mapping[str, str]) -> ParentView:
     hazard = project.hazards.get(id)
     if hazard is not None:
-        return Parent(id, hazard.title, "hazards")
+        return ParentView(id, hazard.title, "hazards")
     outside = project.parents.get(id)
     if outside is not None:
-        return Parent(id, f"{outside.title} ({phrases.place(outside.source)})", "")
+        return ParentView(id, f"{outside.title} ({phrases.place(outside.source)})", "")
     above = next((r for r in project.requirements if r.id == id), None)
-    return Parent(id, above.title if above else "not declared", anchors.get(id, ""))
+    return ParentView(id, above.title if above else "not declared", anchors.get(id, ""))
 
 
 # Situations ------------------------------------------------------------------------------------

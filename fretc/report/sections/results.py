@@ -8,7 +8,7 @@ from itertools import groupby
 from statistics import median
 
 from compiler.formalization.formalized import FormalizedRequirement
-from fretc.audit.evidence.schema import Moment, Result, Threshold, Violation
+from fretc.audit.evidence.schema import Moment, Result, ThresholdRecord, Violation
 from fretc.audit.evidence.verdicts import (
     NOT_EXERCISED,
     RETIRED,
@@ -32,7 +32,7 @@ from fretc.report.model.suspicions import since_review
 from fretc.report.pictures.first_tick import reading
 from fretc.report.pictures.histograms import seconds_allowed
 from fretc.report.pictures.timeline import answered, timelines
-from fretc.report.sections.runs import Run, RunKey, run_key
+from fretc.report.sections.runs import AuditedFile, RunKey, run_key
 from fretish import syntax
 from fretish.bindings.amounts import exact
 from fretish.bindings.amounts import margin as margin_text
@@ -48,7 +48,9 @@ _NAMED = 10
 """Maximum number of runs among the reasons why a requirement is not shown."""
 
 
-def result_rows(assessment: Assessment, runs: Mapping[RunKey, Run]) -> tuple[ResultRow, ...]:
+def result_rows(
+    assessment: Assessment, runs: Mapping[RunKey, AuditedFile]
+) -> tuple[ResultRow, ...]:
     """A row for each audit of a requirement, in the order of the runs."""
     return tuple(
         _row(audit, assessment, number, runs[run_key(audit.result)])
@@ -56,7 +58,7 @@ def result_rows(assessment: Assessment, runs: Mapping[RunKey, Run]) -> tuple[Res
     )
 
 
-def _row(audit: SingleAudit, assessment: Assessment, number: int, run: Run) -> ResultRow:
+def _row(audit: SingleAudit, assessment: Assessment, number: int, run: AuditedFile) -> ResultRow:
     result = audit.result
     return ResultRow(
         anchor=f"{assessment.anchor.replace('req-', 'result-', 1)}.{number}",
@@ -242,7 +244,7 @@ def _at(moment: Moment) -> str:
     return f"{phrases.seconds(moment.seconds)} (tick {moment.tick})"
 
 
-def _threshold(threshold: Threshold) -> ThresholdView:
+def _threshold(threshold: ThresholdRecord) -> ThresholdView:
     kept, unit, bound = threshold.comparison, threshold.unit, threshold.bound
     least, greatest = (
         phrases.value(number, unit, [bound]) for number in (threshold.least, threshold.greatest)
@@ -300,7 +302,7 @@ def _unknown(result: Result) -> Listing:
 
 
 def reasons(
-    assessment: Assessment, runs: Mapping[RunKey, Run], *, audited: bool
+    assessment: Assessment, runs: Mapping[RunKey, AuditedFile], *, audited: bool
 ) -> tuple[str, ...]:
     """Why a requirement is not shown, worst reason first; empty if it is shown or retired."""
     if assessment.is_shown or assessment.unwaived == RETIRED:
@@ -333,7 +335,7 @@ def _probability_reason(probability: ProbabilityAudit) -> str:
     return f"over all runs: {estimation.answer}, {estimation.reason}{why}"
 
 
-def _run_reason(audit: SingleAudit, runs: Mapping[RunKey, Run]) -> str:
+def _run_reason(audit: SingleAudit, runs: Mapping[RunKey, AuditedFile]) -> str:
     result = audit.result
     label = runs[run_key(result)].name
     return f"{label}: {audit.verdict}, {result.reason}{_because(audit.suspicions)}"

@@ -12,9 +12,9 @@ from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.changes import (
-    Change,
     ChangeGroup,
     ChangeText,
+    RequirementChanges,
     follows,
     new_violations,
     only_change,
@@ -22,8 +22,8 @@ from fretc.report.model.changes import (
 from fretc.report.model.marks import sign_mark
 from fretc.report.model.views import ReviewView, WaiverView
 from fretc.report.sections.signatures import of_review, of_waiver
-from fretc.traceability.changes import Change as TextChange
-from fretc.traceability.comparison import OTHER_TEXTS, Difference, difference
+from fretc.traceability.changes import ReviewChange as TextChange
+from fretc.traceability.comparison import OTHER_TEXTS, ReviewDifference, difference
 from fretc.traceability.lock import Review, WithdrawnRequirement
 from fretish.diagnostics import status_symbols as signs
 
@@ -80,7 +80,7 @@ def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
     return f"{len(standings)} of {count} reviewed{stands}.{who}"
 
 
-def changes(assessments: Sequence[Assessment], project: Project) -> tuple[Change, ...]:
+def changes(assessments: Sequence[Assessment], project: Project) -> tuple[RequirementChanges, ...]:
     """The changes of each requirement since its review; one without changes is left out."""
     reviewed = [assessment for assessment in assessments if assessment.standing.review]
     pairs = [(assessment, difference(assessment.standing, project)) for assessment in reviewed]
@@ -88,7 +88,7 @@ def changes(assessments: Sequence[Assessment], project: Project) -> tuple[Change
 
 
 def change_groups(
-    assessments: Sequence[Assessment], changes: Sequence[Change]
+    assessments: Sequence[Assessment], changes: Sequence[RequirementChanges]
 ) -> tuple[ChangeGroup, ...]:
     """The distinct changes, each with all requirements that it affects.
 
@@ -115,7 +115,9 @@ def change_groups(
     return tuple(sorted(groups, key=worst_first))
 
 
-def change_sentences(changes: Sequence[Change], groups: Sequence[ChangeGroup]) -> Iterator[str]:
+def change_sentences(
+    changes: Sequence[RequirementChanges], groups: Sequence[ChangeGroup]
+) -> Iterator[str]:
     """Sentences about changes since the review, changed verdicts, and contradictions."""
     for group in groups[:_SENTENCES]:
         named = phrases.some([id for id, _ in group.requirements])
@@ -134,10 +136,10 @@ def change_sentences(changes: Sequence[Change], groups: Sequence[ChangeGroup]) -
 _SENTENCES = 3
 
 
-def withdrawals(withdrawn: Sequence[WithdrawnRequirement]) -> tuple[Change, ...]:
+def withdrawals(withdrawn: Sequence[WithdrawnRequirement]) -> tuple[RequirementChanges, ...]:
     """A change for each removed requirement; retired ones are already among `changes`."""
     return tuple(
-        Change(
+        RequirementChanges(
             requirement=withdrawal.review.requirement,
             title=withdrawal.review.texts.title if withdrawal.review.texts else "",
             anchor="",
@@ -157,10 +159,10 @@ def withdrawals(withdrawn: Sequence[WithdrawnRequirement]) -> tuple[Change, ...]
     )
 
 
-def _change(assessment: Assessment, difference: Difference) -> Change:
+def _change(assessment: Assessment, difference: ReviewDifference) -> RequirementChanges:
     texts = tuple(map(_text, difference.changes))
     other = (OTHER_TEXTS,) if difference.has_other_texts else ()
-    return Change(
+    return RequirementChanges(
         requirement=assessment.id,
         title=assessment.entry.title,
         anchor=assessment.anchor,

@@ -18,7 +18,7 @@ from fretc.audit.evidence.result_summaries import (
     RunFacts,
     audited_s,
 )
-from fretc.audit.evidence.schema import Checked, Finding, Topic
+from fretc.audit.evidence.schema import CheckedChunks, LogFinding, TopicRecord
 from fretc.report.model import phrases
 from fretc.report.model.marks import sign_mark
 from fretc.report.model.views import Remark, RunSummary, TopicView
@@ -33,7 +33,7 @@ _UNREAD = sign_mark("not readable", signs.UNKNOWN)
 
 
 @dataclass(frozen=True)
-class Run:
+class AuditedFile:
     """One audited file."""
 
     number: int
@@ -59,13 +59,13 @@ def run_key(result: ResultSummary | RunFacts) -> RunKey:
     return result.run, result.log
 
 
-def runs(briefs: ResultSummaries | None) -> dict[RunKey, Run]:
+def runs(briefs: ResultSummaries | None) -> dict[RunKey, AuditedFile]:
     """The runs of the evidence, numbered from 1 in its order."""
-    numbered: dict[RunKey, Run] = {}
+    numbered: dict[RunKey, AuditedFile] = {}
     for facts in briefs.source.runs() if briefs else ():
         bare = changed(facts, health=replace(facts.health, topics={}))
         first = briefs.firsts.get(run_key(facts), 0) if briefs else 0
-        run = Run(len(numbered) + 1, bare, bool(facts.health.topics), first)
+        run = AuditedFile(len(numbered) + 1, bare, bool(facts.health.topics), first)
         numbered.setdefault(run_key(facts), run)
     names = run_names([run.facts.run for run in numbered.values()])
     return {
@@ -122,24 +122,24 @@ def _short(name: str) -> str:
 # Views -----------------------------------------------------------------------------------------
 
 
-def run_summaries(runs: Iterable[Run], project: Project) -> tuple[RunSummary, ...]:
+def run_summaries(runs: Iterable[AuditedFile], project: Project) -> tuple[RunSummary, ...]:
     """The view of each run, runs with errors first."""
     return tuple(_summary(run, project) for run in sorted(runs, key=_severity))
 
 
-def _severity(run: Run) -> tuple[bool, bool, bool, bool]:
+def _severity(run: AuditedFile) -> tuple[bool, bool, bool, bool]:
     """Sort key of runs: errors, damage, other findings, gaps."""
     health = run.facts.health
     return not _errors(run), health.intact, not health.findings, not health.gaps
 
 
-def _errors(run: Run) -> list[str]:
+def _errors(run: AuditedFile) -> list[str]:
     """The codes of the errors of a run, without duplicates."""
     codes = (f.code for f in run.facts.health.findings if f.severity == Severity.ERROR.value)
     return list(dict.fromkeys(codes))
 
 
-def _summary(run: Run, project: Project) -> RunSummary:
+def _summary(run: AuditedFile, project: Project) -> RunSummary:
     facts = run.facts
     health = facts.health
     return RunSummary(
@@ -173,7 +173,7 @@ def _duration(facts: RunFacts) -> str:
     return "not known" if length is None else phrases.seconds(length)
 
 
-def _checked(checked: Checked | None, *, hashed: bool) -> str:
+def _checked(checked: CheckedChunks | None, *, hashed: bool) -> str:
     """The checks of the file, and the parts that were not checked."""
     if checked is None:
         return "not known"
@@ -205,12 +205,12 @@ def _gaps(facts: RunFacts) -> tuple[str, ...]:
     )
 
 
-def _badness(finding: Finding) -> int:
+def _badness(finding: LogFinding) -> int:
     """Sort key of findings."""
     return [str(severity) for severity in Severity].index(finding.severity)
 
 
-def _finding(finding: Finding, project: Project) -> Remark:
+def _finding(finding: LogFinding, project: Project) -> Remark:
     return Remark(
         finding.code,
         finding.severity,
@@ -220,13 +220,13 @@ def _finding(finding: Finding, project: Project) -> Remark:
     )
 
 
-def _accepted(finding: Finding, project: Project) -> str:
+def _accepted(finding: LogFinding, project: Project) -> str:
     """The reason why the project accepts a finding, or ""."""
     (answered,) = project.answered([as_diagnostic(finding)])
     return answered.accepted
 
 
-def _topic(name: str, topic: Topic, project: Project) -> TopicView:
+def _topic(name: str, topic: TopicRecord, project: Project) -> TopicView:
     signals = project.declarations.signals.values() if project.declarations else ()
     return TopicView(
         name=name,
@@ -239,13 +239,13 @@ def _topic(name: str, topic: Topic, project: Project) -> TopicView:
     )
 
 
-def _longest_gap(topic: Topic) -> str:
+def _longest_gap(topic: TopicRecord) -> str:
     if topic.longest_gap_ns is None or topic.count < 2:
         return _NONE
     return phrases.duration(topic.longest_gap_ns / 1e9)
 
 
-def _rate(topic: Topic) -> str:
+def _rate(topic: TopicRecord) -> str:
     """Messages per second, between the first and the last message."""
     if topic.first_ns is None or topic.last_ns is None or topic.last_ns <= topic.first_ns:
         return _NONE
@@ -253,13 +253,13 @@ def _rate(topic: Topic) -> str:
     return phrases.value(rate, "Hz")
 
 
-def _named(run: Run) -> str:
+def _named(run: AuditedFile) -> str:
     """`Run 2`, with the codes of its errors."""
     codes = ", ".join(_errors(run))
     return f"{run.name} ({codes})" if codes else run.name
 
 
-def trust(runs: Sequence[Run], project: Project) -> str:
+def trust(runs: Sequence[AuditedFile], project: Project) -> str:
     """The condition of the runs in one sentence; "" if there is no run."""
     damaged = [_named(run) for run in runs if not run.facts.health.intact]
     wrong = [_named(run) for run in runs if run.facts.health.intact and _errors(run)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from fretc.attestation import statement as attestation
-from fretc.attestation.signatures import SignatureBook, Signing, State
+from fretc.attestation.signatures import SignatureBook, SignatureState, Signing
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, Inputs
 from fretc.report.model.marks import sign_mark
@@ -101,5 +101,5 @@ def idle_signatures(book: SignatureBook, assessments: Sequence[Assessment]) -> I
 
 
 def _idle(what: str, signing: Signing) -> Iterator[Diagnostic]:
-    if signing.state in (State.ANOTHER, State.UNKNOWN, State.CHANGED):
+    if signing.state in (SignatureState.ANOTHER, SignatureState.UNKNOWN, SignatureState.CHANGED):
         yield diagnostic("unauthenticated", what=what, signing=signing.text)

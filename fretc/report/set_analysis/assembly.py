@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from compiler.project.project import Project
 from fretc.analysis.assumptions import assumptions
-from fretc.analysis.evidence import AnalyzedSet, Document, suspicions
-from fretc.analysis.findings import Analysis, Verdict
+from fretc.analysis.evidence import AnalysisDocument, AnalyzedSet, suspicions
+from fretc.analysis.findings import Analysis, RealizabilityVerdict
 from fretc.analysis.text_output import SIGNS, columns, lanes, remarks
 from fretc.report.model import phrases
 from fretc.report.model.front import Front
@@ -27,10 +27,10 @@ from fretc.report.model.views import Overall
 from fretish.bindings.declarations import Role
 from fretish.diagnostics import status_symbols as signs
 
-_WORDS: Mapping[Verdict, str] = {
-    Verdict.REALIZABLE: REALIZABLE,
-    Verdict.UNREALIZABLE: UNREALIZABLE,
-    Verdict.NOT_CHECKED: str(Verdict.NOT_CHECKED),
+_WORDS: Mapping[RealizabilityVerdict, str] = {
+    RealizabilityVerdict.REALIZABLE: REALIZABLE,
+    RealizabilityVerdict.UNREALIZABLE: UNREALIZABLE,
+    RealizabilityVerdict.NOT_CHECKED: str(RealizabilityVerdict.NOT_CHECKED),
 }
 
 
@@ -92,7 +92,7 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
     )
 
 
-def _mark(verdict: Verdict) -> Mark:
+def _mark(verdict: RealizabilityVerdict) -> Mark:
     return sign_mark(_WORDS[verdict], SIGNS[verdict])
 
 
@@ -103,27 +103,27 @@ def _of_role(analysis: Analysis, role: Role) -> tuple[str, ...]:
 def _headline(analysis: Analysis) -> str:
     """The result in a sentence."""
     match analysis.verdict:
-        case Verdict.REALIZABLE:
+        case RealizabilityVerdict.REALIZABLE:
             held = ", while the assumptions hold" if analysis.assumptions else ""
             return f"All requirements can be satisfied together{held}."
-        case Verdict.NOT_CHECKED:
+        case RealizabilityVerdict.NOT_CHECKED:
             return (
                 f"Whether all requirements can be satisfied together is not known: {analysis.why}."
             )
-        case Verdict.UNREALIZABLE if analysis.conflicts:
+        case RealizabilityVerdict.UNREALIZABLE if analysis.conflicts:
             ids = analysis.conflicts[0].requirements
             what = "can be kept by no system" if len(ids) == 1 else "cannot be satisfied together"
             more = len(analysis.conflicts) - 1
             rest = f"; there {'is' if more == 1 else 'are'} {phrases.times(more, 'more conflict')}"
             return f"{phrases.joined(ids)} {what}{rest if more else ''}."
-        case Verdict.UNREALIZABLE:
+        case RealizabilityVerdict.UNREALIZABLE:
             return f"No system can keep all requirements: they {analysis.why}."
 
 
 class _Views:
     """Builds views of members and runs."""
 
-    def __init__(self, document: Document, anchors: Mapping[str, str]) -> None:
+    def __init__(self, document: AnalysisDocument, anchors: Mapping[str, str]) -> None:
         self._document, self._anchors = document, anchors
 
     def members(self, ids: Sequence[str]) -> tuple[SetMember, ...]:

@@ -15,10 +15,10 @@ from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.components import about, by_variables
-from fretc.testing.conformance.driving import Driver, Start
-from fretc.testing.conformance.findings import SCHEMA, Conformance, Failure, Outcome, Situated
-from fretc.testing.conformance.oracle import Oracle, Run, Tick, reason
-from fretc.testing.conformance.requirement_groups import Plan, RequirementGroup, TargetState
+from fretc.testing.conformance.driving import ProgramDriver, Start
+from fretc.testing.conformance.findings import SCHEMA, Conformance, Failure, GoalOutcome, Situated
+from fretc.testing.conformance.oracle import Oracle, ProgramTrace, Tick, reason
+from fretc.testing.conformance.requirement_groups import GoalPath, RequirementGroup, TargetState
 from fretc.testing.conformance.shrinking import Shrinking
 from fretc.testing.suite import Polarity, Repeat
 from fretish.printer import sentence as printed
@@ -70,7 +70,7 @@ class ConformanceRun:
             for group in by_variables(judged, assumptions, roles)
         ]
         self._failures: dict[str, Failure] = {}
-        self._outcomes: dict[TargetState, tuple[Outcome, str]] = {}
+        self._outcomes: dict[TargetState, tuple[GoalOutcome, str]] = {}
         self._triggered: set[str] = set()
         self._runs = self._ticks = self._longest = 0
         self._is_whole = False
@@ -86,7 +86,7 @@ class ConformanceRun:
             UnsupportedError: no value is known for an input.
             ProgramError: the program violates the protocol.
         """
-        driver = Driver(self._fields, self.oracle, start)
+        driver = ProgramDriver(self._fields, self.oracle, start)
         try:
             for field in self._fields:
                 for aim in field.aims:
@@ -98,7 +98,7 @@ class ConformanceRun:
         finally:
             self._runs, self._ticks = driver.runs, driver.ticks
 
-    def _go_for(self, aim: TargetState, field: RequirementGroup, driver: Driver) -> None:
+    def _go_for(self, aim: TargetState, field: RequirementGroup, driver: ProgramDriver) -> None:
         """Runs towards a goal: one without needless changes of inputs, and random ones."""
         try:
             plan = field.plan(aim, Budget(self._seconds))
@@ -110,16 +110,16 @@ class ConformanceRun:
                 if aim in self._outcomes or aim.requirement.id in self._failures:
                     return
         except OutOfTimeError as error:
-            self._outcomes[aim] = Outcome.NOT_SEARCHED, str(error)
+            self._outcomes[aim] = GoalOutcome.NOT_SEARCHED, str(error)
             return
         _, is_forced = plan.distance(field.transition.start) or (0, False)
         first = f"it violates {', '.join(run.broken)} before" if run and run.broken else ""
         self._outcomes[aim] = (
-            Outcome.NOT_REACHED if is_forced else Outcome.UP_TO_PROGRAM,
+            GoalOutcome.NOT_REACHED if is_forced else GoalOutcome.UP_TO_PROGRAM,
             first,
         )
 
-    def _roam(self, driver: Driver, progress: Callable[[str], None]) -> None:
+    def _roam(self, driver: ProgramDriver, progress: Callable[[str], None]) -> None:
         """Random runs while a requirement has no known violation."""
         for number in range(_ROAMING):
             if len(self._failures) < len(self._rules):
@@ -139,19 +139,19 @@ class ConformanceRun:
         self,
         aim: TargetState,
         field: RequirementGroup,
-        plan: Plan,
+        plan: GoalPath,
         choose: Random | None,
-        driver: Driver,
-    ) -> Run:
+        driver: ProgramDriver,
+    ) -> ProgramTrace:
         ticks, _ = plan.distance(field.transition.start) or (0, False)
         self._longest = max(self._longest, ticks)
         run = driver.towards(field, plan, choose, _PATIENCE * ticks + _EXTRA)
         self._look(run, aim, driver)
         if _shows(run, aim, plan.shown):
-            self._outcomes[aim] = Outcome.REACHED, ""
+            self._outcomes[aim] = GoalOutcome.REACHED, ""
         return run
 
-    def _look(self, run: Run, aim: TargetState | None, driver: Driver) -> None:
+    def _look(self, run: ProgramTrace, aim: TargetState | None, driver: ProgramDriver) -> None:
         """Record what a run shows about all requirements."""
         self._triggered |= run.triggered
         for id in run.broken:
@@ -160,10 +160,14 @@ class ConformanceRun:
         for field in self._fields:
             for other in field.aims:
                 if _shows(run, other, other.shown[0]):
-                    self._outcomes[other] = Outcome.REACHED, ""
+                    self._outcomes[other] = GoalOutcome.REACHED, ""
 
     def _failure(
-        self, aim: TargetState | None, requirement: FormalizedRequirement, run: Run, driver: Driver
+        self,
+        aim: TargetState | None,
+        requirement: FormalizedRequirement,
+        run: ProgramTrace,
+        driver: ProgramDriver,
     ) -> Failure:
         shrinking = Shrinking(requirement.id, self.oracle.inputs, driver.again, run)
         again = shrinking.again()
@@ -204,10 +208,10 @@ class ConformanceRun:
                     yield Situated(aim.requirement.id, place.key, place.words, outcome, why)
             for what, why in field.beyond.items():
                 id, _, words = what.partition(": ")
-                yield Situated(id, "all", words or "all", Outcome.NOT_SEARCHED, why)
+                yield Situated(id, "all", words or "all", GoalOutcome.NOT_SEARCHED, why)
 
 
-def _shows(run: Run, aim: TargetState, shown: Formula) -> bool:
+def _shows(run: ProgramTrace, aim: TargetState, shown: Formula) -> bool:
     """Whether a run that satisfies a requirement shows a situation of it."""
     if aim.polarity is not Polarity.KEPT or aim.requirement.id in run.broken or not run.is_known:
         return False

@@ -9,16 +9,16 @@ from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.transition import State
 from fretc.analysis.arena.variables import UnsupportedError
-from fretc.testing.conformance.oracle import Oracle, Run, Tick, Truths
-from fretc.testing.conformance.program import Program
-from fretc.testing.conformance.requirement_groups import Plan, RequirementGroup
+from fretc.testing.conformance.oracle import Oracle, ProgramTrace, Tick, Truths
+from fretc.testing.conformance.program import ProgramRun
+from fretc.testing.conformance.requirement_groups import GoalPath, RequirementGroup
 from fretc.testing.search import Letter
 
-Start = Callable[[], Program]
+Start = Callable[[], ProgramRun]
 """Function that starts the program."""
 
 
-class Driver:
+class ProgramDriver:
     """Runs of one program."""
 
     def __init__(self, fields: Sequence[RequirementGroup], oracle: Oracle, start: Start) -> None:
@@ -26,7 +26,9 @@ class Driver:
         self.runs = self.ticks = 0
         """Numbers of runs and of ticks so far."""
 
-    def towards(self, field: RequirementGroup, plan: Plan, choose: Random | None, most: int) -> Run:
+    def towards(
+        self, field: RequirementGroup, plan: GoalPath, choose: Random | None, most: int
+    ) -> ProgramTrace:
         """A run with inputs that lead to a goal.
 
         Args:
@@ -52,7 +54,7 @@ class Driver:
 
         return self._run(inputs, goes_on)
 
-    def anywhere(self, choose: Random, change: float, most: int) -> Run:
+    def anywhere(self, choose: Random, change: float, most: int) -> ProgramTrace:
         """A run with random inputs that satisfy the assumptions.
 
         Args:
@@ -69,7 +71,7 @@ class Driver:
             lambda truths: all(side.moves(truths) for side in sides),
         )
 
-    def again(self, rows: Sequence[Tick]) -> Run:
+    def again(self, rows: Sequence[Tick]) -> ProgramTrace:
         """A run with these inputs, up to the first violation.
 
         Raises:
@@ -77,7 +79,9 @@ class Driver:
         """
         return self._run(lambda tick: rows[tick] if tick < len(rows) else None, lambda truths: True)
 
-    def _run(self, inputs: Callable[[int], Tick | None], goes_on: Callable[[Truths], bool]) -> Run:
+    def _run(
+        self, inputs: Callable[[int], Tick | None], goes_on: Callable[[Truths], bool]
+    ) -> ProgramTrace:
         """A run that ends with its inputs, with the program, or with a violation."""
         oracle = self._oracle
         oracle.begin()
@@ -97,7 +101,7 @@ class Driver:
                     break
         self.runs += 1
         self.ticks += len(rows)
-        return Run(tuple(rows), tuple(found), oracle.broken(), oracle.triggered())
+        return ProgramTrace(tuple(rows), tuple(found), oracle.broken(), oracle.triggered())
 
 
 class _Side:

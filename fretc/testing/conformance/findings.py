@@ -11,7 +11,7 @@ from fretc.testing.suite import Repeat
 SCHEMA: Final = "fretc-conformance-1"
 
 
-class Outcome(StrEnum):
+class GoalOutcome(StrEnum):
     """Result of the runs towards a goal."""
 
     REACHED = "reached"
@@ -28,7 +28,7 @@ class Situated(Record, frozen=True):
     requirement: Name
     situation: Name
     words: str
-    outcome: Outcome
+    outcome: GoalOutcome
     why: Annotated[str, about("why it was not reached or not searched, if that is known")] = ""
 
 
@@ -67,7 +67,7 @@ class Conformance(Record, frozen=True):
     @property
     def is_complete(self) -> bool:
         """Whether the search is complete and every situation that can be forced was reached."""
-        left = (Outcome.NOT_REACHED, Outcome.NOT_SEARCHED)
+        left = (GoalOutcome.NOT_REACHED, GoalOutcome.NOT_SEARCHED)
         reached = all(situation.outcome not in left for situation in self.situations)
         return self.whole and reached and not self.untried and not self.not_judged
 

@@ -12,7 +12,7 @@ from compiler.targets.python.monitor import text
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.testing.exports.tables import Cell
-from fretc.testing.words import Word, letters
+from fretc.testing.words import RunColumns, letters
 from fretish.bindings.declarations import Role
 from monitors.kernel.tables import InputError
 from monitors.kernel.variables import Variable
@@ -94,7 +94,7 @@ class Oracle:
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class ProgramTrace:
     """Inputs and outputs of the program, from its start on."""
 
     rows: tuple[Tick, ...]
@@ -117,9 +117,9 @@ class Run:
         return all(truth is not None for truths in self.truths for truth in truths.values())
 
 
-def reason(requirement: FormalizedRequirement, run: Run) -> str:
+def reason(requirement: FormalizedRequirement, run: ProgramTrace) -> str:
     """Reason why the run violates the requirement, in words."""
     if not run.is_known:
         return "whatever the unknown values are"
-    word = Word((), run.columns(), len(run.rows))
+    word = RunColumns((), run.columns(), len(run.rows))
     return why(requirement, letters(requirement, word), ends=True)

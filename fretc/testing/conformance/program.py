@@ -37,7 +37,7 @@ class ProgramError(DiagnosticError):
     """The program violates the protocol."""
 
 
-class Program:
+class ProgramRun:
     """A run of the program."""
 
     def __init__(

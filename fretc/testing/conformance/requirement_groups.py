@@ -22,7 +22,7 @@ from compiler.situations.situations import Situation, situations
 from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import counter
-from fretc.analysis.arena.memory import Bit, Counter, Memory, Past
+from fretc.analysis.arena.memory import Bit, Memory, PastMemory, RequirementCounter
 from fretc.analysis.arena.product import Fixed, near_each_other
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.transition import State, Transition
@@ -74,7 +74,7 @@ class RequirementGroup:
         fresh = numbers()
         alphabet = alphabet_of(every, roles, fresh, Role.INPUT, of_moments=True)
         shared: dict[Function, Bit] = {}
-        found: dict[str, Counter] = {}
+        found: dict[str, RequirementCounter] = {}
         self.beyond: dict[str, str] = {}
         """Id of a requirement without a counter → the reason."""
         for each in near_each_other(every):
@@ -90,7 +90,7 @@ class RequirementGroup:
         before = alphabet.memory()
         self.alphabet = Fixed(alphabet)
         self._memory = Memory(fresh, shared)
-        self._past = Past(self.alphabet.atom, self._memory)
+        self._past = PastMemory(self.alphabet.atom, self._memory)
         self._counters = {
             requirement.id: found[requirement.id]
             for requirement in requirements
@@ -108,11 +108,11 @@ class RequirementGroup:
         self._outputs = bdd.cube(self.alphabet.outputs)
         self.allowed = self._allowed()
 
-    def _remembered(self) -> Counter:
+    def _remembered(self) -> RequirementCounter:
         bits = tuple(dict.fromkeys(self._memory.bits))
         steps = tuple(self._memory.steps[bit] for bit in bits)
         yes = bdd.true()
-        return Counter("", bits, steps, yes, None, (), yes, yes)
+        return RequirementCounter("", bits, steps, yes, None, (), yes, yes)
 
     def _allowed(self) -> Function:
         """Inputs that satisfy the assumptions for any program that satisfies its requirements."""
@@ -157,7 +157,7 @@ class RequirementGroup:
 
     # Plans
 
-    def plan(self, aim: TargetState, budget: Budget) -> Plan | None:
+    def plan(self, aim: TargetState, budget: Budget) -> GoalPath | None:
         """Way to a goal; None: no run that satisfies the assumptions reaches it.
 
         Raises:
@@ -166,9 +166,9 @@ class RequirementGroup:
         start = self.transition.start
         for shown, goal in zip(aim.shown, aim.goals, strict=True):
             reached = goal & self._reached(aim)
-            found = Plan(
-                Layers(partial(self._forced, reached), self._inputs, budget),
-                Layers(partial(self._helped, reached), self._inputs, budget),
+            found = GoalPath(
+                DistanceLayers(partial(self._forced, reached), self._inputs, budget),
+                DistanceLayers(partial(self._helped, reached), self._inputs, budget),
                 reached,
                 shown,
             )
@@ -236,7 +236,7 @@ class RequirementGroup:
         return {**inputs, **nearest(fits, dict.fromkeys(self.alphabet.outputs, False))}
 
 
-class Layers:
+class DistanceLayers:
     """States that are 1, 2, ... ticks away from a target; computed on demand."""
 
     def __init__(
@@ -281,12 +281,12 @@ class Layers:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class GoalPath:
     """Way to a goal."""
 
-    forced: Layers
+    forced: DistanceLayers
     """States from which the tester can force the goal."""
-    helped: Layers
+    helped: DistanceLayers
     """States from which the goal can be reached with the program's cooperation."""
     goal: Function
     """The goal over a state and a valuation."""

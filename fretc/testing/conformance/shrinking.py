@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from fretc.testing.conformance.oracle import Run, Tick
+from fretc.testing.conformance.oracle import ProgramTrace, Tick
 
 MOST = 400
 """Maximum number of runs for one failure."""
@@ -24,15 +24,15 @@ class Shrinking:
     id: str
     """Id of the violated requirement."""
     inputs: Sequence[str]
-    play: Callable[[Sequence[Tick]], Run]
-    best: Run
+    play: Callable[[Sequence[Tick]], ProgramTrace]
+    best: ProgramTrace
     tries: int = 0
 
     def again(self) -> bool:
         """Whether the same inputs give the same outputs again."""
         return self._is_shorter(self.best.rows)
 
-    def shrink(self) -> Run:
+    def shrink(self) -> ProgramTrace:
         """The shortest failing run that was found."""
         self._leave_out_ticks()
         while self.tries < MOST and any(self._is_shorter(rows) for rows in self._calmer()):

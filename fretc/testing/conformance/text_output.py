@@ -7,7 +7,7 @@ from shlex import join
 
 from fretc.analysis.reasons import listed
 from fretc.analysis.text_output import Line, drawn
-from fretc.testing.conformance.findings import Conformance, Failure, Outcome, Situated
+from fretc.testing.conformance.findings import Conformance, Failure, GoalOutcome, Situated
 from fretish.bindings.declarations import Role
 from fretish.diagnostics import status_symbols as signs
 
@@ -52,7 +52,7 @@ def _table(found: Conformance) -> Iterator[Line]:
     width = max(map(len, found.requirements), default=0)
     for id in found.requirements:
         own = [situation for situation in found.situations if situation.requirement == id]
-        counts = {kind: sum(each.outcome is kind for each in own) for kind in Outcome}
+        counts = {kind: sum(each.outcome is kind for each in own) for kind in GoalOutcome}
         shown = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
         sign = signs.BAD if id in broken else signs.GOOD if found.whole else signs.UNKNOWN
         if id in found.not_judged:
@@ -86,7 +86,7 @@ def _rest(found: Conformance) -> Iterator[Line]:
     """Situations that were not reached."""
     for id in found.requirements:
         own = [situation for situation in found.situations if situation.requirement == id]
-        free = [each.situation for each in own if each.outcome is Outcome.UP_TO_PROGRAM]
+        free = [each.situation for each in own if each.outcome is GoalOutcome.UP_TO_PROGRAM]
         if free:
             text = f"{id}: depends on the program, and did not occur: {', '.join(free)}"
             yield f"{signs.UNUSED.glyph} {text}", signs.UNUSED.colour
@@ -95,7 +95,7 @@ def _rest(found: Conformance) -> Iterator[Line]:
 
 def _missing(own: Sequence[Situated]) -> Iterator[Line]:
     for each in own:
-        if each.outcome in (Outcome.NOT_REACHED, Outcome.NOT_SEARCHED):
+        if each.outcome in (GoalOutcome.NOT_REACHED, GoalOutcome.NOT_SEARCHED):
             why = f": {each.why}" if each.why else ""
             text = f"{each.requirement}: {each.outcome}: {each.words}{why}"
             yield f"{signs.UNKNOWN.glyph} {text}", signs.UNKNOWN.colour

@@ -14,9 +14,9 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.c import monitor as c
 from compiler.targets.python import monitor as emitted
 from fretc.testing.exports import simulator
-from fretc.testing.exports.pytest_file import Language, pytest_file, targets
+from fretc.testing.exports.pytest_file import MonitorLanguage, pytest_file, targets
 from fretc.testing.exports.self_test import self_test
-from fretc.testing.exports.tables import Table, csv_text, table, ticks
+from fretc.testing.exports.tables import TestTable, csv_text, table, ticks
 from fretc.testing.suite import Suite, Test
 
 
@@ -39,7 +39,7 @@ def files(
     suite: Suite,
     requirements: Sequence[FormalizedRequirement],
     form: SuiteFormat,
-    languages: Sequence[Language] = (Language.PYTHON,),
+    languages: Sequence[MonitorLanguage] = (MonitorLanguage.PYTHON,),
 ) -> tuple[tuple[Artifact, ...], Left]:
     """All files of a suite, and the tests that are in none of them.
 
@@ -86,18 +86,21 @@ def _apart(file: Artifact, taken: Set[PurePosixPath]) -> Artifact:
 
 
 def _refusal(
-    requirement: FormalizedRequirement, test: Test, form: SuiteFormat, languages: Sequence[Language]
+    requirement: FormalizedRequirement,
+    test: Test,
+    form: SuiteFormat,
+    languages: Sequence[MonitorLanguage],
 ) -> str | None:
     """Why a test cannot be written in the format, for example without a monitor; None: it can."""
     match form:
         case SuiteFormat.FRET:
             return simulator.refusal(requirement, test)
         case SuiteFormat.C:
-            languages = (Language.C,)
+            languages = (MonitorLanguage.C,)
         case SuiteFormat.CSV:
             if f"{test.name}.csv" == INDEX:
                 return f"`{INDEX}` is the table of all tests"
-            languages = (Language.PYTHON,)
+            languages = (MonitorLanguage.PYTHON,)
         case SuiteFormat.PYTEST:
             pass
         case _:
@@ -106,7 +109,7 @@ def _refusal(
     return None if wrong is None else wrong.message
 
 
-def _csv(name: str, own: Table) -> Artifact:
+def _csv(name: str, own: TestTable) -> Artifact:
     """`<name>.csv`."""
     return Artifact(PurePosixPath(f"{name}.csv"), csv_text(own.names, ticks(own.rows)))
 
@@ -114,7 +117,7 @@ def _csv(name: str, own: Table) -> Artifact:
 _COLUMNS = ("file", "requirement", "ticks", "verdict", "finite", "decided", "first_violation")
 
 
-def _index(tests: Sequence[Test], tables: Mapping[str, Table]) -> Artifact:
+def _index(tests: Sequence[Test], tables: Mapping[str, TestTable]) -> Artifact:
     """Expected results of each table, and the option with which a monitor reads it."""
     rows = (
         (

@@ -15,12 +15,12 @@ from compiler.targets.c import monitor as c
 from compiler.targets.javascript import monitor as javascript
 from compiler.targets.python import monitor as python
 from compiler.targets.target import Target
-from fretc.testing.exports.tables import Table, table, truths
+from fretc.testing.exports.tables import TestTable, table, truths
 from fretc.testing.suite import Test
 from monitors.kernel.verdicts import Verdict
 
 
-class Language(StrEnum):
+class MonitorLanguage(StrEnum):
     """Language of a monitor; the values are those of `--language`."""
 
     PYTHON = "python"
@@ -29,14 +29,14 @@ class Language(StrEnum):
 
 
 TARGETS = {
-    Language.PYTHON: python.TARGET,
-    Language.C: c.TARGET,
-    Language.JAVASCRIPT: javascript.TARGET,
+    MonitorLanguage.PYTHON: python.TARGET,
+    MonitorLanguage.C: c.TARGET,
+    MonitorLanguage.JAVASCRIPT: javascript.TARGET,
 }
 _IMPORTS = {
-    Language.PYTHON: ("importlib.util", "sys"),
-    Language.C: ("ctypes", "functools", "os", "shlex", "subprocess", "tempfile"),
-    Language.JAVASCRIPT: ("atexit", "functools", "json", "subprocess"),
+    MonitorLanguage.PYTHON: ("importlib.util", "sys"),
+    MonitorLanguage.C: ("ctypes", "functools", "os", "shlex", "subprocess", "tempfile"),
+    MonitorLanguage.JAVASCRIPT: ("atexit", "functools", "json", "subprocess"),
 }
 
 
@@ -46,12 +46,12 @@ class _Case:
 
     own: Test
     function: str
-    table: Table
-    truths: Table | None
+    table: TestTable
+    truths: TestTable | None
     """Truth values of propositions for the monitor in C, if the other table has numbers."""
 
 
-def targets(languages: Sequence[Language]) -> list[Target]:
+def targets(languages: Sequence[MonitorLanguage]) -> list[Target]:
     """Targets that generate the monitors."""
     return [TARGETS[language] for language in languages]
 
@@ -60,7 +60,7 @@ def pytest_file(
     requirement: FormalizedRequirement,
     sentence: str,
     tests: Sequence[Test],
-    languages: Sequence[Language],
+    languages: Sequence[MonitorLanguage],
 ) -> Artifact:
     """`test_<id>.py`.
 
@@ -70,7 +70,7 @@ def pytest_file(
         tests: tests of the requirement.
         languages: languages of the monitors, without duplicates.
     """
-    (names,) = c.interface([requirement]) if Language.C in languages else (None,)
+    (names,) = c.interface([requirement]) if MonitorLanguage.C in languages else (None,)
     monitors = [each.emit([requirement])[0].path for each in targets(languages)]
     stem = monitors[0].stem
     text = render(
@@ -91,11 +91,13 @@ def pytest_file(
     return Artifact(PurePosixPath(f"test_{stem.removesuffix('_monitor')}.py"), text)
 
 
-def _case(requirement: FormalizedRequirement, test: Test, languages: Sequence[Language]) -> _Case:
+def _case(
+    requirement: FormalizedRequirement, test: Test, languages: Sequence[MonitorLanguage]
+) -> _Case:
     own = table(requirement, test)
     more = (
         truths(requirement, test)
-        if Language.C in languages and own.names != requirement.watched
+        if MonitorLanguage.C in languages and own.names != requirement.watched
         else None
     )
     return _Case(test, f"test_{test.name.replace('-', '_')}", own, more)

@@ -15,9 +15,9 @@ from typing import Any
 from compiler.files.records import replace
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import monitor as emitted
-from compiler.targets.python.comparisons import NUMBER, TRUTH, Input
+from compiler.targets.python.comparisons import NUMBER, TRUTH, StepInput
 from compiler.targets.python.input_adapter import input_adapter
-from fretc.testing.exports.tables import Table, table, truths
+from fretc.testing.exports.tables import TestTable, table, truths
 from fretc.testing.suite import LONGEST_NAME, Suite, Test
 from fretc.testing.words import outcome
 from monitors.kernel import Monitor
@@ -95,13 +95,13 @@ def _check(requirement: FormalizedRequirement, monitor: Monitor, test: Test) -> 
 
 
 def _check_table(
-    requirement: FormalizedRequirement, monitor: Monitor, test: Test, read: Table
+    requirement: FormalizedRequirement, monitor: Monitor, test: Test, read: TestTable
 ) -> None:
     variables = input_adapter((requirement,), requirement.watched)
     inputs = {} if variables is None or read.of_truths else variables.inputs
     for _, values in read.rows:
         for name, value in zip(read.names, values, strict=True):
-            if not _is_value(value, inputs.get(name, Input(TRUTH))):
+            if not _is_value(value, inputs.get(name, StepInput(TRUTH))):
                 raise WrongError(f"`{test.name}`: `{name}` cannot be {value!r}")
     expected = (test.verdict, test.finite, test.decided, test.first_violation)
     if (found := _outcome(monitor, read)) != expected:
@@ -109,7 +109,7 @@ def _check_table(
         raise WrongError(f"`{test.name}` expects another result than the monitor gives: {shown}")
 
 
-def _is_value(value: object, kind: Input) -> bool:
+def _is_value(value: object, kind: StepInput) -> bool:
     match value:
         case None:
             return True
@@ -121,14 +121,14 @@ def _is_value(value: object, kind: Input) -> bool:
             return value in kind.words
 
 
-def _outcome(monitor: Monitor, read: Table) -> tuple[object, ...]:
+def _outcome(monitor: Monitor, read: TestTable) -> tuple[object, ...]:
     """Verdict at the end of the run, FRET's verdict, and the ticks of decision and violation."""
     step = monitor.advance if read.of_truths else getattr(monitor, "take", monitor.advance)
     said = outcome(monitor, step, _ticks(read))
     return said.verdict, said.finite, said.decided, said.first_violation
 
 
-def _ticks(read: Table) -> Iterator[Mapping[str, Any]]:
+def _ticks(read: TestTable) -> Iterator[Mapping[str, Any]]:
     for count, values in read.rows:
         row = dict(zip(read.names, values, strict=True))
         for _ in range(count):

@@ -19,7 +19,7 @@ Row = tuple[int, tuple[Cell, ...]]
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class TestTable:
     """A test in the columns of a monitor."""
 
     names: tuple[str, ...]
@@ -29,19 +29,19 @@ class Table:
     numbers satisfy the test's comparisons. The monitor reads it with `--propositions`."""
 
 
-def table(requirement: FormalizedRequirement, test: Test) -> Table:
+def table(requirement: FormalizedRequirement, test: Test) -> TestTable:
     """The columns of a test that the monitor of its requirement reads."""
     variables = input_adapter((requirement,), requirement.watched)
     names = requirement.watched if variables is None else tuple(variables.inputs)
     known = all(row.values.keys() >= {*names} for row in test.rows)
     if not known:
         names = requirement.watched
-    return Table(names, columns(test, names), of_truths=not known)
+    return TestTable(names, columns(test, names), of_truths=not known)
 
 
-def truths(requirement: FormalizedRequirement, test: Test) -> Table:
+def truths(requirement: FormalizedRequirement, test: Test) -> TestTable:
     """Truth values of the propositions of a test, for the monitor in C."""
-    return Table(requirement.watched, columns(test, requirement.watched), of_truths=True)
+    return TestTable(requirement.watched, columns(test, requirement.watched), of_truths=True)
 
 
 def columns(test: Test, names: Sequence[str]) -> tuple[Row, ...]:

@@ -17,7 +17,7 @@ import numpy as np
 
 from fretc.logs.signals.enum_values import enum_index
 from fretc.logs.signals.signals import clearance, sample
-from fretc.testing.log_synthesis.messages import Content, Field, message
+from fretc.testing.log_synthesis.messages import Content, SignalField, message
 from fretish import expressions as e
 from fretish.bindings.declarations import Reading, Reduce, Signal
 from fretish.units import unit
@@ -41,7 +41,7 @@ class FieldContent:
 
 
 def choices(
-    signal: Signal, field: Field, read_by: Iterable[e.Expression], wished: Iterable[object]
+    signal: Signal, field: SignalField, read_by: Iterable[e.Expression], wished: Iterable[object]
 ) -> tuple[FieldContent, ...]:
     """Candidates for a signal in order: preferred values, constants of comparisons, no message.
 
@@ -99,7 +99,7 @@ def _sums(numbers: Sequence[Fraction]) -> Iterator[Fraction]:
         yield from (rest, rest + first, rest - first)
 
 
-def _made(signal: Signal, field: Field, nominal: Fraction | str) -> Iterator[FieldContent]:
+def _made(signal: Signal, field: SignalField, nominal: Fraction | str) -> Iterator[FieldContent]:
     for content in _contents(signal, field, nominal):
         if isinstance(content, str) or _fits(content, field):
             value = read(signal, field, content)
@@ -107,7 +107,7 @@ def _made(signal: Signal, field: Field, nominal: Fraction | str) -> Iterator[Fie
                 yield FieldContent(content, value, nominal)
 
 
-def _contents(signal: Signal, field: Field, nominal: Fraction | str) -> Iterator[Content]:
+def _contents(signal: Signal, field: SignalField, nominal: Fraction | str) -> Iterator[Content]:
     if isinstance(nominal, str):
         place = signal.values.index(nominal) if nominal in signal.values else None
         if place is not None:
@@ -122,7 +122,7 @@ def _contents(signal: Signal, field: Field, nominal: Fraction | str) -> Iterator
         yield [exact] if signal.path.each else exact
 
 
-def _fits(content: float | Sequence[float], field: Field) -> bool:
+def _fits(content: float | Sequence[float], field: SignalField) -> bool:
     if field.has_nan or field.base == "string":
         return field.has_nan
     number = content[0] if isinstance(content, Sequence) else content
@@ -151,7 +151,7 @@ def _beams(signal: Signal, gap: float) -> tuple[float, ...]:
     return (*first, float(high), float(low))
 
 
-def _unknown(signal: Signal, field: Field) -> Iterator[FieldContent]:
+def _unknown(signal: Signal, field: SignalField) -> Iterator[FieldContent]:
     """Content that makes the signal unknown: NaN, or no message."""
     if field.has_nan:
         content: Content = [math.nan] if signal.path.each else math.nan
@@ -162,7 +162,7 @@ def _unknown(signal: Signal, field: Field) -> Iterator[FieldContent]:
     yield FieldContent(None, math.nan, None)
 
 
-def read(signal: Signal, field: Field, content: Content) -> float | None:
+def read(signal: Signal, field: SignalField, content: Content) -> float | None:
     """Value that an audit reads from a message with the content; None if it finds none."""
     made = message(field.message, 0, {signal.path: content})
     value = (

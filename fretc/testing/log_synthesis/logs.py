@@ -21,7 +21,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import INCONCLUSIVE, Verdict
 from monitors.loading import load
-from simulation.recording import Topic, recording
+from simulation.recording import RecordedTopic, recording
 
 Outcome = Literal["confirmed", "cannot be recorded", "not confirmed"]
 
@@ -99,7 +99,9 @@ def _expected(test: Test, plan: Plan) -> str:
 
 
 def _write(stage: SyntheticLog, test: Test, path: Path) -> None:
-    topics = {message.topic: Topic(message.topic, message.type) for message in stage.messages}
+    topics = {
+        message.topic: RecordedTopic(message.topic, message.type) for message in stage.messages
+    }
     about = {
         "test": test.name,
         "requirement": test.requirement,

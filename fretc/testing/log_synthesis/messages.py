@@ -31,7 +31,7 @@ class NotRecordableError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class SignalField:
     """Field from which a signal is read."""
 
     message: str
@@ -46,7 +46,7 @@ class Field:
         return self.base in ("float32", "float64")
 
 
-def field(signal: Signal) -> Field:
+def field(signal: Signal) -> SignalField:
     """Field from which a signal is read.
 
     Raises:
@@ -73,7 +73,7 @@ def field(signal: Signal) -> Field:
         node = node[1][0]
     if node[0] != Nodetype.BASE:
         raise NotRecordableError(f"`{signal.path}` is neither a number nor a text")
-    return Field(name, str(node[1][0]), array)
+    return SignalField(name, str(node[1][0]), array)
 
 
 def message(name: str, time: int, contents: Mapping[Path, Content]) -> Any:

@@ -10,11 +10,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fretc.logs.signals.measures import Scope
+from fretc.logs.signals.measures import NameValues
 from fretc.logs.signals.propositions import FALSE, TRUE, UNKNOWN, truth
 from fretc.testing.log_synthesis.contents import FieldContent, choices
-from fretc.testing.log_synthesis.messages import Content, Field, NotRecordableError, field, message
-from fretc.testing.log_synthesis.ticks import Part, TickPlan, part, tick_plan
+from fretc.testing.log_synthesis.messages import (
+    Content,
+    NotRecordableError,
+    SignalField,
+    field,
+    message,
+)
+from fretc.testing.log_synthesis.ticks import TickPart, TickPlan, part, tick_plan
 from fretc.testing.suite import Test
 from fretish.bindings.declarations import Declarations, Path, Signal
 from monitors.kernel import Monitor
@@ -77,7 +83,10 @@ class _SignalSearch:
     """The signals of a requirement, and their possible contents."""
 
     def __init__(
-        self, parts: Sequence[Part], signals: Sequence[Signal], fields: Mapping[str, Field]
+        self,
+        parts: Sequence[TickPart],
+        signals: Sequence[Signal],
+        fields: Mapping[str, SignalField],
     ) -> None:
         self.signals, self.fields = signals, fields
         self._parts = parts
@@ -145,7 +154,7 @@ class _SignalSearch:
             signal.name: np.array([each.value for each in some], self._kind(signal))[place]
             for signal, some, place in zip(self.signals, every, places, strict=True)
         }
-        scope = Scope(
+        scope = NameValues(
             len(places[0]),
             numbers,
             scales={signal.name: signal.scale for signal in self.signals},

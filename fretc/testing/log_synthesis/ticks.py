@@ -24,7 +24,7 @@ _MOST = 6
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class TickPart:
     """The part of a proposition that the messages of a tick decide."""
 
     proposition: Proposition
@@ -44,7 +44,7 @@ class TickPlan:
     """Proposition → required value of its part at each tick."""
 
 
-def part(proposition: Proposition, period: int) -> Part:
+def part(proposition: Proposition, period: int) -> TickPart:
     """A proposition without its duration.
 
     Args:
@@ -62,10 +62,10 @@ def part(proposition: Proposition, period: int) -> Part:
         raise NotRecordableError(f"`for` stands within the expression of `{proposition.name}`")
     if ticks_back(expression):
         raise NotRecordableError(f"`{proposition.name}` reads numbers of the tick before")
-    return Part(proposition, expression, back)
+    return TickPart(proposition, expression, back)
 
 
-def tick_plan(test: Test, parts: Sequence[Part], monitor: Monitor) -> TickPlan:
+def tick_plan(test: Test, parts: Sequence[TickPart], monitor: Monitor) -> TickPlan:
     """The ticks of a test, with additional ticks before them if needed.
 
     Args:
@@ -91,7 +91,7 @@ def tick_plan(test: Test, parts: Sequence[Part], monitor: Monitor) -> TickPlan:
     raise NotRecordableError(_impossible(parts))
 
 
-def _impossible(parts: Sequence[Part]) -> str:
+def _impossible(parts: Sequence[TickPart]) -> str:
     names = ", ".join(f"`{one.proposition.name}`" for one in parts if one.back)
     if not names:
         return "it turns unknown values into known ones"
@@ -109,7 +109,9 @@ def _column(test: Test, name: str) -> list[Truth]:
     return column
 
 
-def _letters(parts: Sequence[Part], columns: Mapping[str, Truths]) -> Iterator[Mapping[str, Truth]]:
+def _letters(
+    parts: Sequence[TickPart], columns: Mapping[str, Truths]
+) -> Iterator[Mapping[str, Truth]]:
     """Valuations that may precede the test; propositions with durations are left open."""
     free = [one.proposition.name for one in parts if not one.back]
     first = {name: columns[name][0] for name in free}
@@ -118,7 +120,7 @@ def _letters(parts: Sequence[Part], columns: Mapping[str, Truths]) -> Iterator[M
         yield dict(zip(free, values, strict=True))
 
 
-def _lasting(before: Sequence[Truth], column: Truths, one: Part) -> list[Truth]:
+def _lasting(before: Sequence[Truth], column: Truths, one: TickPart) -> list[Truth]:
     """Values of a part that give its duration the column's values."""
     if not one.back:
         return [*before, *column]
@@ -133,7 +135,7 @@ def _lasting(before: Sequence[Truth], column: Truths, one: Part) -> list[Truth]:
     return wanted
 
 
-def _seen(wanted: Truths, one: Part) -> list[Truth]:
+def _seen(wanted: Truths, one: TickPart) -> list[Truth]:
     """Values of a proposition that the audit reads for these values of its part."""
     seen: list[Truth] = []
     for tick in range(len(wanted)):

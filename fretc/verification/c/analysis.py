@@ -15,14 +15,14 @@ from fretc.verification.compiled.plan import ParsedSource, SourceText
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.verifying import RequirementOutcome
 from fretc.verification.engines import frama_c
-from fretc.verification.engines.sandbox import Limits
+from fretc.verification.engines.sandbox import CallLimits
 
 
 def analysed(
     requirements: Sequence[FormalizedRequirement],
     given: SourceText,
     program: str,
-    limits: Limits,
+    limits: CallLimits,
     others: Sequence[FormalizedRequirement] = (),
 ) -> Iterator[RequirementOutcome]:
     """Frama-C's outcome for a monitor; it is the same for each of its requirements.
@@ -55,7 +55,7 @@ def analysed(
         )
 
 
-def prepared(given: SourceText, found: ParsedSource) -> frama_c.Run:
+def prepared(given: SourceText, found: ParsedSource) -> frama_c.EvaInput:
     """The texts to analyse, without comments, which could be annotations.
 
     Args:
@@ -63,7 +63,7 @@ def prepared(given: SourceText, found: ParsedSource) -> frama_c.Run:
         found: their parsed layout.
     """
     made = driver(PurePath(given.header_name).stem, base(given), found.requirements)
-    return frama_c.Run(
+    return frama_c.EvaInput(
         without_comments(given.text),
         (given.header_name, without_comments(given.header)),
         made.text,

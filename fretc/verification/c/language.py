@@ -8,7 +8,7 @@ from pathlib import Path
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.c.monitor import TARGET
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretc.verification.c.build import built, compiler, layout
 from fretc.verification.c.layout import LEXIS, check_layout
 from fretc.verification.compiled.library import saved
@@ -64,7 +64,9 @@ def base(given: SourceText) -> str:
 def _written(given: SourceText, requirements: Sequence[FormalizedRequirement]) -> tuple[str, str]:
     """Text that fretc writes for these requirements; one file if the header's name says so."""
     for one_file in (False, True) if len(requirements) == 1 else (True,):
-        files = {str(f.path): f.text for f in TARGET.emit(requirements, Options(one_file=one_file))}
+        files = {
+            str(f.path): f.text for f in TARGET.emit(requirements, TargetOptions(one_file=one_file))
+        }
         header = files.get(given.header_name)
         if header is not None:
             return files[given.header_name.removesuffix(".h") + ".c"], header

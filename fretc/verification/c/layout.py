@@ -74,7 +74,7 @@ def check_layout(
     _same_cells(cleared, own_cleared)
     read = re.findall(r"now \. (\w+) = inputs -> (\w+) ==", " ".join(own))
     literals = {literal: inputs.index(name) for literal, name in read}
-    step = _Step(known, cells, literals)
+    step = _CStep(known, cells, literals)
     for statement in _statements(stepped):
         step.read(statement)
     return CheckedLayout(step.sources, literals)
@@ -121,7 +121,7 @@ def _is_first_value(statement: Tokens) -> bool:
             return False
 
 
-class _Step(BlockFlow):
+class _CStep(BlockFlow):
     """The body of a step, read statement by statement."""
 
     cell, literal = ("rail", "->"), ("now", "->")

@@ -26,7 +26,7 @@ from fretc.verification.compiled.readings import PythonRail
 from fretc.verification.monitor.rails import Letter
 
 
-class Line(NamedTuple):
+class DelayLine(NamedTuple):
     """A delay line, and the window that it belongs to."""
 
     length: int
@@ -47,7 +47,7 @@ class Delayed(Protocol):
     """A rail of a monitor without the bits of its delay lines."""
 
     @property
-    def lines(self) -> tuple[Line, ...]:
+    def lines(self) -> tuple[DelayLine, ...]:
         """The delay lines, in the order of `FreeLetter.oldest`."""
 
     def save(self) -> Hashable:
@@ -94,7 +94,7 @@ class FreeWindow:
 class PythonDelayed:
     """A rail of the monitor in Python with free windows."""
 
-    def __init__(self, rail: PythonRail, lines: Sequence[Line]) -> None:
+    def __init__(self, rail: PythonRail, lines: Sequence[DelayLine]) -> None:
         """The rail before the first tick.
 
         Args:

@@ -50,7 +50,7 @@ class CheckedLayout:
 
 
 @dataclass(frozen=True, slots=True)
-class Grammar:
+class ExpressionForms:
     """Allowed elements of an expression, besides local truth values and numbers."""
 
     members: Mapping[tuple[str, str], Collection[str]]
@@ -79,7 +79,7 @@ _CALLS = ("(", "!")
 class Flow:
     """Data flow of the statements of a step that were read so far."""
 
-    def __init__(self, grammar: Grammar) -> None:
+    def __init__(self, grammar: ExpressionForms) -> None:
         """The data flow of an empty step."""
         self.sources: dict[str, frozenset[str]] = {}
         """Each changed name with the names in its values and in the enclosing conditions."""
@@ -176,7 +176,7 @@ class BlockFlow(Flow):
     """Tokens around the condition of an `if`: two, or none."""
     signs: ClassVar[Collection[str]]
     kept: ClassVar[Collection[str]]
-    """Elements of an expression, as in `Grammar`."""
+    """Elements of an expression, as in `ExpressionForms`."""
 
     def __init__(
         self, known: frozenset[Tokens], cells: Sequence[str], literals: Mapping[str, int]
@@ -192,7 +192,7 @@ class BlockFlow(Flow):
         self.rings = {a for each in known for a, b in pairwise(each) if b == "["}
         fixed = {*self.rings, *(f"{ring}_at" for ring in self.rings)}
         members = {self.cell: {*cells} - fixed, self.literal: literals}
-        super().__init__(Grammar(members, self.signs, self.kept))
+        super().__init__(ExpressionForms(members, self.signs, self.kept))
 
     def branch(self, statement: Tokens) -> bool:
         """Read the begin or the end of a block; False: it is another statement."""

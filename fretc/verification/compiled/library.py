@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from compiler.formalization.letters import Valuation
-from fretc.verification.compiled.delays import FreeLetter, Line
-from fretc.verification.compiled.plan import Plan
-from fretc.verification.compiled.readings import VERDICTS, Reading, judged
+from fretc.verification.compiled.delays import DelayLine, FreeLetter
+from fretc.verification.compiled.plan import RequirementPosition
+from fretc.verification.compiled.readings import VERDICTS, RailReading, judged
 from fretc.verification.compiled.tools import Binary, ToolError
 from fretc.verification.monitor.equivalence import Judgement
 from fretc.verification.monitor.rails import Letter
@@ -45,7 +45,7 @@ class LibraryFile:
     """All cells of a rail, in the order of the layout."""
 
     @contextmanager
-    def running(self, plan: Plan) -> Iterator[Library]:
+    def running(self, plan: RequirementPosition) -> Iterator[Library]:
         """The loaded library, as a machine of one requirement.
 
         A process must not load two libraries from the same file, because the loader identifies a
@@ -72,7 +72,7 @@ def saved(
 class Library:
     """The loaded library, with memory for one state."""
 
-    def __init__(self, file: LibraryFile, plan: Plan) -> None:
+    def __init__(self, file: LibraryFile, plan: RequirementPosition) -> None:
         """The library before the first tick.
 
         Raises:
@@ -96,7 +96,8 @@ class Library:
         self._cells = _joined([places[name] for name in needed])
         names = [name.removesuffix("_at") for name in needed if is_place(name)]
         self.rings = tuple(
-            Ring(places[name], places[f"{name}_at"], _clear(name) in needed) for name in names
+            RingOffsets(places[name], places[f"{name}_at"], _clear(name) in needed)
+            for name in names
         )
         kept = [each for each in needed if not is_place(each) and each not in names]
         self.others = _joined([places[name] for name in kept])
@@ -159,7 +160,7 @@ class Library:
             ctypes.memmove(start + at, saved[done : done + size], size)
             done += size
 
-    def step(self, letter: Sequence[Truth]) -> tuple[Reading, Reading, tuple[object, ...]]:
+    def step(self, letter: Sequence[Truth]) -> tuple[RailReading, RailReading, tuple[object, ...]]:
         """Both readings after a tick, and the verdicts from them.
 
         An input without a value is false.
@@ -174,10 +175,10 @@ class Library:
             VERDICTS[verdict] if verdict < len(VERDICTS) else f"verdict {verdict}",
             *(_TRUTHS[each] if each < len(_TRUTHS) else f"truth value {each}" for each in truths),
         )
-        return Reading(*values[:8]), Reading(*values[8:16]), told
+        return RailReading(*values[:8]), RailReading(*values[8:16]), told
 
 
-class Ring(NamedTuple):
+class RingOffsets(NamedTuple):
     """Memory of a delay line in a rail: offsets and sizes in bytes."""
 
     bits: tuple[int, int]
@@ -258,10 +259,10 @@ class CompiledDelayed:
         library.load(self._rail, start)
 
     @property
-    def lines(self) -> tuple[Line, ...]:
+    def lines(self) -> tuple[DelayLine, ...]:
         """The delay lines in the order of the cells."""
         pairs = zip(self._lengths, self._library.rings, strict=True)
-        return tuple(Line(length, ring.guarded) for length, ring in pairs)
+        return tuple(DelayLine(length, ring.guarded) for length, ring in pairs)
 
     def save(self) -> bytes:
         """All cells except the delay lines."""
@@ -283,17 +284,17 @@ class CompiledDelayed:
         ]
         return (*readings[rail], told == judged(*readings), *written)
 
-    def _written(self, ring: Ring, length: int, oldest: bool) -> bool | None:
+    def _written(self, ring: RingOffsets, length: int, oldest: bool) -> bool | None:
         """The bit that replaced the oldest one; None if anything else has changed."""
         bits = int.from_bytes(self._library.read(self._rail, [ring.bits]), sys.byteorder)
         others = (1 << 8 * ring.bits[1]) - 2 if oldest else 0
         is_moved = self._place(ring) == (1 if length > 1 else 0)
         return bool(bits & 1) if is_moved and bits & ~1 == others else None
 
-    def _place(self, ring: Ring) -> int:
+    def _place(self, ring: RingOffsets) -> int:
         return int.from_bytes(self._library.read(self._rail, [ring.place]), sys.byteorder)
 
-    def _length(self, ring: Ring) -> int:
+    def _length(self, ring: RingOffsets) -> int:
         """Ticks until the index returns to 0, increasing by one at each; 0: it does not."""
         library = self._library
         letter, capacity = (False,) * len(library.order), 8 * ring.bits[1]

@@ -36,7 +36,7 @@ class SourceText:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class RequirementPosition:
     """Position of a requirement in a monitor; it can be sent to another process."""
 
     needed: frozenset[str]
@@ -67,7 +67,7 @@ class ParsedSource:
     is_original: bool = False
     """Whether the text equals the one that fretc writes, except for comments and layout."""
 
-    def plan(self, requirement: FormalizedRequirement) -> Plan:
+    def plan(self, requirement: FormalizedRequirement) -> RequirementPosition:
         """Position of a requirement in the text.
 
         Raises:
@@ -85,7 +85,7 @@ class ParsedSource:
                 f"{requirement.id} depends on names that its sentence does not mention"
             )
         places = tuple(names.index(name) if name in names else -1 for name in own)
-        return Plan(part.cells, place, places, len(names), self.is_original)
+        return RequirementPosition(part.cells, place, places, len(names), self.is_original)
 
 
 class Machines(Protocol):
@@ -112,7 +112,7 @@ class Machines(Protocol):
 class Executable(Protocol):
     """A monitor that can be run; it can be sent to another process."""
 
-    def running(self, plan: Plan) -> AbstractContextManager[Machines]:
+    def running(self, plan: RequirementPosition) -> AbstractContextManager[Machines]:
         """The running monitor, as one requirement.
 
         Raises:

@@ -14,13 +14,13 @@ from compiler.formalization.letters import Valuation
 from compiler.program.lowering import program
 from compiler.program.program import MARKS
 from fretc.verification.monitor.equivalence import Judgement
-from fretc.verification.monitor.machine import Cells, Stepped
+from fretc.verification.monitor.machine import RailState, Stepped
 from fretc.verification.monitor.rails import Letter
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth
 
 
-class Reading(NamedTuple):
+class RailReading(NamedTuple):
     """Result of one rail for a requirement after a tick."""
 
     left: int
@@ -37,13 +37,13 @@ class Reading(NamedTuple):
 VERDICTS = ("pending", "satisfied", "violated")
 """Verdicts in the order of their numbers."""
 NAMES = (
-    *(f"value of `{name}`" for name in Reading._fields),
+    *(f"value of `{name}`" for name in RailReading._fields),
     "verdict, or what is owed, from the two readings",
 )
 """Names of the values that a step returns."""
 
 
-def judged(certain: Reading, possible: Reading) -> tuple[str, Truth, Truth]:
+def judged(certain: RailReading, possible: RailReading) -> tuple[str, Truth, Truth]:
     """Final verdict, FRET's finite verdict, and open obligation, from both rails."""
     if certain.violated == 1:
         verdict = "violated"
@@ -75,7 +75,7 @@ class PythonRail:
             doubt: whether unknown values count as true.
         """
         self._rail: Any = monitor.RAIL(doubt=doubt)
-        self._cells = Cells(self._rail)
+        self._cells = RailState(self._rail)
         self._horizon = monitor.REQUIREMENTS[0].horizon
         self._order = tuple(atoms.index(name) for name in monitor.PROPOSITIONS)
         (prefix,) = (n[: -len("_open")] for n in self._rail.__slots__ if n.endswith("_open"))
@@ -125,7 +125,7 @@ class PythonRail:
         return min(self._rail.tick - tick, self._horizon + 1) if tick >= 0 else -1
 
 
-def reading_of(rail: Any, horizon: int | None) -> Reading:
+def reading_of(rail: Any, horizon: int | None) -> RailReading:
     """The reading of a rail in Python for its only requirement.
 
     Args:
@@ -136,7 +136,7 @@ def reading_of(rail: Any, horizon: int | None) -> Reading:
     left = -1
     if marks.open >= 0 and horizon is not None:
         left = max(-1, marks.open + horizon - rail.tick)
-    return Reading(
+    return RailReading(
         left,
         marks.violated >= 0,
         bool(marks.broken >= 0 or signals.fails),

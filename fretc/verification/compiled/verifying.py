@@ -20,7 +20,7 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import impossible_combinations
 from compiler.formalization.numbers.reals import MOST_SEARCHED, with_numeric_counterexample
-from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
+from compiler.logic.claims import ClaimOutcome, ClaimTrace, not_checked, proved, refuted
 from compiler.logic.orders import Exclusion, only_possible
 from compiler.targets.python import monitor as python
 from fretc.verification.compiled.delays import FreeLetter, PythonDelayed
@@ -29,16 +29,16 @@ from fretc.verification.compiled.plan import (
     Language,
     Machines,
     ParsedSource,
-    Plan,
+    RequirementPosition,
     SourceText,
     atoms,
 )
 from fretc.verification.compiled.readings import NAMES, PythonJudging, PythonRail
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.tools import ToolError
-from fretc.verification.engines.sandbox import Limits, NoResult, Session
+from fretc.verification.engines.sandbox import CallLimits, NoResult, SandboxSession
 from fretc.verification.monitor import rails
-from fretc.verification.monitor.equivalence import Difference
+from fretc.verification.monitor.equivalence import DifferingTrace
 from fretc.verification.monitor.verifying import MOST_STATES, judged_wrongly, lock_step, noted
 from monitors.loading import load
 
@@ -47,7 +47,7 @@ class RequirementOutcome(NamedTuple):
     """An outcome, with its inputs."""
 
     requirement: FormalizedRequirement
-    outcome: Outcome
+    outcome: ClaimOutcome
     engine: str
     """Compiler or interpreter, with version and flags; empty if there was none."""
     artefacts: dict[str, str]
@@ -59,7 +59,7 @@ def verified(
     given: SourceText,
     language: Language,
     program: str,
-    limits: Limits,
+    limits: CallLimits,
     others: Sequence[FormalizedRequirement] = (),
 ) -> Iterator[RequirementOutcome]:
     """Compare a monitor with each of its requirements, in separate processes.
@@ -73,7 +73,7 @@ def verified(
         others: further requirements that the text may implement.
     """
     artefacts = {name: sha256(text) for name, text in given.texts.items()}
-    with TemporaryDirectory(prefix="fretc-") as folder, Session(limits) as session:
+    with TemporaryDirectory(prefix="fretc-") as folder, SandboxSession(limits) as session:
         try:
             checked = language.checked(given, (*requirements, *others))
             found = language.prepared(program, given, checked, Path(folder))
@@ -91,8 +91,8 @@ def _confined(
     requirement: FormalizedRequirement,
     checked: ParsedSource,
     executable: Executable,
-    session: Session,
-) -> Outcome:
+    session: SandboxSession,
+) -> ClaimOutcome:
     try:
         plan = checked.plan(requirement)
     except UnexpectedLayoutError as error:
@@ -107,8 +107,11 @@ def _confined(
 
 
 def explored(
-    requirement: FormalizedRequirement, executable: Executable, plan: Plan, limit: int
-) -> Outcome:
+    requirement: FormalizedRequirement,
+    executable: Executable,
+    plan: RequirementPosition,
+    limit: int,
+) -> ClaimOutcome:
     """Run and compare the monitor in this process, which a crash of the library ends.
 
     Args:
@@ -124,14 +127,14 @@ def explored(
         return not_checked(str(error))
 
 
-def _explored(requirement: FormalizedRequirement, machines: Machines, limit: int) -> Outcome:
+def _explored(requirement: FormalizedRequirement, machines: Machines, limit: int) -> ClaimOutcome:
     free = _without_delays(requirement, machines, limit)
     if free is not None:
         return free
     judged = lock_step(requirement, machines.judging(), atoms(requirement), limit)
     if isinstance(judged, str):
         return not_checked(judged)
-    if isinstance(judged, Difference):
+    if isinstance(judged, DifferingTrace):
         return judged_wrongly(judged, atoms(requirement))
     states = _read(requirement, machines, limit)
     if not isinstance(states, int):
@@ -145,7 +148,7 @@ def _explored(requirement: FormalizedRequirement, machines: Machines, limit: int
 
 def _without_delays(
     requirement: FormalizedRequirement, machines: Machines, limit: int
-) -> Outcome | None:
+) -> ClaimOutcome | None:
     """Proved if both monitors are equal for arbitrary bits in their delay lines.
 
     Then each verdict of the text is that of the monitor in Python, because both derive it from both
@@ -182,7 +185,7 @@ def _without_delays(
     judged = lock_step(requirement, PythonJudging(monitor, names), names, limit)
     if isinstance(judged, str):
         return not_checked(judged)
-    if isinstance(judged, Difference):
+    if isinstance(judged, DifferingTrace):
         return None
     return proved(
         "at every tick of every trace, also with unknown values, its results are those of the "
@@ -222,7 +225,7 @@ def _letters(requirement: FormalizedRequirement, names: Sequence[str]) -> Sequen
     return only_possible(every, names, impossible_combinations(requirement))
 
 
-def _read(requirement: FormalizedRequirement, machines: Machines, limit: int) -> int | Outcome:
+def _read(requirement: FormalizedRequirement, machines: Machines, limit: int) -> int | ClaimOutcome:
     """Number of states whose readings equal those of the monitor in Python, or the failure."""
     names = atoms(requirement)
     if len(names) > rails.MOST_PROPOSITIONS:
@@ -252,7 +255,7 @@ def _read(requirement: FormalizedRequirement, machines: Machines, limit: int) ->
             case rails.Distinguished(word, signal):
                 which = "possible" if doubt else "certain"
                 fault = f"the monitor in Python has another {signal} in `{which}` on a trace"
-                return refuted(f"{fault}{noted(note)}", Trace(names, word))
+                return refuted(f"{fault}{noted(note)}", ClaimTrace(names, word))
             case rails.Equivalent(count):
                 states += count
     return states

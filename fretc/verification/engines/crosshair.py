@@ -17,7 +17,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from compiler.files.text_files import sha256
-from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof, proved, refuted
+from compiler.logic.claims import ClaimOutcome, Layer, Proof, not_checked, proof, proved, refuted
 from fretc.verification.engines.programs import MEMORY, STARTED, Completion, run
 from fretish.diagnostics.extras import install_help
 
@@ -79,7 +79,7 @@ def with_crosshair(
         engine = ""
     contracts = _contracts(text)
     whole = _with_whole_velocities(text)
-    outcomes: list[tuple[str, Outcome]] = []
+    outcomes: list[tuple[str, ClaimOutcome]] = []
     for name in dict.fromkeys(contract.function for contract in contracts):
         own = [contract for contract in contracts if contract.function == name]
         if engine:
@@ -158,7 +158,7 @@ def _of(node: ast.AST, lines: Sequence[str], prefix: str) -> Iterator[_Contract]
 
 def _answers(
     text: str, function: str, contracts: Sequence[_Contract], seconds: float
-) -> Iterator[tuple[str, Outcome]]:
+) -> Iterator[tuple[str, ClaimOutcome]]:
     """The claims of one function, each with its outcome."""
     command = [
         *(sys.executable, "-m", "crosshair", "check", "--report_all"),
@@ -180,7 +180,7 @@ def _answers(
             yield f"`{function}` raises nothing", refuted(text)
 
 
-def _outcome(message: tuple[str, str] | None, end: Completion) -> Outcome:
+def _outcome(message: tuple[str, str] | None, end: Completion) -> ClaimOutcome:
     """The outcome of a contract.
 
     Args:

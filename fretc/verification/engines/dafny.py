@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.claims import Outcome, Proof, not_checked, proof, proved
+from compiler.logic.claims import ClaimOutcome, Proof, not_checked, proof, proved
 from compiler.targets import dafny
 from compiler.targets.dafny_claims import claims
 from compiler.targets.target import stem
@@ -75,7 +75,7 @@ def with_dafny(
     )
 
 
-def answer(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Outcome, str]:
+def answer(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[ClaimOutcome, str]:
     """The outcome of a text, and the name and version of Dafny.
 
     Proved: Dafny verifies at least every lemma, method and constructor, and reports no error. Else
@@ -119,7 +119,7 @@ def _options(program: str, known: str, folder: Path, seconds: float) -> list[str
     return ["verify", f"--verification-time-limit={limit}", *allowed]
 
 
-def _outcome(text: str, end: Completion, seconds: float) -> Outcome:
+def _outcome(text: str, end: Completion, seconds: float) -> ClaimOutcome:
     if end.status is None:
         return not_checked(f"Dafny did not finish within {seconds:g} s")
     lines = end.text.splitlines()

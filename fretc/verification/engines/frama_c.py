@@ -17,9 +17,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from compiler.logic.claims import Outcome, not_checked, proved
+from compiler.logic.claims import ClaimOutcome, not_checked, proved
 from fretc.verification.engines.programs import STARTED, Completion, run
-from fretc.verification.engines.sandbox import Limits
+from fretc.verification.engines.sandbox import CallLimits
 
 NAME = "Frama-C"
 MACHINES = ("x86_16", "x86_64")
@@ -39,7 +39,7 @@ _BAD = re.compile(r"\b(?:warning|error|aborted|failure)\b", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class EvaInput:
     """Input of an analysis by Eva."""
 
     text: str
@@ -60,7 +60,7 @@ def program() -> str | None:
     return shutil.which("frama-c")
 
 
-def answer(path: str, asked: Run, limits: Limits) -> tuple[Outcome, str]:
+def answer(path: str, asked: EvaInput, limits: CallLimits) -> tuple[ClaimOutcome, str]:
     """The outcome for all machines, and the name, version and options of Frama-C.
 
     Args:
@@ -89,18 +89,18 @@ def answer(path: str, asked: Run, limits: Limits) -> tuple[Outcome, str]:
 
 
 def _version(path: str, folder: Path) -> str | None:
-    end = run([path, "-version"], folder, seconds=STARTED, memory=Limits().memory)
+    end = run([path, "-version"], folder, seconds=STARTED, memory=CallLimits().memory)
     first, *_ = end.text.splitlines() or [""]
     return first if end.status == 0 and re.match(r"\d+\.\d+", first) else None
 
 
-def _write(asked: Run, folder: Path) -> None:
+def _write(asked: EvaInput, folder: Path) -> None:
     texts = {_TEXT: asked.text, _DRIVER: asked.driver, asked.header[0]: asked.header[1]}
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
 
 
-def _doubt(command: list[str], asked: Run, folder: Path, limits: Limits) -> str | None:
+def _doubt(command: list[str], asked: EvaInput, folder: Path, limits: CallLimits) -> str | None:
     """Why a run of Eva proves nothing; None: it proves everything."""
     (folder / _REPORT).unlink(missing_ok=True)
     whole = [*command, _TEXT, _DRIVER, "-then", "-no-report", f"-report-csv={_REPORT}"]
@@ -116,7 +116,7 @@ def _doubt(command: list[str], asked: Run, folder: Path, limits: Limits) -> str 
     return f"{reasons[0]}{more}" if reasons else _left_open(end)
 
 
-def _unproved(report: str, asked: Run) -> Iterator[str]:
+def _unproved(report: str, asked: EvaInput) -> Iterator[str]:
     """Invalid properties in Eva's table, and missing ones."""
     lines = csv.reader(report.splitlines(), delimiter="\t", quoting=csv.QUOTE_NONE)
     head, *rows = [*lines] or [[]]

@@ -28,7 +28,7 @@ R = TypeVar("R")
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class CallLimits:
     """Limits of a call."""
 
     seconds: int = 60
@@ -46,7 +46,7 @@ class Limits:
         return 3.0 * self.seconds + 30.0
 
 
-DEFAULT = Limits()
+DEFAULT = CallLimits()
 _RARELY = (100_000, 50, 50)
 """Number of new objects after which Python searches for unused cycles. A search keeps all its
 objects, and frequent garbage collection would take a third of its time."""
@@ -60,21 +60,21 @@ class NoResult:
 
 
 def confined(
-    limits: Limits, function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs
+    limits: CallLimits, function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs
 ) -> R | NoResult:
-    """The result of one call in a separate process, as by `Session.call`."""
-    with Session(limits) as session:
+    """The result of one call in a separate process, as by `SandboxSession.call`."""
+    with SandboxSession(limits) as session:
         return session.call(function, *args, **kwargs)
 
 
-class Session:
+class SandboxSession:
     """Calls in a separate process, one after the other, each with its own limits.
 
     One process serves them until it is stopped or crashes; then the next call starts a new one. An
     interruption (Ctrl-C) ends the process.
     """
 
-    def __init__(self, limits: Limits) -> None:
+    def __init__(self, limits: CallLimits) -> None:
         """A session without a process; the first call starts one.
 
         Args:
@@ -84,7 +84,7 @@ class Session:
         self._process: SpawnProcess | None = None
         self._connection: Connection | None = None
 
-    def __enter__(self) -> Session:
+    def __enter__(self) -> SandboxSession:
         """The session itself."""
         return self
 
@@ -148,7 +148,7 @@ def _without_main() -> Iterator[None]:
         sys.modules["__main__"] = main
 
 
-def _answer(connection: Connection, process: SpawnProcess, limits: Limits) -> Any:
+def _answer(connection: Connection, process: SpawnProcess, limits: CallLimits) -> Any:
     if not connection.poll(limits.wall):
         return NoResult(f"out of time: no answer within {limits.wall:g} s")
     try:
@@ -163,7 +163,7 @@ def _answer(connection: Connection, process: SpawnProcess, limits: Limits) -> An
     raise result
 
 
-def _ended(status: int, limits: Limits) -> str:
+def _ended(status: int, limits: CallLimits) -> str:
     """Why a process ended without a result."""
     if status in (-signal.SIGXCPU, -signal.SIGKILL):
         more = "" if status == -signal.SIGXCPU else ", or it was killed"
@@ -172,11 +172,11 @@ def _ended(status: int, limits: Limits) -> str:
     return f"the process crashed ({how}); it may have had too little memory"
 
 
-def _out_of_memory(limits: Limits) -> str:
+def _out_of_memory(limits: CallLimits) -> str:
     return f"out of memory: more than {limits.memory / 2**30:g} GiB"
 
 
-def _serve(connection: Connection, limits: Limits) -> None:
+def _serve(connection: Connection, limits: CallLimits) -> None:
     """Answer calls until the connection is closed."""
     ignore_interrupts()
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

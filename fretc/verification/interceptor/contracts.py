@@ -13,7 +13,16 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from compiler.files.text_files import sha256
-from compiler.logic.claims import Layer, Outcome, Proof, Trace, not_checked, proof, proved, refuted
+from compiler.logic.claims import (
+    ClaimOutcome,
+    ClaimTrace,
+    Layer,
+    Proof,
+    not_checked,
+    proof,
+    proved,
+    refuted,
+)
 from fretc.verification.interceptor.exploration import Search, Step, explore
 from fretc.verification.interceptor.incoming import (
     CHANNELS,
@@ -21,7 +30,7 @@ from fretc.verification.interceptor.incoming import (
     RELEASE,
     RING,
     STOP,
-    Moment,
+    ContractStep,
     stands,
 )
 from monitors.interceptor import Options
@@ -35,7 +44,7 @@ class Contract:
     """A claim about every step, or about the first state."""
 
     claim: str
-    broken: Callable[[Moment], bool]
+    broken: Callable[[ContractStep], bool]
 
 
 def contracts(
@@ -142,13 +151,13 @@ def _of_a_stop(options: Options) -> Iterator[Contract]:
         )
 
 
-def _short_hold(m: Moment) -> bool:
+def _short_hold(m: ContractStep) -> bool:
     if m.event == RING:
         return m.before.owed > 0 and m.output != "zero"
     return m.after.owed > 0 and m.output not in ("nothing", "zero")
 
 
-def _silence(name: str, timeout: int) -> Callable[[Moment], bool]:
+def _silence(name: str, timeout: int) -> Callable[[ContractStep], bool]:
     return lambda m: getattr(m.after, name) >= timeout and m.output not in ("nothing", "zero")
 
 
@@ -181,7 +190,7 @@ def _of_the_output(options: Options) -> Iterator[Contract]:
     )
 
 
-def _outside(options: Options) -> Callable[[Moment], bool]:
+def _outside(options: Options) -> Callable[[ContractStep], bool]:
     bounds = [("held", options.hold)]
     bounds += [(f"{name}_age", getattr(options, f"{name}_timeout")) for name, _ in CHANNELS]
     return lambda m: not all(0 <= getattr(m.state, name) <= bound for name, bound in bounds)
@@ -192,7 +201,7 @@ def _outside(options: Options) -> Callable[[Moment], bool]:
 
 def _outcomes(
     text: str, options: Options, claims: tuple[Contract, ...], most: int
-) -> list[Outcome]:
+) -> list[ClaimOutcome]:
     """The outcome of each contract."""
     timed = (options.hold, options.stop_timeout, options.scan_timeout, options.command_timeout)
     if options.event_driven and any(timed):
@@ -220,7 +229,7 @@ _OUTPUTS: Mapping[str, str] = {
 }
 
 
-def _trace(run: list[Step], options: Options) -> Trace:
+def _trace(run: list[Step], options: Options) -> ClaimTrace:
     """The steps of a run as a table."""
     watched = [name for name, _ in CHANNELS if getattr(options, f"{name}_timeout")]
     names = ("stop requested", "must stand", "zero", "command", *(f"{w} silent" for w in watched))
@@ -235,4 +244,4 @@ def _trace(run: list[Step], options: Options) -> Trace:
         for step in run
     )
     actions = tuple(f"{step.event}: {_OUTPUTS[step.output]}" for step in run)
-    return Trace(names, rows, actions)
+    return ClaimTrace(names, rows, actions)

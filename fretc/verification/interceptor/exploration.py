@@ -17,8 +17,8 @@ from fretc.verification.interceptor.incoming import (
     RING,
     SCAN,
     STOP,
-    History,
-    Moment,
+    ContractStep,
+    EventHistory,
     after,
     first,
 )
@@ -36,7 +36,7 @@ class Step(NamedTuple):
     """State before the step."""
     event: str
     output: str
-    history: History
+    history: EventHistory
     """History after the step."""
 
 
@@ -63,7 +63,7 @@ class Search:
 
 
 def explore(
-    text: str, options: Options, broken: Sequence[Callable[[Moment], bool]], most: int
+    text: str, options: Options, broken: Sequence[Callable[[ContractStep], bool]], most: int
 ) -> Search | str:
     """Explore all states; or why that is impossible.
 
@@ -74,7 +74,7 @@ def explore(
         most: maximum number of states.
     """
     try:
-        return _Walk(text, options, broken, most).search()
+        return _Exploration(text, options, broken, most).search()
     except NotAnInterceptorError as error:
         return str(error)
 
@@ -85,14 +85,18 @@ class _Place(NamedTuple):
     key: Key
     values: dict[str, Any]
     """Values of the state's fields."""
-    history: History
+    history: EventHistory
 
 
-class _Walk:
+class _Exploration:
     """Breadth-first search through the product of the core and the history."""
 
     def __init__(
-        self, text: str, options: Options, broken: Sequence[Callable[[Moment], bool]], most: int
+        self,
+        text: str,
+        options: Options,
+        broken: Sequence[Callable[[ContractStep], bool]],
+        most: int,
     ) -> None:
         self.core = CheckedCore(text, options)
         self.declared, self.broken, self.most = options, broken, most
@@ -107,7 +111,7 @@ class _Walk:
         state = self.core.initial()
         place = self._normal(state, history)
         search = Search({place.key: None}, {})
-        for i in self._breaches(Moment(history, "", history, "nothing", state)):
+        for i in self._breaches(ContractStep(history, "", history, "nothing", state)):
             search.breaches[i] = None
         queue = deque([place])
         while queue:
@@ -129,7 +133,7 @@ class _Walk:
             now = after(place.history, event, command, self.declared)
             output = self._output(velocity, now)
             step = Step(place.key, event, output, now)
-            for i in self._breaches(Moment(place.history, event, now, output, then)):
+            for i in self._breaches(ContractStep(place.history, event, now, output, then)):
                 search.breaches.setdefault(i, step)
             target = self._normal(then, now)
             if target.key not in search.origins:
@@ -144,7 +148,7 @@ class _Walk:
         yield SCAN, call(module.ScanHeard)
         yield RING, call(module.TimerRang)
 
-    def _breaches(self, moment: Moment) -> Iterator[int]:
+    def _breaches(self, moment: ContractStep) -> Iterator[int]:
         """Indices of the contracts that a step violates."""
         for i, broken in enumerate(self.broken):
             try:
@@ -157,15 +161,15 @@ class _Walk:
             except (AttributeError, TypeError) as error:
                 raise NotAnInterceptorError(f"its state is not the declared one: {error}") from None
 
-    def _output(self, velocity: Any, now: History) -> str:
-        """`Moment.output` of a velocity that the core publishes."""
+    def _output(self, velocity: Any, now: EventHistory) -> str:
+        """`ContractStep.output` of a velocity that the core publishes."""
         if velocity is None:
             return "nothing"
         if is_opaque(velocity):
             return "last" if velocity is now.last else "other"
         return "zero" if self.core.is_zero(velocity) else "other"
 
-    def _normal(self, state: Any, history: History) -> _Place:
+    def _normal(self, state: Any, history: EventHistory) -> _Place:
         """Representative of all states that differ only in their commands."""
         numbers: dict[int, int] = {}
         key: list[object] = []

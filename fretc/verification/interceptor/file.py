@@ -17,7 +17,7 @@ from typing import Any
 from compiler.targets.python import interceptor
 from compiler.targets.python.interceptor import MARKER
 from fretc.verification.interceptor.purity import bound_names, is_guarded
-from fretc.verification.monitor.statements import UnexpectedCodeError
+from fretc.verification.monitor.statements import UnexpectedStatementError
 from fretish.bindings.declarations import Interception, InterceptorForm
 from fretish.reading.text_encoding import is_utf8
 from monitors.loading import executed
@@ -29,7 +29,7 @@ _NEEDED = (
 
 
 @dataclass(frozen=True, slots=True)
-class Head:
+class PureCore:
     """Text of a pure core, without the node below it."""
 
     text: str
@@ -60,7 +60,7 @@ def core(text: str, name: str = "interceptor") -> Core | str:
     return Core(module)
 
 
-def head(text: str) -> Head | str:
+def head(text: str) -> PureCore | str:
     """The core of an interceptor if it is pure; else, why it is not. Nothing is executed.
 
     Args:
@@ -84,9 +84,9 @@ def head(text: str) -> Head | str:
             _check_whole(text, tree, node)
     except (SyntaxError, ValueError, RecursionError) as error:
         return f"it is not valid Python: {error}"
-    except UnexpectedCodeError as error:
+    except UnexpectedStatementError as error:
         return f"fretc cannot read its core: {error}"
-    return Head(above)
+    return PureCore(above)
 
 
 def otherwise(text: str, interception: Interception) -> str | None:
@@ -144,14 +144,14 @@ def _check_node(node: str) -> None:
     Python has many ways to change a module from below, so other nodes are refused.
     """
     if _shape(node) not in _shapes():
-        raise UnexpectedCodeError("the node below it is not one that fretc generates")
+        raise UnexpectedStatementError("the node below it is not one that fretc generates")
 
 
 def _check_whole(text: str, core: ast.Module, node: str) -> None:
     """Check that the module is the core, directly followed by the node."""
     parts = [*core.body, *ast.parse(node).body]
     if [ast.dump(part) for part in ast.parse(text).body] != [ast.dump(part) for part in parts]:
-        raise UnexpectedCodeError("the node does not directly follow the core")
+        raise UnexpectedStatementError("the node does not directly follow the core")
 
 
 @cache

@@ -26,7 +26,7 @@ CHANNELS = (
 )
 
 
-class History(NamedTuple):
+class EventHistory(NamedTuple):
     """Facts about all events up to now; durations in ticks."""
 
     requested: bool
@@ -42,22 +42,22 @@ class History(NamedTuple):
     """The last command; None: there was none."""
 
 
-class Moment(NamedTuple):
+class ContractStep(NamedTuple):
     """One step, as contracts evaluate it."""
 
-    before: History
+    before: EventHistory
     event: str
     """The event; empty before the first step."""
-    after: History
+    after: EventHistory
     output: str
     """`nothing`, `zero`, `last` (the last command, which may be the present one) or `other`."""
     state: Any
     """State of the core after the step."""
 
 
-def first(options: Options) -> History:
+def first(options: Options) -> EventHistory:
     """The history before the first event: each channel with a timeout is silent."""
-    return History(
+    return EventHistory(
         requested=False,
         ever=False,
         owed=0,
@@ -68,7 +68,7 @@ def first(options: Options) -> History:
     )
 
 
-def after(history: History, event: str, command: object, options: Options) -> History:
+def after(history: EventHistory, event: str, command: object, options: Options) -> EventHistory:
     """The history after one more event; `command` belongs to `COMMAND`."""
     match event:
         case "a stop is requested":
@@ -89,7 +89,7 @@ def after(history: History, event: str, command: object, options: Options) -> Hi
     )
 
 
-def stands(history: History, options: Options) -> bool:
+def stands(history: EventHistory, options: Options) -> bool:
     """Whether there is a reason for zero: a stop, an earlier stop, or silence."""
     return (
         history.requested

@@ -16,7 +16,7 @@ from collections.abc import Collection
 from functools import cache
 from math import isfinite
 
-from fretc.verification.monitor.statements import UnexpectedCodeError
+from fretc.verification.monitor.statements import UnexpectedStatementError
 from monitors.source_text import ALONE
 from monitors.source_text import interceptor as original
 
@@ -48,8 +48,8 @@ def bound_names(tree: ast.Module, taken: Collection[str]) -> frozenset[str]:
     return _Module(taken).check(tree)
 
 
-def _strange(node: ast.AST) -> UnexpectedCodeError:
-    return UnexpectedCodeError(f"`{_line(node)}`")
+def _strange(node: ast.AST) -> UnexpectedStatementError:
+    return UnexpectedStatementError(f"`{_line(node)}`")
 
 
 def _demand(right: bool, node: ast.AST) -> None:
@@ -206,7 +206,7 @@ class _Module:
             ends |= free
             rest -= free
         if rest:
-            raise UnexpectedCodeError(f"`{self._in_a_circle(min(rest), rest)}` calls itself")
+            raise UnexpectedStatementError(f"`{self._in_a_circle(min(rest), rest)}` calls itself")
 
     def _in_a_circle(self, name: str, rest: set[str]) -> str:
         """A recursive function among `rest`; each of them calls another one of them."""

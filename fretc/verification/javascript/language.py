@@ -10,7 +10,7 @@ from pathlib import Path
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.program.lowering import program as lowered
-from compiler.program.program import Program, Requirement, Window
+from compiler.program.program import Program, RequirementProgram, WindowMemory
 from compiler.targets.javascript.monitor import text
 from fretc.verification.compiled.plan import BuiltLibrary, ParsedSource, SourceText, implemented
 from fretc.verification.compiled.tools import version
@@ -57,10 +57,10 @@ def _program(requirements: Sequence[FormalizedRequirement]) -> Program:
 
 def _windows(program: Program) -> dict[str, int]:
     """Window → maximum age of its values."""
-    return {cell.name: cell.hi for cell in program.cells if isinstance(cell, Window)}
+    return {cell.name: cell.hi for cell in program.cells if isinstance(cell, WindowMemory)}
 
 
-def _ages(requirement: Requirement) -> tuple[str, ...]:
+def _ages(requirement: RequirementProgram) -> tuple[str, ...]:
     """Marks whose age is read, to report a deadline."""
     if requirement.horizon is None:
         return ()

@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 
-from fretc.verification.compiled.flow import CheckedLayout, Flow, Grammar
+from fretc.verification.compiled.flow import CheckedLayout, ExpressionForms, Flow
 from fretc.verification.compiled.text import (
     Lexis,
     Tokens,
@@ -65,7 +65,7 @@ def check_layout(
     (first, own_first), (stepped, own_stepped) = bodies(given, own, _FREE)
     same_but_constants(first, own_first, -2)
     literals = {name: int(place) for name, place in _READ.findall(" ".join(own_stepped))}
-    step = _Step(frozenset(parts(own_stepped, ";")), {*cells} - {*windows})
+    step = _JavaScriptStep(frozenset(parts(own_stepped, ";")), {*cells} - {*windows})
     statements, own_statements = [*parts(stepped, ";")], [*parts(own_stepped, ";")]
     place, own_place = _signals_at(statements), _signals_at(own_statements)
     for statement in statements[:place]:
@@ -90,7 +90,7 @@ def _joined(statements: Sequence[Tokens]) -> Tokens:
     return tuple(token for each in statements for token in (*each, ";"))
 
 
-class _Step(Flow):
+class _JavaScriptStep(Flow):
     """The body of `advance`, read statement by statement."""
 
     def __init__(self, known: frozenset[Tokens], cells: Collection[str]) -> None:
@@ -101,7 +101,7 @@ class _Step(Flow):
             cells: cells of a rail that are not windows.
         """
         self._known = known
-        super().__init__(Grammar({("rail", "."): cells}, _SIGNS, _KEPT))
+        super().__init__(ExpressionForms({("rail", "."): cells}, _SIGNS, _KEPT))
 
     def read(self, statement: Tokens) -> None:
         """Read one more statement; an `if` or `else` contains a single one.

@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from compiler.formalization.letters import Valuation
-from fretc.verification.compiled.plan import Plan
-from fretc.verification.compiled.readings import Reading, judged
+from fretc.verification.compiled.plan import RequirementPosition
+from fretc.verification.compiled.readings import RailReading, judged
 from fretc.verification.compiled.tools import ToolError
 from fretc.verification.monitor.equivalence import Judgement
 from fretc.verification.monitor.rails import Letter
@@ -147,7 +147,7 @@ class Module:
     """For each requirement, the marks whose age it reads."""
 
     @contextmanager
-    def running(self, plan: Plan) -> Iterator[Node]:
+    def running(self, plan: RequirementPosition) -> Iterator[ModuleRequirement]:
         """The module, run by Node until the end of the context.
 
         Raises:
@@ -155,7 +155,7 @@ class Module:
         """
         complaints = self.folder / "errors.txt"
         with complaints.open("wb") as errors, _started(self, errors) as node:
-            yield Node(self, plan, node, complaints)
+            yield ModuleRequirement(self, plan, node, complaints)
 
 
 def placed(text: str, folder: Path) -> None:
@@ -186,11 +186,15 @@ def _started(module: Module, errors: Any) -> Iterator[subprocess.Popen[bytes]]:
             process.kill()
 
 
-class Node:
+class ModuleRequirement:
     """A requirement of a module."""
 
     def __init__(
-        self, module: Module, plan: Plan, process: subprocess.Popen[bytes], errors: Path
+        self,
+        module: Module,
+        plan: RequirementPosition,
+        process: subprocess.Popen[bytes],
+        errors: Path,
     ) -> None:
         """The requirement before any exploration."""
         self._module, self._plan = module, plan
@@ -208,7 +212,7 @@ class Node:
         """One of the rails, before the first tick."""
         return TableRail(self._table((int(doubt),), letters), doubt=doubt)
 
-    def _table(self, rails: Sequence[int], letters: Sequence[Letter]) -> Table:
+    def _table(self, rails: Sequence[int], letters: Sequence[Letter]) -> StateTable:
         module, plan = self._module, self._plan
         needed = [name for name in module.cells if name in plan.needed]
         rows = []
@@ -226,7 +230,7 @@ class Node:
             "rails": rails,
             "letters": rows,
         }
-        table = Table(self, {letter: i for i, letter in enumerate(letters)})
+        table = StateTable(self, {letter: i for i, letter in enumerate(letters)})
         table.take(self.ask({"plan": order, "until": 0}))
         return table
 
@@ -255,7 +259,7 @@ class Node:
 class Observation(NamedTuple):
     """Result of a step."""
 
-    rails: tuple[Reading, Reading]
+    rails: tuple[RailReading, RailReading]
     """Certain and possible value."""
     verdicts: tuple[object, ...]
     """Verdict, FRET's finite verdict, and open obligation."""
@@ -265,10 +269,10 @@ class Observation(NamedTuple):
 
 
 @dataclass(slots=True)
-class Table:
+class StateTable:
     """The explored states, by number, and their steps."""
 
-    node: Node
+    node: ModuleRequirement
     letters: Mapping[Letter, int]
     rows: list[list[tuple[int, int]]] = field(default_factory=list)
     """For each state and valuation the next state, and the number of the observation."""
@@ -278,7 +282,7 @@ class Table:
         """Add the steps of further states."""
         self.rows += answer["rows"]
         for certain, possible, verdict, *truths, is_real in answer["told"]:
-            rails = Reading(*certain), Reading(*possible)
+            rails = RailReading(*certain), RailReading(*possible)
             both = (_TRUTHS[each] if each >= 0 else "no truth value" for each in truths)
             self.outcomes.append(Observation(rails, (verdict, *both), is_real))
 
@@ -292,7 +296,7 @@ class Table:
 class NodeMonitorMachine:
     """Both rails, for known propositions."""
 
-    def __init__(self, table: Table) -> None:
+    def __init__(self, table: StateTable) -> None:
         """The machine before the first tick."""
         self._table, self._state = table, 0
 
@@ -314,7 +318,7 @@ class NodeMonitorMachine:
 class TableRail:
     """One rail; the state of the other rail is arbitrary."""
 
-    def __init__(self, table: Table, *, doubt: bool) -> None:
+    def __init__(self, table: StateTable, *, doubt: bool) -> None:
         """The rail before the first tick; with `doubt` the possible one."""
         self._table, self._rail, self._state = table, int(doubt), 0
 

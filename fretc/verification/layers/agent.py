@@ -10,12 +10,12 @@ from collections.abc import Sequence
 
 from compiler.agents.checking import check_agent
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.claims import Layer, Proof, Result, not_applicable
+from compiler.logic.claims import ClaimResult, Layer, Proof, not_applicable
 from compiler.project.project import Project
 from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
 from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, NoResult
+from fretc.verification.engines.sandbox import CallLimits, NoResult
 from fretc.verification.layers.request import Request, named_text, unexamined, unknown
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.printer import timing as printing_of
@@ -44,7 +44,7 @@ def prove(
     return proofs
 
 
-def _bundle(requirement: FormalizedRequirement, limits: Limits) -> tuple[Proof, ...]:
+def _bundle(requirement: FormalizedRequirement, limits: CallLimits) -> tuple[Proof, ...]:
     refused = ajpf.refusal(requirement)
     agent = (
         processes.confined(limits, bundle.checked_agent, requirement)
@@ -56,7 +56,7 @@ def _bundle(requirement: FormalizedRequirement, limits: Limits) -> tuple[Proof, 
     if isinstance(agent, NoResult):
         return (unknown(requirement.id, Layer.AGENT, CLAIM, agent.reason),)
     remark = ajpf.remark(requirement)
-    refuted = any(line.result is Result.COUNTEREXAMPLE for line in agent.evidence)
+    refuted = any(line.result is ClaimResult.COUNTEREXAMPLE for line in agent.evidence)
     if refuted and remark is not None and remark.code in _TOO_SOON:
         timing = printing_of(requirement.sentence.timing)
         return (

@@ -11,7 +11,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof
 from compiler.project.project import Project
 from fretc.verification.engines.crosshair import contract_texts, with_crosshair
-from fretc.verification.interceptor.file import Head, head
+from fretc.verification.interceptor.file import PureCore, head
 from fretc.verification.layers.request import Request, interceptor_of, unknown
 from monitors.source_text import interceptor as original
 
@@ -41,7 +41,7 @@ def prove(
     yield from (records.replace(proof, artefacts=artefacts) for proof in proofs)
 
 
-def _core(text: str) -> Head | str:
+def _core(text: str) -> PureCore | str:
     """The core; or why CrossHair, which executes contracts, must not read it."""
     core = head(text)
     if isinstance(core, str) or contract_texts(core.text) == contract_texts(original().text):

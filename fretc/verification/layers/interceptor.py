@@ -11,7 +11,7 @@ from compiler.logic.claims import Layer, Proof, not_applicable
 from compiler.project.project import Project
 from compiler.targets.interceptor_options import options
 from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, NoResult
+from fretc.verification.engines.sandbox import CallLimits, NoResult
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import otherwise
 from fretc.verification.layers.request import Request, interceptor_of, unexamined, unknown
@@ -36,7 +36,7 @@ def prove(
     yield from _contracts(file, declared, request.limits)
 
 
-def _contracts(file: NamedText, declared: Interception, limits: Limits) -> Iterator[Proof]:
+def _contracts(file: NamedText, declared: Interception, limits: CallLimits) -> Iterator[Proof]:
     """Contracts of the deployed module: any core, within the node that fretc writes."""
     deviation = otherwise(file.text, declared)
     proofs: NoResult | tuple[Proof, ...]

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class LanguageRow:
     """A language of the table; its module is imported on demand."""
 
     name: str
@@ -36,7 +36,7 @@ class Row:
 
 
 TABLE = (
-    Row(
+    LanguageRow(
         "C",
         (".c",),
         "c",
@@ -45,7 +45,7 @@ TABLE = (
         "install a C compiler, as with `apt install gcc`",
         "the deployed binary is the one that was proved",
     ),
-    Row(
+    LanguageRow(
         "Rust",
         (".rs",),
         "rust",
@@ -54,7 +54,7 @@ TABLE = (
         "install Rust: see rustup.rs, or `apt install rustc`",
         "the deployed binary is the one that was proved",
     ),
-    Row(
+    LanguageRow(
         "JavaScript",
         (".mjs", ".js"),
         "js",
@@ -66,7 +66,7 @@ TABLE = (
 )
 
 
-def language_of(file: str) -> Row | None:
+def language_of(file: str) -> LanguageRow | None:
     """The language of a file, by its suffix; None: Python."""
     suffix = PurePath(file).suffix
     return next((row for row in TABLE if suffix in row.suffixes), None)

@@ -9,8 +9,8 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof, not_checked, proof
 from compiler.project.project import Project
 from fretc.verification.compiled.plan import SourceText
-from fretc.verification.engines.sandbox import NoResult, Session
-from fretc.verification.layers.languages import Row, language_of
+from fretc.verification.engines.sandbox import NoResult, SandboxSession
+from fretc.verification.layers.languages import LanguageRow, language_of
 from fretc.verification.layers.request import Request, named_text, setup_of
 from fretc.verification.monitor.verifying import verified_beside, written
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -50,7 +50,7 @@ def _of_python(
     requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
     given = request.monitor
-    with Session(request.limits) as session:
+    with SandboxSession(request.limits) as session:
         whole = session.call(written, given.text, tuple(project.formalized)) if given else None
         for requirement in requirements:
             file = setup_of(requirement, project, request).monitor
@@ -67,7 +67,7 @@ def _of_language(
     requirements: Sequence[FormalizedRequirement],
     project: Project,
     request: Request,
-    language: Row,
+    language: LanguageRow,
     made: tuple[str, SourceText],
 ) -> Iterator[Proof]:
     """Proofs of a monitor in a language.

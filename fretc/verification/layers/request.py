@@ -8,11 +8,11 @@ from pathlib import PurePath
 
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof
+from compiler.logic.claims import ClaimOutcome, Layer, Proof, not_checked, proof
 from compiler.project.project import Project
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.target import stem
-from fretc.verification.engines.sandbox import Limits
+from fretc.verification.engines.sandbox import CallLimits
 from fretc.verification.loop.closed_loop import NamedText, Setup
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
@@ -26,7 +26,7 @@ class Request:
     """The layers and provers, and the texts; None: the generated text."""
 
     layers: Collection[Layer]
-    limits: Limits
+    limits: CallLimits
     demanded: Collection[Layer] = ()
     """Layers and provers that the user names, for every requirement; others count if they apply,
     and if the header of a requirement plans them."""
@@ -86,7 +86,7 @@ def unknown(
 
 
 def unexamined(
-    requirement: str, layer: Layer, claim: str, outcome: Outcome, text: NamedText | None = None
+    requirement: str, layer: Layer, claim: str, outcome: ClaimOutcome, text: NamedText | None = None
 ) -> Proof:
     """A claim that no engine has examined."""
     artefacts = {text.name: sha256(text.text)} if text else {}

@@ -16,8 +16,8 @@ from itertools import product
 from typing import Any, NamedTuple, Protocol
 
 from compiler.logic.kripke import ModelTooLargeError
-from fretc.verification.loop.actuation_model import Channel, Queue
-from fretc.verification.loop.model import Loop, Node, Tick
+from fretc.verification.loop.actuation_model import ActuationAssumptions, Queue
+from fretc.verification.loop.model import Loop, LoopTick, Node
 
 NONE, ARRIVED = -1, -2
 """Values in place of the age of a request: none is in flight; one has arrived."""
@@ -181,7 +181,7 @@ def _arrival(age: Any, then: TwinState, choice: StepChoice, times: Times, logic:
 
 
 @dataclass(frozen=True, slots=True)
-class Coverage:
+class AbstractionResult:
     """Result of comparing the loop with the abstraction step by step."""
 
     steps: int
@@ -191,7 +191,7 @@ class Coverage:
     """A step of the loop that the abstraction cannot take; None: there is none."""
 
 
-def covered(loop: Loop, limit: int, longest: int) -> Coverage:
+def covered(loop: Loop, limit: int, longest: int) -> AbstractionResult:
     """Whether the abstraction can take every step of the loop, over all states.
 
     Args:
@@ -231,7 +231,7 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
                     if (now, then) not in allowed:
                         allowed[now, then] = _is_step(now, then, times)
                     if not allowed[now, then]:
-                        return Coverage(steps, most, (now, then))
+                        return AbstractionResult(steps, most, (now, then))
                 key = (after, then.open, then.age)
                 if key not in visited and then.open <= longest:
                     if len(visited) >= limit:
@@ -239,10 +239,12 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
                     visited.add(key)
                     waiting.append(key)
             ended[case] = steps - before
-    return Coverage(steps, most, None)
+    return AbstractionResult(steps, most, None)
 
 
-def _followed(now: TwinState, tick: Tick, after: Node, channel: Channel) -> TwinState:
+def _followed(
+    now: TwinState, tick: LoopTick, after: Node, channel: ActuationAssumptions
+) -> TwinState:
     """State of the abstraction after a step of the loop."""
     if not tick.requested:
         return _numbers(-1, NONE, after)
@@ -260,7 +262,7 @@ def _numbers(open_: int, age: int, node: Node) -> TwinState:
     return TwinState(open_, age, node.losses, node.wheels.still, int(node.requested), node.silent)
 
 
-def times_of(channel: Channel) -> Times:
+def times_of(channel: ActuationAssumptions) -> Times:
     """Times of a channel that repeats its requests: at every tick, or after a silence."""
     beat = channel.heartbeat if channel.edge else 1
     return Times(channel.cells, beat, channel.latency, channel.lost, channel.braking)

@@ -16,7 +16,7 @@ Queue = tuple[tuple[bool, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Channel:
+class ActuationAssumptions:
     """Assumptions about everything that is not code. Times are cells."""
 
     cells: int
@@ -54,7 +54,7 @@ class ActuationState:
 
     interceptor: State
     still: int
-    """Ends of cells since the wheels have had zero, up to `Channel.stands`; -1: they move."""
+    """Ends of cells since the wheels have had zero, up to `stands`; -1: they move."""
     queue: Queue
 
 
@@ -67,7 +67,7 @@ _Layer = dict[tuple[ActuationState, bool], Word]
 class ActuationModel:
     """Channel, interceptor and wheels, driven by messages, the timer and time."""
 
-    def __init__(self, interceptor: InterceptorMachine, channel: Channel) -> None:
+    def __init__(self, interceptor: InterceptorMachine, channel: ActuationAssumptions) -> None:
         self.interceptor, self.channel = interceptor, channel
         self._inputs = [Event.MOVE, Event.STAND, *([Event.SCAN] if channel.scans else [])]
         self._known: dict[tuple[State, int, Queue], ActuationState] = {}

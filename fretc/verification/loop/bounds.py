@@ -19,8 +19,8 @@ from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of, letters_by_valuation
 from compiler.logic.claims import (
+    ClaimOutcome,
     Layer,
-    Outcome,
     Proof,
     not_checked,
     proof,
@@ -29,14 +29,14 @@ from compiler.logic.claims import (
 )
 from compiler.logic.kripke import ModelTooLargeError
 from compiler.targets.python import monitor as target
-from fretc.verification.engines.sandbox import Limits
+from fretc.verification.engines.sandbox import CallLimits
 from fretc.verification.interceptor.file import is_original
 from fretc.verification.interceptor.machine import NotAnInterceptorError
 from fretc.verification.loop.abstraction import (
     covered,
     times_of,
 )
-from fretc.verification.loop.actuation_model import ActuationModel, Channel
+from fretc.verification.loop.actuation_model import ActuationAssumptions, ActuationModel
 from fretc.verification.loop.closed_loop import (
     Setup,
     answered,
@@ -85,22 +85,22 @@ class Question:
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class BoundsResult:
     """Results of both claims, and the version of z3."""
 
-    answered: Outcome
-    enough: Outcome
+    answered: ClaimOutcome
+    enough: ClaimOutcome
     z3: str = ""
 
 
 def bounds_proofs(
-    requirement: FormalizedRequirement, setup: Setup, limits: Limits
+    requirement: FormalizedRequirement, setup: Setup, limits: CallLimits
 ) -> tuple[Proof, ...]:
     """Proofs of both claims: a response comes in time for all times; and the bound is enough."""
     reason = _inapplicable(requirement, setup)
     query = reason or question(requirement, setup)
     found = answered(reason, query, search, limits)
-    answer = Answer(found, found) if isinstance(found, Outcome) else found
+    answer = BoundsResult(found, found) if isinstance(found, ClaimOutcome) else found
     at_declared, at_any = (
         ()
         if isinstance(query, str)
@@ -190,7 +190,7 @@ def _answers(sentence: s.Sentence, stands: str) -> bool:
 # In another process ---------------------------------------------------------------------------
 
 
-def search(query: Question) -> Answer:
+def search(query: Question) -> BoundsResult:
     """Prove the invariant, compare abstraction and code, and search for the least bound."""
     try:
         endless = _with(query, s.Eventually())  # so that no run ends at a deadline
@@ -198,15 +198,15 @@ def search(query: Question) -> Answer:
         longest, steps, loops = _covered(query, endless, parts)
         obstacle, version = unproved(times_of(query.case.channel))
         if obstacle is not None:
-            return Answer(not_checked(obstacle), not_checked(obstacle), version)
-        in_time: Outcome = proved(
+            return BoundsResult(not_checked(obstacle), not_checked(obstacle), version)
+        in_time: ClaimOutcome = proved(
             f"by an inductive invariant; {steps:,} steps of {loops} loops are steps of its model"
         )
         if query.unknown is not None:
             in_time = not_checked(query.unknown)
-        return Answer(in_time, _least(query, longest + 1, parts.loop.drive), version)
+        return BoundsResult(in_time, _least(query, longest + 1, parts.loop.drive), version)
     except (NotALoopError, NotAnInterceptorError, ModelTooLargeError) as error:
-        return Answer(not_checked(str(error)), not_checked(str(error)))
+        return BoundsResult(not_checked(str(error)), not_checked(str(error)))
 
 
 def _covered(query: Question, endless: Case, parts: Parts) -> tuple[int, int, int]:
@@ -244,7 +244,9 @@ def _covered(query: Question, endless: Case, parts: Parts) -> tuple[int, int, in
     return longest[0], steps, len(loops)
 
 
-def _channel(declared: Channel, cells: int, latency: int, lost: int, braking: int) -> Channel:
+def _channel(
+    declared: ActuationAssumptions, cells: int, latency: int, lost: int, braking: int
+) -> ActuationAssumptions:
     """Small times; a heartbeat becomes short, too, and stays above 0."""
     return replace(
         declared,
@@ -267,7 +269,7 @@ def _short(settings: Options) -> Options:
     )
 
 
-def _formula(channel: Channel) -> int:
+def _formula(channel: ActuationAssumptions) -> int:
     """D: ticks within which each obligation is met, as in the claim."""
     filled = -(-(channel.latency + channel.braking) // channel.cells)
     return channel.lost * times_of(channel).heartbeat + max(1, filled)
@@ -282,7 +284,7 @@ def _with(query: Question, timing: s.Timing) -> Case:
     return replace(query.case, safety=monitor, observer=monitor, formula=requirement.ft_infinite)
 
 
-def _least(query: Question, least: int, drive: ActuationModel) -> Outcome:
+def _least(query: Question, least: int, drive: ActuationModel) -> ClaimOutcome:
     """Whether the bound is enough.
 
     Args:

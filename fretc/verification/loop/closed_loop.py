@@ -16,14 +16,14 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import exclusion_in_words, impossible_combinations
 from compiler.logic import spot as automata
-from compiler.logic.claims import Layer, Outcome, Proof, not_applicable, not_checked, proof
+from compiler.logic.claims import ClaimOutcome, Layer, Proof, not_applicable, not_checked, proof
 from compiler.targets.interceptor_options import ASSUMED, options, ticks
 from compiler.targets.interceptor_options import assumptions_digest as hash_of_assumed
 from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Limits, NoResult
+from fretc.verification.engines.sandbox import CallLimits, NoResult
 from fretc.verification.interceptor.file import otherwise
-from fretc.verification.loop.actuation_model import Channel
+from fretc.verification.loop.actuation_model import ActuationAssumptions
 from fretc.verification.loop.search import Case, Results, search
 from fretish.bindings.declarations import (
     Interception,
@@ -64,13 +64,13 @@ class Setup:
 
 
 def loop_proofs(
-    requirement: FormalizedRequirement, setup: Setup, limits: Limits
+    requirement: FormalizedRequirement, setup: Setup, limits: CallLimits
 ) -> tuple[Proof, ...]:
     """Proofs of both claims: the requirement is satisfied, and the stop is released."""
     reason = inapplicable(requirement, setup)
     problem = reason or case(requirement, setup)
     found = answered(reason, problem, search, limits)
-    results = Results(found, found) if isinstance(found, Outcome) else found
+    results = Results(found, found) if isinstance(found, ClaimOutcome) else found
     premises = () if isinstance(problem, str) else tuple(assumptions(requirement, setup, problem))
     return (
         _evidence(requirement, setup, KEPT, results.kept, premises),
@@ -79,8 +79,8 @@ def loop_proofs(
 
 
 def answered(
-    inapplicable: str | None, problem: P | str, search: Callable[[P], R], limits: Limits
-) -> R | Outcome:
+    inapplicable: str | None, problem: P | str, search: Callable[[P], R], limits: CallLimits
+) -> R | ClaimOutcome:
     """The result of a search, or one outcome for all of its claims.
 
     Args:
@@ -101,7 +101,7 @@ def _evidence(
     requirement: FormalizedRequirement,
     setup: Setup,
     claim: str,
-    result: Outcome,
+    result: ClaimOutcome,
     premises: tuple[str, ...],
 ) -> Proof:
     return proof(
@@ -165,7 +165,7 @@ def case(requirement: FormalizedRequirement, setup: Setup) -> Case | str:
 
 def channel(
     requirement: FormalizedRequirement, interception: Interception, assumed: LoopAssumptions
-) -> Channel | str:
+) -> ActuationAssumptions | str:
     """The assumptions in cells; or why no cell fits."""
     tick = requirement.clock.period if requirement.clock else None
     if tick is None:
@@ -176,7 +176,7 @@ def channel(
             f"a tick of the clock, {in_words(tick)}, is not a whole number of periods of the "
             f"interceptor's timer, {in_words(cell)}"
         )
-    return Channel(
+    return ActuationAssumptions(
         tick // cell,
         ticks(assumed.latency, cell),
         assumed.lost,

@@ -46,7 +46,7 @@ class Node(NamedTuple):
     """Ticks from the last stop message, or from tick 0, to the next tick; 0 without a heartbeat."""
 
 
-class Tick(NamedTuple):
+class LoopTick(NamedTuple):
     """Facts about a tick that the following node does not contain."""
 
     letter: Valuation
@@ -104,13 +104,13 @@ class Loop:
 
     # One tick -------------------------------------------------------------------------------
 
-    def steps(self, node: Node) -> Iterator[tuple[Tick, Node]]:
+    def steps(self, node: Node) -> Iterator[tuple[LoopTick, Node]]:
         """Every possible next tick, each with the node at its end."""
         for tick, begun in self.begins(node):
             for after in self.ends(begun):
                 yield tick, after
 
-    def begins(self, node: Node) -> Iterator[tuple[Tick, Node]]:
+    def begins(self, node: Node) -> Iterator[tuple[LoopTick, Node]]:
         """Every possible next tick, each with the node at the moment of its message."""
         for stands, still in self._sampled(node.wheels.still):
             for letter in self._letters[stands]:
@@ -129,20 +129,20 @@ class Loop:
         certain = (True, self.channel.stands)
         return [certain] if still >= self.channel.stands else [(False, still), certain]
 
-    def _begins(self, node: Node, letter: Valuation, still: int) -> Iterator[tuple[Tick, Node]]:
+    def _begins(self, node: Node, letter: Valuation, still: int) -> Iterator[tuple[LoopTick, Node]]:
         safety, observer, triggered, owed, violated = self._judge(node, letter)
         requested = bool(triggered or owed)
         same = self.channel.edge and requested == node.requested
         for sent, losses in self._fates(node, same):
             facts = (bool(triggered), bool(owed), requested, sent, same and sent is not None)
-            tick = Tick(letter, *facts, bool(violated))
+            tick = LoopTick(letter, *facts, bool(violated))
             wheels, silent = self._begun(node.wheels, tick, still), self._silence(node, sent)
             yield tick, Node(safety, observer, wheels, losses, requested, silent)
 
-    def _begun(self, wheels: ActuationState, tick: Tick, still: int) -> ActuationState:
+    def _begun(self, wheels: ActuationState, tick: LoopTick, still: int) -> ActuationState:
         return self.drive.begun(wheels, still, ((tick.requested, 0),) if tick.sent else ())
 
-    def word(self, before: Node, tick: Tick, after: Node) -> tuple[Event | None, ...]:
+    def word(self, before: Node, tick: LoopTick, after: Node) -> tuple[Event | None, ...]:
         """Events between the ends of two ticks; None: a cell ends."""
         stands = self.channel.stands if tick.letter[self._place] else before.wheels.still
         begun = self._begun(before.wheels, tick, stands)

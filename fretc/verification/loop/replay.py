@@ -10,9 +10,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from compiler.logic.claims import Trace
+from compiler.logic.claims import ClaimTrace
 from fretc.verification.interceptor.machine import Event, InterceptorMachine
-from fretc.verification.loop.model import Loop, Node, Tick
+from fretc.verification.loop.model import Loop, LoopTick, Node
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import VIOLATED, Truth
 from monitors.loading import load
@@ -22,10 +22,10 @@ EXTRA = ("request", "delivered", "halt", "wheels")
 the tick, whether the interceptor is halted and whether the wheels have to move."""
 
 
-class Moment(NamedTuple):
+class ReplayTick(NamedTuple):
     """A tick, and the events before the next one."""
 
-    tick: Tick
+    tick: LoopTick
     events: tuple[Event | None, ...]
     """Events; None: a cell ends."""
 
@@ -42,22 +42,24 @@ class LoadedMonitor:
         return load("monitor", self.text)
 
 
-def moments(loop: Loop, start: Node, run: Sequence[tuple[Tick, Node]]) -> tuple[Moment, ...]:
+def moments(
+    loop: Loop, start: Node, run: Sequence[tuple[LoopTick, Node]]
+) -> tuple[ReplayTick, ...]:
     """The run with its events."""
     timeline, before = [], start
     for tick, after in run:
-        timeline.append(Moment(tick, loop.word(before, tick, after)))
+        timeline.append(ReplayTick(tick, loop.word(before, tick, after)))
         before = after
     return tuple(timeline)
 
 
 def replayed(
-    run: Sequence[Moment],
+    run: Sequence[ReplayTick],
     safety: LoadedMonitor,
     observer: LoadedMonitor,
     loop: Loop,
     cycle: int | None = None,
-) -> tuple[Trace, bool]:
+) -> tuple[ClaimTrace, bool]:
     """The run as a table, and whether the observer detects a violation at its last tick.
 
     Raises:
@@ -67,7 +69,7 @@ def replayed(
     rows = tuple(again.row(moment) for moment in run)
     names = (*loop.environment.atoms, *EXTRA)
     actions = tuple(map(_in_words, run))
-    return Trace(names, rows, actions, cycle), again.violated
+    return ClaimTrace(names, rows, actions, cycle), again.violated
 
 
 class _Replay:
@@ -84,7 +86,7 @@ class _Replay:
         self._lost, self._silent, self._last_request = 0, 0, False
         self.violated = False
 
-    def row(self, moment: Moment) -> tuple[Truth, ...]:
+    def row(self, moment: ReplayTick) -> tuple[Truth, ...]:
         """Step all code by one tick; returns the row of the table."""
         tick = moment.tick
         self._sample(tick)
@@ -103,15 +105,15 @@ class _Replay:
         halted = self._interceptor.is_halted(self._state)
         return (*tick.letter, tick.requested, delivered, halted, self._still < 0)
 
-    def _sample(self, tick: Tick) -> None:
+    def _sample(self, tick: LoopTick) -> None:
         stands = tick.letter[self._environment.atoms.index(self._environment.stands)]
         assert self._still >= 0 if stands else self._still < self._channel.stands
         self._still = self._channel.stands if stands else self._still
 
-    def _step(self, monitor: Monitor, tick: Tick) -> None:
+    def _step(self, monitor: Monitor, tick: LoopTick) -> None:
         monitor.advance([dict(zip(self._environment.atoms, tick.letter, strict=True))])
 
-    def _send(self, tick: Tick) -> None:
+    def _send(self, tick: LoopTick) -> None:
         same = self._channel.edge and tick.requested == self._last_request
         beat = self._channel.heartbeat
         assert tick.again == (same and tick.sent is not None)
@@ -139,12 +141,12 @@ class _Replay:
 # Words ----------------------------------------------------------------------------------------
 
 
-def _in_words(moment: Moment) -> str:
+def _in_words(moment: ReplayTick) -> str:
     """`a stop is requested, and the message is lost; a command to move is received`."""
     return "; ".join((*_message(moment.tick), *_deliveries(moment.events)))
 
 
-def _message(tick: Tick) -> Iterator[str]:
+def _message(tick: LoopTick) -> Iterator[str]:
     request = "a stop is requested" if tick.requested else "no stop is requested"
     again = " again" if tick.again else ""
     if tick.sent is None:

@@ -12,12 +12,12 @@ from functools import lru_cache
 from typing import assert_never
 
 from compiler.logic import formula as f
-from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted, vacuous
+from compiler.logic.claims import ClaimOutcome, ClaimTrace, not_checked, proved, refuted, vacuous
 from compiler.logic.kripke import Explored, ModelTooLargeError, check, explore
 from compiler.logic.orders import Exclusion
 from fretc.verification.interceptor.machine import InterceptorMachine, NotAnInterceptorError
-from fretc.verification.loop.actuation_model import ActuationModel, Channel
-from fretc.verification.loop.model import Environment, Loop, Node, Tick
+from fretc.verification.loop.actuation_model import ActuationAssumptions, ActuationModel
+from fretc.verification.loop.model import Environment, Loop, LoopTick, Node
 from fretc.verification.loop.replay import LoadedMonitor, moments, replayed
 from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.text_check import strange
@@ -48,7 +48,7 @@ class Case:
     """Text of the monitor that detects violations."""
     interceptor: str
     settings: Options
-    channel: Channel
+    channel: ActuationAssumptions
     stands: str
     limit: int = 10**6
     """Maximum number of states of the exploration."""
@@ -60,8 +60,8 @@ class Case:
 class Results:
     """The results of both claims."""
 
-    kept: Outcome
-    released: Outcome
+    kept: ClaimOutcome
+    released: ClaimOutcome
 
 
 class NotALoopError(Exception):
@@ -74,7 +74,7 @@ def search(case: Case) -> Results:
         parts = Parts.of(case)
         reached = reach(parts.loop, case.limit)
         visible = frozenset(() if is_safety(case.formula) else f.atoms(case.formula))
-        runs = Runs.of(parts.loop, visible | {_TRIGGER.name, _HALT.name}, case.limit)
+        runs = LoopRuns.of(parts.loop, visible | {_TRIGGER.name, _HALT.name}, case.limit)
         return Results(
             _requirement_result(case, parts, reached, runs), _release_result(parts, runs)
         )
@@ -161,7 +161,7 @@ class Exploration:
 
     states: int
     steps: int
-    violation: tuple[tuple[Tick, Node], ...] | None
+    violation: tuple[tuple[LoopTick, Node], ...] | None
     triggered: bool
     moved: bool
     """Whether the robot can be sampled while it moves."""
@@ -174,7 +174,7 @@ def reach(loop: Loop, limit: int) -> Exploration:
         ModelTooLargeError: there are more states than the limit.
     """
     place = loop.environment.atoms.index(loop.environment.stands)
-    came: dict[Node, tuple[Node, Tick] | None] = {loop.initial: None}
+    came: dict[Node, tuple[Node, LoopTick] | None] = {loop.initial: None}
     waiting, visited = [loop.initial], set[Node]()
     steps, triggered, moved = 0, False, False
     for node in waiting:
@@ -197,8 +197,10 @@ def reach(loop: Loop, limit: int) -> Exploration:
     return Exploration(len(came), steps, None, triggered, moved)
 
 
-def _way(came: dict[Node, tuple[Node, Tick] | None], node: Node) -> tuple[tuple[Tick, Node], ...]:
-    way: list[tuple[Tick, Node]] = []
+def _way(
+    came: dict[Node, tuple[Node, LoopTick] | None], node: Node
+) -> tuple[tuple[LoopTick, Node], ...]:
+    way: list[tuple[LoopTick, Node]] = []
     while (back := came[node]) is not None:
         before, tick = back
         way.append((tick, node))
@@ -206,7 +208,9 @@ def _way(came: dict[Node, tuple[Node, Tick] | None], node: Node) -> tuple[tuple[
     return tuple(reversed(way))
 
 
-def _requirement_result(case: Case, parts: Parts, reached: Exploration, runs: Runs) -> Outcome:
+def _requirement_result(
+    case: Case, parts: Parts, reached: Exploration, runs: LoopRuns
+) -> ClaimOutcome:
     if reached.violation is not None:
         trace, violated = as_table(parts, reached.violation)
         assert violated, "the code does not violate what the model violates"
@@ -227,7 +231,7 @@ def _requirement_result(case: Case, parts: Parts, reached: Exploration, runs: Ru
     return refuted("the demanded response never comes: the last ticks repeat for ever", lasso)
 
 
-def _release_result(parts: Parts, runs: Runs) -> Outcome:
+def _release_result(parts: Parts, runs: LoopRuns) -> ClaimOutcome:
     lasso = _lasso(parts, runs, RELEASE)
     if lasso is None:
         if not any(_HALT.name in label for label in runs.explored.kripke.labels):
@@ -237,8 +241,8 @@ def _release_result(parts: Parts, runs: Runs) -> Outcome:
 
 
 def as_table(
-    parts: Parts, run: tuple[tuple[Tick, Node], ...], cycle: int | None = None
-) -> tuple[Trace, bool]:
+    parts: Parts, run: tuple[tuple[LoopTick, Node], ...], cycle: int | None = None
+) -> tuple[ClaimTrace, bool]:
     """The run as a table, replayed by the code; and whether it violates the requirement."""
     visible = moments(parts.loop, parts.loop.initial, run)
     return replayed(visible, parts.safety, parts.observer, parts.loop, cycle)
@@ -251,7 +255,7 @@ Labelled = tuple[frozenset[str], Node]
 
 
 @dataclass(frozen=True, slots=True)
-class Runs:
+class LoopRuns:
     """All runs, also beyond violations, from before the first tick on."""
 
     loop: Loop
@@ -260,7 +264,7 @@ class Runs:
     explored: Explored[Labelled]
 
     @classmethod
-    def of(cls, loop: Loop, visible: frozenset[str], limit: int) -> Runs:
+    def of(cls, loop: Loop, visible: frozenset[str], limit: int) -> LoopRuns:
         """The runs; raises ModelTooLargeError if there are more states than the limit."""
         ends: dict[tuple[frozenset[str], Node], tuple[Labelled, ...]] = {}
 
@@ -274,7 +278,7 @@ class Runs:
         start: Labelled = (frozenset(), loop.initial)
         return cls(loop, visible, explore(start, successors, lambda state: state[0], limit))
 
-    def tick(self, before: Node, label: frozenset[str], after: Node) -> Tick:
+    def tick(self, before: Node, label: frozenset[str], after: Node) -> LoopTick:
         """One of the ticks that lead from one state to the next."""
         return next(
             tick
@@ -283,12 +287,12 @@ class Runs:
         )
 
 
-def _lasso(parts: Parts, runs: Runs, formula: f.Formula) -> Trace | None:
+def _lasso(parts: Parts, runs: LoopRuns, formula: f.Formula) -> ClaimTrace | None:
     """An endless run that violates the formula from tick 0 on; None: there is none."""
     lasso = check(runs.explored.kripke, f.next_(formula))
     if lasso is None:
         return None
-    run: list[tuple[Tick, Node]] = []
+    run: list[tuple[LoopTick, Node]] = []
     before = parts.loop.initial
     for label, after in (runs.explored.states[number] for number in lasso.states[1:]):
         run.append((runs.tick(before, label, after), after))
@@ -297,7 +301,7 @@ def _lasso(parts: Parts, runs: Runs, formula: f.Formula) -> Trace | None:
     return trace
 
 
-def _true(loop: Loop, tick: Tick) -> frozenset[str]:
+def _true(loop: Loop, tick: LoopTick) -> frozenset[str]:
     true = {name for name, value in zip(loop.environment.atoms, tick.letter, strict=True) if value}
     return frozenset({*true, _TRIGGER.name} if tick.triggered else true)
 

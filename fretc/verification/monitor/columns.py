@@ -39,7 +39,7 @@ Word = tuple[tuple[Truth, ...], ...]
 
 
 @dataclass(slots=True)
-class Terms:
+class TermTable:
     """Terms as numbers, equal for equal terms; texts to compare share one table."""
 
     _numbers: dict[tuple[object, ...], int] = field(default_factory=dict)

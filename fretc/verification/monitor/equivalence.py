@@ -59,7 +59,7 @@ class Equivalence:
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class DifferingTrace:
     """A trace at whose last tick the judgements differ."""
 
     word: tuple[Valuation, ...]
@@ -78,7 +78,7 @@ def compare(
     atoms: Sequence[str],
     limit: int = 10**6,
     excluded: Sequence[Exclusion] = (),
-) -> Equivalence | Difference | str:
+) -> Equivalence | DifferingTrace | str:
     """Compare a monitor with the reference automaton of its sentence; or why that is impossible.
 
     After a violation nothing is compared, because a monitor's verdict is then final.
@@ -144,15 +144,15 @@ class _Reference:
 
 def _compared(
     machine: Machine, reference: _Reference, limit: int
-) -> Equivalence | Difference | str:
+) -> Equivalence | DifferingTrace | str:
     """Whether both are equal, by classes of states; if not, a shortest word, by all pairs."""
     start = machine.save()
     result = _in_lock_step(machine, reference, Classes(), limit)
-    if not isinstance(result, Difference):
+    if not isinstance(result, DifferingTrace):
         return result
     machine.load(start)
     shortest = _in_lock_step(machine, reference, Pairs(), limit)
-    return shortest if isinstance(shortest, Difference) else replace(result, shortest=False)
+    return shortest if isinstance(shortest, DifferingTrace) else replace(result, shortest=False)
 
 
 class Visited(Protocol):
@@ -214,7 +214,7 @@ class Classes:
 
 def _in_lock_step(
     machine: Machine, reference: _Reference, visited: Visited, limit: int
-) -> Equivalence | Difference | str:
+) -> Equivalence | DifferingTrace | str:
     """Breadth-first search through new pairs, from the present state of the machine."""
     start = (0, machine.save())
     visited.add(*start)
@@ -230,7 +230,7 @@ def _in_lock_step(
             after = row[letter]
             expected = reference.judgements[after]
             if judgement != expected:
-                return Difference((*word(origins, place), valuation), expected, judgement)
+                return DifferingTrace((*word(origins, place), valuation), expected, judgement)
             if expected[0] == "violated":
                 continue
             reached = machine.save()

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from compiler.targets.python.comparisons import ANNOTATIONS, FUNCTIONS, NUMBER, TRUTH, WORD
 from fretc.verification.monitor.statements import (
-    UnexpectedCodeError,
+    UnexpectedStatementError,
     body_of,
     constants,
     is_one_of,
@@ -65,7 +65,7 @@ def _variable(args: Sequence[ast.expr], more: Sequence[ast.keyword], node: ast.s
             require(bool(texts) and texts == constants(words), node)
             return Variable(parameter, WORD, texts)
         case _:
-            raise UnexpectedCodeError(
+            raise UnexpectedStatementError(
                 f"it is not laid out as fretc writes it: `{ast.unparse(node)}`"
             )
 
@@ -137,7 +137,7 @@ def _check_statements(statements: Sequence[ast.stmt], bound: frozenset[str]) -> 
                     _check_number(each, bound)
                 continue
             case _:
-                raise UnexpectedCodeError(
+                raise UnexpectedStatementError(
                     f"it is not laid out as fretc writes it: `{ast.unparse(statement)}`"
                 )
         require(name not in fixed and name not in bound, statement)

@@ -16,7 +16,7 @@ from math import inf, nan, nextafter
 from typing import Any
 
 from fretc.verification.monitor.front_layout import declared_variables
-from fretc.verification.monitor.statements import UnexpectedCodeError
+from fretc.verification.monitor.statements import UnexpectedStatementError
 from fretc.verification.monitor.text_check import own
 from monitors.kernel import Monitor
 from monitors.kernel.readings import exact
@@ -112,14 +112,16 @@ class _Parts:
                 return (function, *(self.term(arg) for arg in args))
             case ast.IfExp(_, before, ast.Subscript(_, ast.Constant(int(place)))):
                 if place >= len(self.kept):
-                    raise UnexpectedCodeError("it reads an earlier value that it does not store")
+                    raise UnexpectedStatementError(
+                        "it reads an earlier value that it does not store"
+                    )
                 return ("earlier", self.term(before), self.term(self.kept[place]))
             case _:
                 raise AssertionError(f"not laid out as fretc writes it: {ast.unparse(node)}")
 
     def _assigned(self, name: str) -> Term:
         if name in self.waiting:
-            raise UnexpectedCodeError("a stored value depends on all earlier ticks")
+            raise UnexpectedStatementError("a stored value depends on all earlier ticks")
         if name not in self.known:
             self.waiting.append(name)
             self.known[name] = self.term(self.assigned[name])

@@ -14,7 +14,7 @@ from fretc.verification.monitor.equivalence import Judgement
 from monitors.kernel import Monitor
 
 
-class Cells:
+class RailState:
     """All cells of a rail: a step reads no other stored value."""
 
     def __init__(self, rail: Any, among: Collection[str] | None = None) -> None:
@@ -73,7 +73,7 @@ class Stepped:
         self._rail, self._place = rail, place
         self._alone = len(monitor.REQUIREMENTS) == 1
         self._step = _stepping(monitor, atoms)
-        self._cells = Cells(rail, cells)
+        self._cells = RailState(rail, cells)
         self._fates = [n for n in rail.__slots__ if n.endswith(("_broken", "_doomed"))]
 
     def save(self) -> Hashable:

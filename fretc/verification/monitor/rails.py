@@ -16,7 +16,7 @@ from typing import Any, Protocol
 from compiler.logic.orders import Exclusion, only_possible
 from compiler.program.program import MARKS, SIGNALS
 from fretc.verification.monitor.equivalence import Classes, Pairs, Visited, word
-from fretc.verification.monitor.machine import Cells
+from fretc.verification.monitor.machine import RailState
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth
 
@@ -90,7 +90,7 @@ class _Rail:
     def __init__(self, monitor: Monitor, place: int, doubt: bool, atoms: Sequence[str]) -> None:
         self._rail: Any = monitor.RAIL(doubt=doubt)
         self._place = place
-        self._cells = Cells(self._rail)
+        self._cells = RailState(self._rail)
         self._order = tuple(
             atoms.index(name) if name in atoms else None for name in monitor.PROPOSITIONS
         )

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from functools import cache
 
 
-class UnexpectedCodeError(Exception):
+class UnexpectedStatementError(Exception):
     """The text contains code that the generator does not write, or that is not allowed."""
 
 
@@ -15,7 +15,7 @@ def require(right: bool, node: ast.AST) -> None:
     """Raise UnexpectedCodeError, with the line of the node, unless the condition holds."""
     if not right:
         line = (ast.unparse(node).splitlines() or ["nothing"])[0]
-        raise UnexpectedCodeError(f"it is not laid out as fretc writes it: `{line}`")
+        raise UnexpectedStatementError(f"it is not laid out as fretc writes it: `{line}`")
 
 
 @cache

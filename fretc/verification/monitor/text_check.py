@@ -20,7 +20,7 @@ from compiler.targets.python.program import locals_of, negation
 from fretc.verification.monitor.column_layout import check_columns
 from fretc.verification.monitor.front_layout import check_front, declared_variables
 from fretc.verification.monitor.statements import (
-    UnexpectedCodeError,
+    UnexpectedStatementError,
     below_docstring,
     body_of,
     constants,
@@ -29,7 +29,7 @@ from fretc.verification.monitor.statements import (
     reads,
     require,
 )
-from fretc.verification.monitor.tick_layout import FIXED, Rail, Tick, check_advance
+from fretc.verification.monitor.tick_layout import FIXED, RailNames, RowBehaviour, check_advance
 from fretish.reading.text_encoding import is_utf8
 from monitors.kernel.variables import Variable
 from monitors.source_text import Runtime, kernel, kernel_of_variables
@@ -51,7 +51,7 @@ def strange(text: str) -> str | None:
         _check_module(_parsed(own), by_variables=runtime is kernel_of_variables())
     except SyntaxError as error:
         return f"it is not valid Python: {error}"
-    except UnexpectedCodeError as error:
+    except UnexpectedStatementError as error:
         return str(error)
     return None
 
@@ -80,7 +80,7 @@ def _check_module(module: ast.Module, *, by_variables: bool) -> None:
         case [ast.ClassDef() as rail, ast.ClassDef() as monitor, binding, run]:
             pass
         case _:
-            raise UnexpectedCodeError(
+            raise UnexpectedStatementError(
                 "it is not laid out as fretc writes it: two classes and no more"
             )
     title = rail.name.removesuffix("Rail")
@@ -138,7 +138,7 @@ def _is_plain(node: ast.ClassDef) -> bool:
     return plain and not getattr(node, "type_params", ())
 
 
-def _rail(node: ast.ClassDef) -> tuple[Rail, ast.stmt]:
+def _rail(node: ast.ClassDef) -> tuple[RailNames, ast.stmt]:
     """Names of the rail; checks everything except `advance`."""
     body = below_docstring(node)
     require(len(body) == 6, node)
@@ -150,9 +150,11 @@ def _rail(node: ast.ClassDef) -> tuple[Rail, ast.stmt]:
         ):
             pass
         case _:
-            raise UnexpectedCodeError("it is not laid out as fretc writes it: `__slots__`, `CELLS`")
+            raise UnexpectedStatementError(
+                "it is not laid out as fretc writes it: `__slots__`, `CELLS`"
+            )
     prefixes = _prefixes(signals, marks)
-    names = Rail(names_in(all_cells), frozenset(_windows(initial)), prefixes)
+    names = RailNames(names_in(all_cells), frozenset(_windows(initial)), prefixes)
     reserved = ("doubt", "tick", *names.marks, *names.signals)
     everything = (*reserved, *names.cells)
     require(len({*everything}) == len(everything), cells)
@@ -185,7 +187,7 @@ def _windows(initial: ast.stmt) -> Iterator[str]:
                 yield name
 
 
-def _check_initial(node: ast.stmt, rail: Rail) -> None:
+def _check_initial(node: ast.stmt, rail: RailNames) -> None:
     fixed = {"doubt": "doubt", **dict.fromkeys(("tick", *rail.marks), "-1")}
     signals = dict.fromkeys(rail.signals, f"(False,) * {len(SIGNALS)}")
     names = []
@@ -214,7 +216,7 @@ def _is_initial(node: ast.expr) -> bool:
 
 
 def _monitor(
-    node: ast.ClassDef, rail: str, names: Rail, *, by_variables: bool
+    node: ast.ClassDef, rail: str, names: RailNames, *, by_variables: bool
 ) -> tuple[Mapping[str, str], ast.stmt, ast.stmt]:
     """Propositions of a monitor with their parameters, its `step` and its `verdicts`.
 
@@ -301,7 +303,9 @@ def _literals(node: ast.stmt, inputs: Mapping[str, str]) -> tuple[str, ...]:
             return ()
 
 
-def _check_step(node: ast.stmt, inputs: Sequence[str], prefixes: Sequence[str], tick: Tick) -> None:
+def _check_step(
+    node: ast.stmt, inputs: Sequence[str], prefixes: Sequence[str], tick: RowBehaviour
+) -> None:
     """Check the signature of `step`; if the tick is inlined, check that it equals `advance`."""
     parameters = "self, *, " + ", ".join(f"{name}: Truth" for name in inputs)
     row = f"({', '.join(inputs)}{',' * (len(inputs) == 1)})"
@@ -319,7 +323,7 @@ def _check_step(node: ast.stmt, inputs: Sequence[str], prefixes: Sequence[str], 
     require(reads(body, text), node)
 
 
-def _verdict(prefix: str, tick: Tick) -> str:
+def _verdict(prefix: str, tick: RowBehaviour) -> str:
     """The end of a step with an inlined tick."""
     text = f"if {_violated('rail', prefix, tick)}:\n    return VIOLATED\n"
     if prefix in tick.settled:
@@ -327,7 +331,7 @@ def _verdict(prefix: str, tick: Tick) -> str:
     return f"{text}return PENDING"
 
 
-def _check_verdicts(node: ast.stmt, prefixes: Sequence[str], tick: Tick) -> None:
+def _check_verdicts(node: ast.stmt, prefixes: Sequence[str], tick: RowBehaviour) -> None:
     """Check that verdicts follow from marks and signals of both rails."""
     values = []
     for prefix in prefixes:
@@ -345,7 +349,7 @@ def _check_verdicts(node: ast.stmt, prefixes: Sequence[str], tick: Tick) -> None
 _SETTLED = SIGNALS.index("settled")
 
 
-def _violated(rail: str, prefix: str, tick: Tick) -> str:
+def _violated(rail: str, prefix: str, tick: RowBehaviour) -> str:
     doomed = f" or {rail}.{prefix}_doomed >= 0" if prefix in tick.doomed else ""
     return f"{rail}.{prefix}_broken >= 0{doomed}"
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from compiler.program.program import MARKS, SIGNALS
 from compiler.targets.python.program import negation
 from fretc.verification.monitor.statements import (
-    UnexpectedCodeError,
+    UnexpectedStatementError,
     body_of,
     is_one_of,
     normal,
@@ -28,7 +28,7 @@ FIXED = frozenset(
 
 
 @dataclass(frozen=True, slots=True)
-class Rail:
+class RailNames:
     """Names of a rail."""
 
     cells: tuple[str, ...]
@@ -47,7 +47,7 @@ class Rail:
 
 
 @dataclass(frozen=True, slots=True)
-class Tick:
+class RowBehaviour:
     """Behaviour of a rail at one row."""
 
     inlined: str
@@ -58,7 +58,7 @@ class Tick:
     """Prefixes of requirements that can be satisfied for ever."""
 
 
-def check_advance(node: ast.stmt, rail: Rail, inputs: Mapping[str, str]) -> Tick:
+def check_advance(node: ast.stmt, rail: RailNames, inputs: Mapping[str, str]) -> RowBehaviour:
     """Check that the function does the visible work at each row, and nothing else.
 
     Args:
@@ -81,9 +81,9 @@ def check_advance(node: ast.stmt, rail: Rail, inputs: Mapping[str, str]) -> Tick
     row = ", ".join(inputs.values()) + "," * (len(inputs) == 1)
     require(is_one_of(loop.target, f"({row})" if inputs else "_"), loop)
     require(bool(loop.body) and is_one_of(loop.body[0], "tick += 1"), loop)
-    bound = _Tick(rail, frozenset(carried)).check(loop.body[1:], inputs)
+    bound = _RowStatements(rail, frozenset(carried)).check(loop.body[1:], inputs)
     signals = _check_end(body[place + 1 :], rail, carried, bound)
-    return Tick(
+    return RowBehaviour(
         inlined(body),
         frozenset(prefix for prefix in rail.prefixes if f"{prefix}_doomed" in carried),
         frozenset(prefix for prefix in rail.prefixes if signals[prefix]["settled"] != "False"),
@@ -143,7 +143,7 @@ class _OnRail(ast.NodeTransformer):
         return ast.Name("rail", node.ctx) if node.id == "self" else node
 
 
-def _carried(statements: Sequence[ast.stmt], rail: Rail) -> Iterator[str]:
+def _carried(statements: Sequence[ast.stmt], rail: RailNames) -> Iterator[str]:
     """Names that are read from the rail before the first row."""
     fixed = [ast.unparse(statement) for statement in statements]
     require(fixed[:3] == ["known = True", "doubt = self.doubt", "tick = self.tick"], statements[0])
@@ -156,12 +156,14 @@ def _carried(statements: Sequence[ast.stmt], rail: Rail) -> Iterator[str]:
 
 
 def _check_end(
-    statements: Sequence[ast.stmt], rail: Rail, carried: Sequence[str], bound: frozenset[str]
+    statements: Sequence[ast.stmt], rail: RailNames, carried: Sequence[str], bound: frozenset[str]
 ) -> Mapping[str, Mapping[str, str]]:
     """Check the end of `advance`, which stores cells, marks and signals; returns these texts."""
     pending = {*_stored(carried)}
     if len(statements) < 2:
-        raise UnexpectedCodeError("it is not laid out as fretc writes it: `advance` does not end")
+        raise UnexpectedStatementError(
+            "it is not laid out as fretc writes it: `advance` does not end"
+        )
     first, *rest, last = statements
     require(is_one_of(first, "if tick == self.tick:\n    return True"), first)
     require(is_one_of(last, "return known"), last)
@@ -185,20 +187,22 @@ def _check_end(
     return signals
 
 
-def _signals(statement: ast.stmt, rail: Rail) -> tuple[str, Mapping[str, ast.expr]]:
+def _signals(statement: ast.stmt, rail: RailNames) -> tuple[str, Mapping[str, ast.expr]]:
     """Prefix of a requirement, and its signals at the last tick."""
     match statement:
         case ast.Assign([ast.Attribute(ast.Name("self"), name)], ast.Tuple(values)):
             require(name in rail.signals and len(values) == len(SIGNALS), statement)
             return name.removesuffix("_signals"), dict(zip(SIGNALS, values, strict=True))
-    raise UnexpectedCodeError(f"it is not laid out as fretc writes it: `{ast.unparse(statement)}`")
+    raise UnexpectedStatementError(
+        f"it is not laid out as fretc writes it: `{ast.unparse(statement)}`"
+    )
 
 
 @dataclass(frozen=True, slots=True)
-class _Tick:
+class _RowStatements:
     """Statements that are executed for each row."""
 
-    rail: Rail
+    rail: RailNames
     carried: frozenset[str]
 
     def check(self, statements: Sequence[ast.stmt], inputs: Mapping[str, str]) -> frozenset[str]:
@@ -298,7 +302,7 @@ def _check_value(node: ast.expr, bound: frozenset[str], windows: frozenset[str])
     match node:
         case ast.Name(name):
             if name not in bound:
-                raise UnexpectedCodeError(f"what it does at a tick depends on `{name}`")
+                raise UnexpectedStatementError(f"what it does at a tick depends on `{name}`")
         case ast.Constant(value):
             require(isinstance(value, int), node)
         case ast.UnaryOp(ast.Not() | ast.USub(), arg):

@@ -21,14 +21,14 @@ from functools import lru_cache
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of, impossible_combinations
 from compiler.formalization.numbers.reals import MOST_SEARCHED, with_numeric_counterexample
-from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
+from compiler.logic.claims import ClaimOutcome, ClaimTrace, not_checked, proved, refuted
 from compiler.logic.orders import Exclusion
 from compiler.targets.python import monitor as target
 from compiler.targets.python.names import prefixes_of
 from fretc.verification.monitor import front_terms, rails
-from fretc.verification.monitor.columns import Disagreement, Terms, Word, agreed
+from fretc.verification.monitor.columns import Disagreement, TermTable, Word, agreed
 from fretc.verification.monitor.equivalence import (
-    Difference,
+    DifferingTrace,
     Equivalence,
     Judgement,
     Machine,
@@ -36,7 +36,7 @@ from fretc.verification.monitor.equivalence import (
 )
 from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.slices import SlicedMonitor, slice_of
-from fretc.verification.monitor.statements import UnexpectedCodeError
+from fretc.verification.monitor.statements import UnexpectedStatementError
 from fretc.verification.monitor.text_check import own, strange
 from monitors.kernel import Monitor
 from monitors.kernel.variables import Variable
@@ -52,7 +52,7 @@ class NotAMonitorError(Exception):
 
 def verified_beside(
     requirement: FormalizedRequirement, text: str, whole: str | None, limit: int = MOST_STATES
-) -> Outcome:
+) -> ClaimOutcome:
     """Compare the text of a monitor with its requirement.
 
     Args:
@@ -102,7 +102,7 @@ def _opened(text: str) -> Monitor | str:
 
 def _compared(
     requirement: FormalizedRequirement, text: str, monitor: Monitor, limit: int, whole: str | None
-) -> Outcome:
+) -> ClaimOutcome:
     """The outcome for a text that is safe to execute."""
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == requirement.id]
     if not places:
@@ -114,7 +114,7 @@ def _compared(
     result = lock_step(requirement, machine, needed, limit)
     if isinstance(result, str):
         return not_checked(result)
-    if isinstance(result, Difference):
+    if isinstance(result, DifferingTrace):
         return judged_wrongly(result, atoms)
     generated = target.text(requirement)
     if text != generated:
@@ -155,7 +155,7 @@ def _needed(
 
 def lock_step(
     requirement: FormalizedRequirement, machine: Machine, atoms: Sequence[str], limit: int
-) -> Equivalence | Difference | str:
+) -> Equivalence | DifferingTrace | str:
     """The comparison with the automaton of the sentence, over all valuations of the atoms.
 
     In case of a difference, over possible valuations only, because an impossible trace shows
@@ -165,21 +165,21 @@ def lock_step(
     sentence, ticks = requirement.sentence, requirement.ticks or 0
     start = machine.save()
     result = compare(machine, sentence, ticks, atoms, limit)
-    impossible = impossible_combinations(requirement) if isinstance(result, Difference) else ()
+    impossible = impossible_combinations(requirement) if isinstance(result, DifferingTrace) else ()
 
-    def compare_without(more: Sequence[Exclusion]) -> Equivalence | Difference | str:
+    def compare_without(more: Sequence[Exclusion]) -> Equivalence | DifferingTrace | str:
         if not impossible and not more:
             return result
         machine.load(start)
         most = min(limit, MOST_SEARCHED) if more else limit
         return compare(machine, sentence, ticks, atoms, most, (*impossible, *more))
 
-    found: Equivalence | Difference | str
-    found, note = with_numeric_counterexample(requirement, atoms, Difference, compare_without)
-    return replace(found, note=note) if isinstance(found, Difference) else found
+    found: Equivalence | DifferingTrace | str
+    found, note = with_numeric_counterexample(requirement, atoms, DifferingTrace, compare_without)
+    return replace(found, note=note) if isinstance(found, DifferingTrace) else found
 
 
-def _proved(same: Equivalence, ticks: int, states: int = 0) -> Outcome:
+def _proved(same: Equivalence, ticks: int, states: int = 0) -> ClaimOutcome:
     """The outcome for a monitor that has the meaning of the sentence.
 
     Args:
@@ -199,7 +199,7 @@ def _proved(same: Equivalence, ticks: int, states: int = 0) -> Outcome:
     )
 
 
-def judged_wrongly(difference: Difference, atoms: tuple[str, ...]) -> Outcome:
+def judged_wrongly(difference: DifferingTrace, atoms: tuple[str, ...]) -> ClaimOutcome:
     """The outcome for a monitor with a wrong verdict on a trace."""
     count = len(difference.word)
     length = f"{count} tick{'' if count == 1 else 's'}"
@@ -226,7 +226,7 @@ def _disagreement(
     word: Word,
     fault: str,
     values: str = "",
-) -> Outcome:
+) -> ClaimOutcome:
     """The outcome for a monitor with wrong signals at the last tick of a trace.
 
     Args:
@@ -239,9 +239,11 @@ def _disagreement(
     return refuted(f"{fault} on a trace{last}", _whole(atoms, word))
 
 
-def _whole(atoms: Sequence[str], word: Word) -> Trace:
+def _whole(atoms: Sequence[str], word: Word) -> ClaimTrace:
     """The trace with the propositions of other requirements, which are false."""
-    return Trace(tuple(atoms), tuple((*row, *(False,) * (len(atoms) - len(row))) for row in word))
+    return ClaimTrace(
+        tuple(atoms), tuple((*row, *(False,) * (len(atoms) - len(row))) for row in word)
+    )
 
 
 @lru_cache(maxsize=1)
@@ -256,7 +258,7 @@ def _front_compared(
     text: str,
     monitor: Monitor,
     atoms: Sequence[str],
-) -> Outcome | None:
+) -> ClaimOutcome | None:
     """Why its comparisons are not those of the sentence; None: they are.
 
     Another requirement in the file may use as a truth value what this one uses as a number; then
@@ -275,11 +277,11 @@ def _differing(
     written: str,
     monitor: Monitor,
     atoms: Sequence[str],
-) -> Outcome | None:
+) -> ClaimOutcome | None:
     """Why the variables or comparisons of a text differ from the other's."""
     try:
         actual, expected = front_terms.terms(text), front_terms.terms(written)
-    except UnexpectedCodeError as error:
+    except UnexpectedStatementError as error:
         return not_checked(str(error))
     names = [name for name in requirement.watched if name in expected]
     if all(actual.get(name) == expected[name] for name in names):
@@ -307,7 +309,7 @@ def _compared_with_generated(
     place: int,
     atoms: tuple[Sequence[str], int],
     limit: int,
-) -> int | Outcome:
+) -> int | ClaimOutcome:
     """Number of states in which it agrees with the generated text of the requirement.
 
     Args:
@@ -345,7 +347,7 @@ def _compared_with_generated(
             fault = f"the generated monitor has another {signal}{noted(note)}"
             return _disagreement(names, word, fault)
         case rails.Equivalent(states):
-            terms = Terms()
+            terms = TermTable()
             if terms.of(text, place) == terms.of(generated, 0):
                 return states
             return not_checked(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Sequence
 
-from fretc.verification.compiled.readings import Reading
+from fretc.verification.compiled.readings import RailReading
 from fretc.verification.compiled.tools import Binary, compiled
 
 FLAGS = tuple(
@@ -78,10 +78,10 @@ def _library(cells: int, inputs: Sequence[str], outcomes: Sequence[str]) -> str:
     """Rust crate with a C interface: inputs are a byte each, and outcomes as in C."""
     given = ", ".join(f"{name}: TRUTHS[*values.add({i}) as usize]" for i, name in enumerate(inputs))
     told = "".join(f"    told.add({i}).write(of(found.{n}));\n" for i, n in enumerate(outcomes))
-    _, *truths = Reading._fields
+    _, *truths = RailReading._fields
     bits = ", ".join(f"reading.{name}.into()" for name in truths)
     return f"""use std::mem::size_of;
-use {_CRATE}::{{fretc_layout::PLACES, Inputs, Monitor, Outcome, Reading}};
+use {_CRATE}::{{fretc_layout::PLACES, Inputs, Monitor, Outcome, RailReading}};
 
 const TRUTHS: [Option<bool>; 3] = [Some(false), Some(true), None];
 

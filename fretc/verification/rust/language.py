@@ -8,7 +8,7 @@ from pathlib import Path
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.rust.monitor import TARGET
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretc.verification.compiled.library import saved
 from fretc.verification.compiled.plan import BuiltLibrary, ParsedSource, SourceText, implemented
 from fretc.verification.rust.build import BASE, built, compiler
@@ -27,7 +27,7 @@ def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) ->
         UnexpectedLayoutError: the layout differs from that of fretc.
     """
     own_rules = implemented([id for id, _ in _OUTCOMES.findall(given.text)], requirements)
-    files = TARGET.emit(own_rules, Options(one_file=True))
+    files = TARGET.emit(own_rules, TargetOptions(one_file=True))
     own = next(file.text for file in files if file.path.name == "lib.rs")
     cells, inputs = _fields(own, "struct Rail"), _fields(own, "pub struct Inputs")
     outcomes = tuple(name for _, name in _OUTCOMES.findall(own))

@@ -65,7 +65,7 @@ def check_layout(
     same_but_constants(first, own_first, -1)
     literals = {name: inputs.index(field) for name, field in _READ.findall(" ".join(own))}
     *own_statements, readings = _statements(own_stepped)
-    step = _Step(frozenset(own_statements), cells, literals)
+    step = _RustStep(frozenset(own_statements), cells, literals)
     *statements, last = _statements(stepped) or [()]
     for statement in statements:
         step.read(statement)
@@ -93,7 +93,7 @@ def _end(body: Tokens, start: int) -> int:
     return next((i for i in range(start, len(body)) if body[i] == "{"), len(body))
 
 
-class _Step(BlockFlow):
+class _RustStep(BlockFlow):
     """The body of `advance`, read statement by statement."""
 
     cell, literal = ("self", "."), ("now", ".")

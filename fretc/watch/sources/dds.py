@@ -13,8 +13,8 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 from fretc.logs.messages import ros2_types
-from fretc.watch.sources.dds_domain import Domain, Publisher, Reader, Writer, join
-from fretc.watch.sources.dds_types import Offer, UnreadableError
+from fretc.watch.sources.dds_domain import DdsPublisher, DdsWriter, Domain, Reader, join
+from fretc.watch.sources.dds_types import Offer, UnreadableTypeError
 from fretc.watch.sources.mailbox import WAIT, Mailbox
 from fretc.watch.sources.middleware import Middleware, several_publishers
 from fretc.watch.sources.source import Channel, Problem, Reconnected
@@ -150,7 +150,7 @@ class _Listening:
             elif publisher.topic == _CLOCK:
                 self._tell_once(_CLOCK, diagnostic("simulated_time"))
 
-    def _greet(self, publisher: Publisher, offer: Offer) -> None:
+    def _greet(self, publisher: DdsPublisher, offer: Offer) -> None:
         now, topic = self._mailbox.now, publisher.topic
         if topic == _CLOCK:
             self._tell_once(topic, diagnostic("simulated_time"))
@@ -168,7 +168,7 @@ class _Listening:
         if there > 1:
             self._tell_once(topic, several_publishers(topic, there))
 
-    def _part(self, publisher: Publisher) -> None:
+    def _part(self, publisher: DdsPublisher) -> None:
         peer = self._peers.get(publisher.handle)
         if peer is None or not peer.there:
             return
@@ -199,7 +199,7 @@ class _Listening:
             return
         try:
             kind.reader = self._domain.reader(topic, offer, definition)
-        except UnreadableError as error:
+        except UnreadableTypeError as error:
             self._tell_once(topic, _not_read(topic, str(error)))
 
     def _matched(self) -> list[int]:
@@ -227,7 +227,7 @@ class _Diagnosing:
 
     def __init__(self, domain: Domain) -> None:
         self._domain = domain
-        self._writer: Writer | None = None
+        self._writer: DdsWriter | None = None
         self._last = float("-inf")
 
     def publish(self, statuses: Sequence[Status]) -> None:
@@ -239,7 +239,7 @@ class _Diagnosing:
             digest, definition = [*ros2_types.definitions(_ARRAY).items()][-1]
             offer = Offer(_ARRAY, digest, reliable=True)
             self._writer = self._domain.writer("/diagnostics", offer, definition)
-        with suppress(UnreadableError):  # a reader is too slow; the next statuses follow soon
+        with suppress(UnreadableTypeError):  # a reader is too slow; the next statuses follow soon
             self._writer.write(_array(statuses, time.time_ns()))
 
 

@@ -14,7 +14,7 @@ from typing import Any
 from fretc.logs.messages.ros2_types import definitions
 from fretc.watch.sources.dds_types import (
     Offer,
-    UnreadableError,
+    UnreadableTypeError,
     dds_topic,
     is_type,
     offered,
@@ -35,7 +35,7 @@ _AT_ONCE = 500
 
 
 @dataclass(frozen=True, slots=True)
-class Publisher:
+class DdsPublisher:
     """A publisher; without an offer, it is gone."""
 
     handle: int
@@ -111,7 +111,7 @@ class Domain:
         )
         self._wake = WaitSet(self._participant)
         self._attach(self._news)
-        self._open: list[Reader | Writer] = []
+        self._open: list[Reader | DdsWriter] = []
         self._types: dict[tuple[str, str | None], Any] = {}
         self._topics: dict[tuple[str, tuple[str, str | None]], Any] = {}
 
@@ -132,7 +132,7 @@ class Domain:
         """Wait until data arrives, or for so long."""
         self._wake.wait(int(seconds * 1e9))
 
-    def publishers(self) -> Iterator[Publisher]:
+    def publishers(self) -> Iterator[DdsPublisher]:
         """Publishers that appeared, changed, or disappeared since the last call."""
         for _ in range(_AT_ONCE):
             try:
@@ -143,9 +143,9 @@ class Domain:
                 return
             handle, id = samples[0].sample_info.instance_handle, str(samples[0].key)
             if not samples[0].sample_info.valid_data:
-                yield Publisher(handle, id, "", None)
+                yield DdsPublisher(handle, id, "", None)
             elif (topic := ros_topic(samples[0].topic_name)) is not None:
-                yield Publisher(handle, id, topic, offered(samples[0]))
+                yield DdsPublisher(handle, id, topic, offered(samples[0]))
 
     def reader(self, topic: str, offer: Offer, definition: str | None) -> Reader:
         """A reader for messages of publishers with such an offer, and of others that match.
@@ -162,13 +162,13 @@ class Domain:
         from cyclonedds.core import DDSException
 
         if not is_type(offer.type):
-            raise UnreadableError("its type has no name")
+            raise UnreadableTypeError("its type has no name")
         if offer.described and definition is None:
-            raise UnreadableError("its type is not a type of ROS 2")
+            raise UnreadableTypeError("its type is not a type of ROS 2")
         try:
             reader = Reader(self._participant, self._topic(topic, offer, definition), offer)
         except DDSException as error:
-            raise UnreadableError(str(error)) from None
+            raise UnreadableTypeError(str(error)) from None
         self._attach(reader.entity)
         self._open.append(reader)
         return reader
@@ -185,7 +185,7 @@ class Domain:
             self._topics[name, type_] = topic
         return self._topics[name, type_]
 
-    def writer(self, topic: str, offer: Offer, definition: str) -> Writer:
+    def writer(self, topic: str, offer: Offer, definition: str) -> DdsWriter:
         """A writer whose messages ROS 2 and every reader with type information can read.
 
         Args:
@@ -199,9 +199,9 @@ class Domain:
         from cyclonedds.core import DDSException
 
         try:
-            writer = Writer(self._participant, self._topic(topic, offer, definition), offer)
+            writer = DdsWriter(self._participant, self._topic(topic, offer, definition), offer)
         except DDSException as error:
-            raise UnreadableError(str(error)) from None
+            raise UnreadableTypeError(str(error)) from None
         self._open.append(writer)
         return writer
 
@@ -239,7 +239,7 @@ class Reader:
         return bool({handle, signed} & {*self.entity.get_matched_publications()})
 
 
-class Writer:
+class DdsWriter:
     """A writer of messages of a topic."""
 
     def __init__(self, participant: Any, topic: Any, offer: Offer) -> None:
@@ -264,7 +264,7 @@ class Writer:
         try:
             self.entity.write(sample, sent)
         except DDSException as error:
-            raise UnreadableError(str(error)) from None
+            raise UnreadableTypeError(str(error)) from None
 
     @property
     def readers(self) -> int:

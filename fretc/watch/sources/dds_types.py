@@ -33,7 +33,7 @@ class Offer:
     """Whether it has type information, which that of a reader must match."""
 
 
-class UnreadableError(Exception):
+class UnreadableTypeError(Exception):
     """A type cannot be read or written; the text gives the reason."""
 
 
@@ -102,7 +102,7 @@ def payloads_of(name: str, definition: str | None) -> Any:
             types = ros.types(name, definition, ros1=False)
             fields = _fields(ros.short(name), types, {})
         except ros.DefinitionError as error:
-            raise UnreadableError(str(error)) from None
+            raise UnreadableTypeError(str(error)) from None
     return _payloads(_struct(name, fields))
 
 
@@ -117,7 +117,7 @@ def _fields(name: str, types: ros.Types, made: dict[str, Any]) -> dict[str, Any]
     return {field.name: _field(field, types, made) for field in types[name]}
 
 
-def _field(field: ros.Field, types: ros.Types, made: dict[str, Any]) -> Any:
+def _field(field: ros.MessageField, types: ros.Types, made: dict[str, Any]) -> Any:
     from cyclonedds.idl import types as idl
 
     if field.type in ros.NUMBERS:

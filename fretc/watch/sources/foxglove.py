@@ -22,12 +22,12 @@ from fretc.watch.sources.foxglove_protocol import (
     SUBPROTOCOLS,
     Advertised,
     Advertisement,
+    ChannelWithdrawal,
     Data,
     Greeting,
     Message,
     ServerTime,
     Status,
-    Withdrawal,
     read,
     subscribe,
     unsubscribe,
@@ -239,7 +239,7 @@ class Foxglove(Middleware):
             case Advertisement(channels):
                 for advertised in channels:
                     self._subscribe(connection, advertised)
-            case Withdrawal(ids):
+            case ChannelWithdrawal(ids):
                 for id in ids:
                     self._withdraw(connection, id)
             case Status(is_grave, text):

@@ -62,7 +62,7 @@ class Advertisement:
 
 
 @dataclass(frozen=True, slots=True)
-class Withdrawal:
+class ChannelWithdrawal:
     """Channels that the server no longer offers."""
 
     ids: tuple[int, ...]
@@ -91,7 +91,7 @@ class ServerTime:
     """The time of the server, which sets the clock."""
 
 
-Message = Greeting | Advertisement | Withdrawal | Status | Data | ServerTime
+Message = Greeting | Advertisement | ChannelWithdrawal | Status | Data | ServerTime
 
 
 def read(message: str | bytes, topics: Collection[str]) -> Message | None:
@@ -127,7 +127,9 @@ def _text(message: str, topics: Collection[str]) -> Message | None:
             items = shape.field("channels").items()
             return Advertisement(tuple(_advertised(item) for item in items if _is_in(item, topics)))
         case "unadvertise":
-            return Withdrawal(tuple(item.count() for item in shape.field("channelIds").items()))
+            return ChannelWithdrawal(
+                tuple(item.count() for item in shape.field("channelIds").items())
+            )
         case "status":
             return Status(shape.field("level").count() > 0, shape.field("message").text())
         case _:

@@ -15,9 +15,9 @@ from fretc.watch.sources.mailbox import Mailbox
 from fretc.watch.sources.source import (
     Arrival,
     Channel,
+    ConnectionLost,
     Event,
     Idle,
-    Interrupted,
     Opened,
     Problem,
     Reconnected,
@@ -106,7 +106,7 @@ class Middleware(ABC):
         if self._alive is None:
             self._warn(problem)
         else:
-            self._mailbox.tell(Interrupted(self._alive, problem))
+            self._mailbox.tell(ConnectionLost(self._alive, problem))
 
 
 def several_publishers(topic: str, count: int, names: Collection[str] = ()) -> Diagnostic:

@@ -41,12 +41,12 @@ def _read(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
     tables = read(source.span(), Code.BAD_BINDINGS, "the bindings file")
     if isinstance(tables, Diagnostic):
         return None, (tables,)
-    reader = _Reader(tables)
+    reader = _TablesReader(tables)
     declarations = reader.declarations()
     return (declarations if reader.is_usable else None), tuple(reader.notes.diagnostics)
 
 
-class _Reader(Fields):
+class _TablesReader(Fields):
     """Reads all tables, and collects all diagnostics."""
 
     def __init__(self, tables: Tables) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import pytest
 
 from compiler.agents.checking import check_agent
-from compiler.logic.claims import Layer, Proof, Result, not_checked, proved, vacuous
+from compiler.logic.claims import ClaimResult, Layer, Proof, not_checked, proved, vacuous
 from compiler.targets.ajpf import properties as ajpf
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
@@ -64,7 +64,7 @@ def test_the_papers_agent_is_proved_where_its_trigger_comes_and_the_check_can_fa
     )
     assert set(main.artefacts) == {"sif.gwen", "sif.psl"}
     assert mutant.claim == "the check can fail: an agent without the response violates 1a"
-    assert mutant.result is Result.PROVED
+    assert mutant.result is ClaimResult.PROVED
 
 
 def test_the_papers_environment_makes_the_papers_property_vacuous() -> None:
@@ -107,17 +107,17 @@ def test_a_property_whose_own_control_holds_is_vacuous_whatever_its_shape() -> N
     assert outcome(main) == vacuous(
         "its control x_reach holds: no environment shows `b`, and no plan adds it"
     )
-    assert control.result is Result.VACUOUS
+    assert control.result is ClaimResult.VACUOUS
 
 
 def test_a_key_that_only_looks_like_a_control_is_a_property() -> None:
     (main,) = lines("a_reach: [] (~B(agilex_agent,too_close))", ["too_close"])
-    assert main.result is Result.COUNTEREXAMPLE
+    assert main.result is ClaimResult.COUNTEREXAMPLE
 
 
 def test_a_counterexample_is_a_table_of_stages() -> None:
     (main,) = lines(f"now: {R1.replace('<> ', '')}", ["too_close"])
-    assert main.result is Result.COUNTEREXAMPLE
+    assert main.result is ClaimResult.COUNTEREXAMPLE
     trace = main.run
     assert trace is not None
     assert trace.names == ("B(agilex_agent,too_close)", "B(agilex_agent,stopped)")
@@ -133,18 +133,18 @@ def test_a_counterexample_is_a_table_of_stages() -> None:
 def test_an_agent_that_does_nothing_keeps_no_response() -> None:
     idle = PAPER.replace("stop_moving,\n    +stopped", "drive_on")
     (main,) = lines(f"1a: {R1}", ["too_close"], idle)
-    assert main.result is Result.COUNTEREXAMPLE
+    assert main.result is ClaimResult.COUNTEREXAMPLE
 
 
 def test_what_the_environment_does_cannot_be_taken_away_from_the_agent() -> None:
     """Its response comes in any case, so that the agent without it keeps the property too."""
     always = "a: [] (B(agilex_agent,too_close) -> <> B(agilex_agent,too_close))"
     (main,) = lines(always, ["too_close"])
-    assert main.result is Result.PROVED
+    assert main.result is ClaimResult.PROVED
     two = PAPER.replace("+stopped;", "+stopped;\n+stopped: {True} <- +stopped;")
     doubled = two.replace(":Initial Beliefs:", ":Initial Beliefs: stopped")
     main, mutant = lines(f"1a: {R1}", ["too_close"], doubled)
-    assert main.result is Result.PROVED
+    assert main.result is ClaimResult.PROVED
     assert outcome(mutant) == vacuous("that agent satisfies 1a, too, so 1a shows no response")
 
 
@@ -185,7 +185,7 @@ def test_a_percept_is_spelt_as_the_agent_spells_it() -> None:
     near = PAPER.replace("too_close", "near(1, lidar)")
     (main, _) = lines("x: [] (B(agilex_agent,near(1,lidar)) -> <> B(agilex_agent,stopped))",
                       ["near(1.0, lidar)"], near)  # fmt: skip
-    assert main.result is Result.PROVED
+    assert main.result is ClaimResult.PROVED
 
 
 @pytest.mark.parametrize("properties", ["", "# nothing yet\n"])

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.agents.gwendolen import Action, Agent, BeliefChange, Guard, read
+from compiler.agents.gwendolen import Action, Agent, BeliefChange, BeliefGuard, read
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
@@ -47,7 +47,7 @@ def test_an_agent_is_its_beliefs_and_its_plans_in_their_order() -> None:
         (BeliefChange("+", "zone_near"), (), (Action("halt_base"), BeliefChange("+", "halted"))),
         (
             BeliefChange("-", "zone_near"),
-            (Guard(True, "halted"), Guard(False, "speed(3)")),
+            (BeliefGuard(True, "halted"), BeliefGuard(False, "speed(3)")),
             (Action("release_base(1,fast)"), BeliefChange("-", "halted")),
         ),
         (BeliefChange("-", "ready"), (), ()),

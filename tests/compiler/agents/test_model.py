@@ -6,7 +6,7 @@ from itertools import pairwise
 import pytest
 
 from compiler.agents.gwendolen import Agent, BeliefChange, read
-from compiler.agents.model import Intention, Model, ReasoningStep, State, narration
+from compiler.agents.model import AgentState, Intention, Model, ReasoningStep, narration
 from compiler.logic import formula as f
 from compiler.logic.kripke import Explored, ModelTooLargeError, check
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -36,7 +36,7 @@ def agent(plans: str, beliefs: str = "") -> Agent:
     return found
 
 
-def explored(plans: str, *percepts: str, beliefs: str = "") -> tuple[Model, Explored[State]]:
+def explored(plans: str, *percepts: str, beliefs: str = "") -> tuple[Model, Explored[AgentState]]:
     model = Model(agent(plans, beliefs), percepts)
     return model, model.explored(10_000)
 
@@ -82,7 +82,7 @@ def test_the_counterexample_of_the_guards_is_a_run_of_the_model() -> None:
     assert not any(words.startswith("plans +near") for words in actions[lost : len(lasso.prefix)])
 
 
-def first(words: str, steps: list[tuple[str, State]]) -> State:
+def first(words: str, steps: list[tuple[str, AgentState]]) -> AgentState:
     return next(state for action, state in steps if action == words)
 
 
@@ -177,11 +177,11 @@ def test_intentions_take_turns() -> None:
     assert holds(start, plans, "a", "b")
 
 
-def events(state: State) -> list[str]:
+def events(state: AgentState) -> list[str]:
     return [str(intention.event) for intention in state.waiting]
 
 
-def perceived(model: Model, state: State) -> set[tuple[tuple[str, ...], ...]]:
+def perceived(model: Model, state: AgentState) -> set[tuple[tuple[str, ...], ...]]:
     """What is believed on each way through perceiving, one set of names for each state."""
     if state.stage is not ReasoningStep.PERCEIVE:
         return {()}
@@ -239,7 +239,7 @@ def test_a_percept_that_waits_is_not_noticed_twice() -> None:
     assert events(still) == ["the percept +near"]
 
 
-def outcomes(model: Model, state: State) -> set[tuple[frozenset[str], tuple[str, ...]]]:
+def outcomes(model: Model, state: AgentState) -> set[tuple[frozenset[str], tuple[str, ...]]]:
     return {(after.beliefs, tuple(events(after))) for _, after in model.steps(state)}
 
 

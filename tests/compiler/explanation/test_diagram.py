@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from compiler.explanation.diagram import Diagram, Kind, Stretch, diagram, words
+from compiler.explanation.diagram import Diagram, LaneInterval, LaneKind, diagram, words
 from compiler.explanation.drawing import drawing, shortened, slots, svg, text
 from compiler.explanation.windows import ObligationWindow
 from compiler.files.templating import render
@@ -47,7 +47,7 @@ def drawn_for(picture: Diagram, window: ObligationWindow) -> set[int]:
     return {
         t
         for lane in picture.lanes
-        if lane.kind is Kind.NEED and lane.trigger == (window.trigger if several else None)
+        if lane.kind is LaneKind.NEED and lane.trigger == (window.trigger if several else None)
         for stretch in lane.stretches
         for t in range(stretch.first, stretch.last + 1)
     }
@@ -78,14 +78,14 @@ def test_the_triggers_and_the_scope_are_those_of_the_definition() -> None:
         picture = diagram(requirement(drawn.sentence))
         lanes = {lane.kind: lane for lane in picture.lanes}
         intervals = list(meaning.intervals(drawn.scope, picture.trace.m))
-        scope = [(each.first, each.last) for each in lanes[Kind.SCOPE].stretches]
+        scope = [(each.first, each.last) for each in lanes[LaneKind.SCOPE].stretches]
         assert scope == intervals
         expected = [
             t
             for pair in intervals
             for t in meaning.triggers(drawn.condition, picture.trace.p, *pair)
         ]
-        assert [each.first for each in lanes[Kind.TRIGGER].stretches] == expected
+        assert [each.first for each in lanes[LaneKind.TRIGGER].stretches] == expected
 
 
 def pictures(counts: tuple[int, ...]) -> Iterator[tuple[Template, Diagram]]:
@@ -158,7 +158,7 @@ def test_a_picture_in_characters() -> None:
 def test_the_end_of_a_run_is_drawn_where_it_counts() -> None:
     picture = diagram(requirement("the sw shall finally satisfy q"))
     assert picture.ends
-    assert picture.lanes[-1].stretches == (Stretch(4, 4),)
+    assert picture.lanes[-1].stretches == (LaneInterval(4, 4),)
     assert "the run ends" in svg(picture)
     assert not diagram(requirement("in m mode, the sw shall finally satisfy q")).ends
 

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import pytest
 
 from compiler.explanation.drawing import svg
-from compiler.explanation.explain import Row, as_record, explanation, text
+from compiler.explanation.explain import TickRow, as_record, explanation, text
 from fretish.clock import Clock
 from tests.effort import FULL
 from tests.monitoring import requirement
@@ -41,9 +41,9 @@ def test_equal_ticks_are_one_row_but_for_the_tick_that_decides() -> None:
     )
     silent = explained.traces[2]
     assert silent.rows == (
-        Row(0, 0, (True, False), repeats=False, decides=False),
-        Row(1, 999, (False, False), repeats=False, decides=False),
-        Row(1000, 1000, (False, False), repeats=False, decides=True),
+        TickRow(0, 0, (True, False), repeats=False, decides=False),
+        TickRow(1, 999, (False, False), repeats=False, decides=False),
+        TickRow(1000, 1000, (False, False), repeats=False, decides=True),
     )
     assert silent.reason == (
         "triggered at tick 0, `q` is false at ticks 0 to 1000; the bound is 1000 ticks (1 s)"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.claims import Result
+from compiler.logic.claims import ClaimResult
 from tests.each import each
 from tests.effort import FULL, pairwise, some
 from tests.meaning import SCOPES
@@ -106,7 +106,7 @@ def test_long_durations_over_shared_atoms_are_decided_at_the_earliest_tick() -> 
             continue  # what it demands of each trigger is another: 2^25 states
         sentence = sharing(scope, condition, timing, n, f"{scope} {condition} {timing}")
         found = verified(requirement(sentence), emitted(sentence))
-        assert found.result is Result.PROVED, (sentence, found)
+        assert found.result is ClaimResult.PROVED, (sentence, found)
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ import pytest
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.past import MonitorSpec
 from compiler.logic import formula as f
-from compiler.logic.claims import Result
+from compiler.logic.claims import ClaimResult
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor.verifying import NotAMonitorError
 from fretish import syntax as s
@@ -262,9 +262,9 @@ class Judge:
         except NotAMonitorError:
             return REFUSED
         match outcome.result:
-            case Result.COUNTEREXAMPLE:
+            case ClaimResult.COUNTEREXAMPLE:
                 return REFUTED if "that shows it has" in outcome.detail else DIFFERS
-            case Result.NOT_CHECKED:
+            case ClaimResult.NOT_CHECKED:
                 return REFUSED
             case _:
                 return self._compared(text)

@@ -23,7 +23,7 @@ from compiler.formalization.numbers.reals import (
     Undecided,
     with_numeric_counterexample,
 )
-from compiler.logic.claims import Result
+from compiler.logic.claims import ClaimResult
 from compiler.logic.orders import Exclusion
 from fretc.testing.generation import batch
 from fretish.bindings.declarations import Variable
@@ -233,7 +233,7 @@ def test_a_counterexample_has_numbers_where_another_one_serves() -> None:
     """The first valuation on which they differ is the one that no numbers make: neither is true."""
     wrong = ALWAYS + "(2 * x > 2 & x < 3) | (!(2 * x > 2) & !(x < 3))"
     outcome = verified(requirement(ALWAYS + "2 * x > 2 | x < 3"), emitted(wrong))
-    assert outcome.result is Result.COUNTEREXAMPLE
+    assert outcome.result is ClaimResult.COUNTEREXAMPLE
     assert outcome.trace is not None
     assert outcome.trace.names == ("((2 * x) > 2)", "(x < 3)")
     assert (False, False) not in outcome.trace.rows
@@ -243,7 +243,7 @@ def test_a_counterexample_has_numbers_where_another_one_serves() -> None:
 def test_a_monitor_that_differs_by_rounded_numbers_only_stays_refuted() -> None:
     wrong = ALWAYS + "!(2 * x > 6 & x < 2 & p)"
     outcome = verified(requirement(ALWAYS + "!(2 * x > 6 & x < 2)"), emitted(wrong))
-    assert outcome.result is Result.COUNTEREXAMPLE
+    assert outcome.result is ClaimResult.COUNTEREXAMPLE
     assert outcome.detail.endswith(f"; no other trace was found that shows it, and {ROUNDED}")
 
 

@@ -18,7 +18,7 @@ from compiler.formalization.reference import (
     BROKEN,
     Automaton,
     Letter,
-    State,
+    ReferenceState,
     TooManyStatesError,
     Verdict,
     accepting,
@@ -67,8 +67,8 @@ def every(scope: str, counts: tuple[int, ...]) -> list[Template]:
 # Finite traces --------------------------------------------------------------------------------
 
 
-def after(counted: Counted, rows: Sequence[Mapping[str, bool]]) -> State | None:
-    state: State | None = initial(counted)
+def after(counted: Counted, rows: Sequence[Mapping[str, bool]]) -> ReferenceState | None:
+    state: ReferenceState | None = initial(counted)
     for row in rows:
         if state is None:
             return None
@@ -90,7 +90,9 @@ def test_every_short_trace_is_judged_as_fretish_means_it(scope: str) -> None:
     for drawn in every(scope, COUNTS):
         names, reference = drawn.columns, counted(drawn.sentence)
         letters = letters_of(names)
-        reached: list[tuple[State | None, tuple[Valuation, ...]]] = [(initial(reference), ())]
+        reached: list[tuple[ReferenceState | None, tuple[Valuation, ...]]] = [
+            (initial(reference), ())
+        ]
         for _ in range(LONGEST[len(names)]):
             reached = [
                 (state and step(reference, state, *letter), (*word, valuation))
@@ -358,7 +360,7 @@ def of_any_letters(kind: Counted) -> Automaton:
     return explore(kind, letters_of("mpqs").values())
 
 
-def states_with(verdict: Verdict, automaton: Automaton) -> list[State]:
+def states_with(verdict: Verdict, automaton: Automaton) -> list[ReferenceState]:
     pairs = zip(automaton.states, automaton.verdicts, strict=True)
     return [state for state, found in pairs if found == verdict]
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from compiler.logic import orders
 from compiler.logic.ordering import cells, ranges
 from compiler.logic.orders import Exclusion, exclusions, only_possible
-from fretc.logs.signals.measures import Scope
+from fretc.logs.signals.measures import NameValues
 from fretc.logs.signals.propositions import TRUE, UNKNOWN, truth
 from fretish import expressions as e
 from fretish.diagnostics.source import Source
@@ -183,7 +183,7 @@ def test_no_sample_of_an_audit_makes_what_is_excluded(
 ) -> None:
     x, y = samples(first), samples(second)
     numbers = {"x": np.repeat(x, len(y)), "y": np.tile(y, len(x))}
-    scope = Scope(len(x) * len(y), numbers)
+    scope = NameValues(len(x) * len(y), numbers)
     states = {text: truth(as_bound(read(text)), scope) for text in some}
     for exclusion in exclusions({text: read(text) for text in some}, {}):
         holds = np.ones(scope.length, bool)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from compiler.program.clocks import clocks, lengthened
-from compiler.program.instructions import Advance, Choose, Count
+from compiler.program.instructions import Advance, Choose, SetCounter
 from compiler.program.lowering import program
 from compiler.program.values import Literal
 from tests.monitoring import requirement
@@ -47,6 +47,8 @@ def test_a_counter_that_starts_again_is_no_clock() -> None:
     assert isinstance(choice, Choose)
     (kept, grown), _ = choice.branches
     assert isinstance(grown, Advance)
-    anyhow = Choose(((kept, grown), (Literal("p", True), Count("oldest_1", 0))), choice.otherwise)
+    anyhow = Choose(
+        ((kept, grown), (Literal("p", True), SetCounter("oldest_1", 0))), choice.otherwise
+    )
     blocks["oldest_1"] = replace(blocks["oldest_1"], instructions=(anyhow,))
     assert clocks(replace(plain, blocks=tuple(blocks.values()))) == {}

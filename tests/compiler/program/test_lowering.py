@@ -9,7 +9,7 @@ from compiler.formalization.past import MonitorSpec
 from compiler.logic import formula as f
 from compiler.logic.definition import holds
 from compiler.logic.evaluation import evaluate_unknown
-from compiler.program.instructions import Advance, Choose, Count, Instruction, Shift, Slide
+from compiler.program.instructions import Advance, Choose, Instruction, SetCounter, Shift, Slide
 from compiler.program.lowering import program
 from compiler.program.program import Counter, Program
 from compiler.program.values import Age, Variable, parts
@@ -74,9 +74,9 @@ def test_two_rails_are_the_logic_of_kleene(
         assert unknown is bool(expected.unknown >> tick & 1)
 
 
-def moves(instruction: Instruction) -> Iterator[Count | Advance]:
+def moves(instruction: Instruction) -> Iterator[SetCounter | Advance]:
     match instruction:
-        case Count() | Advance():
+        case SetCounter() | Advance():
             yield instruction
         case Choose(branches, otherwise):
             yield from (then for _, then in branches)
@@ -92,7 +92,7 @@ def test_every_move_of_a_counter_stays_in_its_range(formulas: list[f.Formula]) -
     for block in made.blocks:
         for move in (move for each in block.instructions for move in moves(each)):
             cell = counters[move.counter]
-            if isinstance(move, Count):
+            if isinstance(move, SetCounter):
                 assert cell.least <= move.number <= cell.most
             else:
                 assert cell.least < move.most <= cell.most
@@ -110,7 +110,7 @@ def test_a_name_is_computed_before_it_is_used(formulas: list[f.Formula]) -> None
                     used = [guard, witness]
                 case Choose(branches):
                     used = [condition for condition, _ in branches]
-                case Count() | Advance():
+                case SetCounter() | Advance():
                     used = []
                 case _:
                     used = [instruction.value]

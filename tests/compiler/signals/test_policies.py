@@ -69,7 +69,7 @@ def test_durations_are_inputs_in_the_order_in_which_they_close() -> None:
     lowered = meaning(Proposition("p", tree), ())
     assert lowered.truth == n.All((n.Not(n.HeldFor(1)), n.HeldFor(2)))
     assert lowered.held == (
-        (n.Flag("a"), 10),
+        (n.BooleanSignal("a"), 10),
         (n.Not(n.HeldFor(0)), 20),
-        (n.Flag("a"), 10),
+        (n.BooleanSignal("a"), 10),
     )

@@ -15,7 +15,7 @@ from compiler.formalization import reference
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import letters_by_valuation
-from compiler.formalization.reference import State, step
+from compiler.formalization.reference import ReferenceState, step
 from compiler.logic.evaluation import evaluate, evaluate_unknown
 from compiler.logic.formula import atoms
 from compiler.situations.situations import MEANINGS, Situation, situations
@@ -60,17 +60,19 @@ class Judged:
     def letter(self, row: Mapping[str, bool]) -> tuple[bool, bool, bool, bool]:
         return self.letters[tuple(row[name] for name in self.atoms)]
 
-    def result(self, before: State, row: Mapping[str, bool], part: int) -> object:
+    def result(self, before: ReferenceState, row: Mapping[str, bool], part: int) -> object:
         """What the tick leaves, as far as the part can matter."""
         after = step(self.counted, before, *self.letter(row))
         if after is None:
             return None
         return after.phase if part == 0 else (after.phase, after.counted)
 
-    def run(self, choose: random.Random, length: int) -> list[tuple[State, dict[str, bool]]]:
+    def run(
+        self, choose: random.Random, length: int
+    ) -> list[tuple[ReferenceState, dict[str, bool]]]:
         """Ticks, each with the state before it; only the last one may break anything."""
-        state: State | None = reference.initial(self.counted)
-        found: list[tuple[State, dict[str, bool]]] = []
+        state: ReferenceState | None = reference.initial(self.counted)
+        found: list[tuple[ReferenceState, dict[str, bool]]] = []
         odds = {name: choose.choice((0.25, 0.5, 0.75)) for name in self.atoms}
         while state is not None and len(found) < length:
             rows = [{name: choose.random() < odds[name] for name in odds} for _ in range(8)]
@@ -80,7 +82,9 @@ class Judged:
             state = step(self.counted, state, *self.letter(row))
         return found
 
-    def decides(self, before: State, row: Mapping[str, bool], atom: str, part: int) -> bool:
+    def decides(
+        self, before: ReferenceState, row: Mapping[str, bool], atom: str, part: int
+    ) -> bool:
         other = {**row, atom: not row[atom]}
         return self.result(before, row, part) != self.result(before, other, part)
 

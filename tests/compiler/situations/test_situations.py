@@ -14,7 +14,7 @@ from compiler.logic.evaluation import evaluate
 from compiler.situations.demands import of_demand
 from compiler.situations.situations import Situation, situations
 from compiler.situations.tick_predicates import tick_predicates
-from fretc.analysis.arena.memory import Counter, Memory, Past
+from fretc.analysis.arena.memory import Memory, PastMemory, RequirementCounter
 from fretc.analysis.arena.transition import Transition
 from tests import meaning
 from tests.compiler.situations.by_index import At, kind
@@ -87,7 +87,7 @@ class Search:
         fresh = iter(range(10_000))
         letters = {name: next(fresh) for name in "mpqs"}
         self.memory = Memory(fresh, {})
-        self.goal = Past(lambda name: bdd.variable(letters[name]), self.memory).value(formula)
+        self.goal = PastMemory(lambda name: bdd.variable(letters[name]), self.memory).value(formula)
         self.letters = bdd.cube(letters.values())
 
     @property
@@ -99,7 +99,7 @@ class Search:
         bits = self.memory.needed([self.goal])
         steps = tuple(self.memory.steps[bit] for bit in bits)
         true = bdd.true()
-        transition = Transition([Counter("", bits, steps, true, None, (), true, true)])
+        transition = Transition([RequirementCounter("", bits, steps, true, None, (), true, true)])
         found, states = bdd.false(), bdd.exists(self.goal, self.letters)
         while states != found:
             if (transition.initial & states) != bdd.false():

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import pytest
 
 from compiler.formalization import reference
-from compiler.formalization.obligation import Kind
-from compiler.formalization.reference import State, step, tick_role
+from compiler.formalization.obligation import ObligationKind
+from compiler.formalization.reference import ReferenceState, step, tick_role
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
 from compiler.situations.tick_predicates import TickPredicates, tick_predicates
@@ -27,13 +27,13 @@ class Tick:
 
     number: int
     row: Row
-    before: State
-    after: State | None
+    before: ReferenceState
+    after: ReferenceState | None
 
 
 def ticks(counted: reference.Template, rows: Sequence[Row]) -> Iterator[Tick]:
     """Up to and including the first that breaks the sentence."""
-    state: State | None = reference.initial(counted)
+    state: ReferenceState | None = reference.initial(counted)
     for number, row in enumerate(rows):
         assert state is not None
         after = step(counted, state, *(row[name] for name in LETTERS))
@@ -121,7 +121,7 @@ def assert_asked(counted: reference.Template, run: Run, tick: Tick) -> None:
     """What decides is what changes something; nothing is said of runs that are lost already."""
     known, at = run.known, tick.number
     enforced = tick_role(counted, tick.before, tick.row["m"], tick.row["p"]).enforced
-    if known.demand.kind is Kind.AFTER and tick.before.counted < 0:
+    if known.demand.kind is ObligationKind.AFTER and tick.before.counted < 0:
         return  # two demands clash
     if enforced:
         assert run.has(known.asks_for_condition, at) is (
@@ -135,9 +135,9 @@ def assert_asked(counted: reference.Template, run: Run, tick: Tick) -> None:
 
 def distance(known: TickPredicates, counted: reference.Template, back: int) -> f.Formula | None:
     """The trigger that counts lies so far back; None where the automaton does not tell."""
-    if known.demand.kind in (Kind.WITHIN, Kind.AFTER):
+    if known.demand.kind in (ObligationKind.WITHIN, ObligationKind.AFTER):
         return known.oldest(back)
-    if known.demand.kind is Kind.FOR and back <= counted.ticks:
+    if known.demand.kind is ObligationKind.FOR and back <= counted.ticks:
         return known.newest(back)
     return None
 
@@ -147,7 +147,7 @@ def assert_distances(
 ) -> None:
     count = tick.before.counted
     found = tick_role(counted, tick.before, tick.row["m"], tick.row["p"])
-    newest = run.known.demand.kind is Kind.FOR
+    newest = run.known.demand.kind is ObligationKind.FOR
     for back, formula in enumerate(distances):
         if formula is None:
             continue

@@ -12,7 +12,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import impossible_combinations
 from compiler.targets.comparison_names import comparison_names, definitions
 from compiler.targets.ltl import text
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretish.printer import expression
 from tests.bound_requirements import bound_requirement
 
@@ -67,7 +67,7 @@ def test_each_language_has_the_same_names_with_their_definitions(target: str) ->
 
 @pytest.mark.parametrize("notation", ["spot", "nusmv"])
 def test_formulas_for_tools_have_them_too(notation: str) -> None:
-    told = text(requirement(), Options(notation=notation))
+    told = text(requirement(), TargetOptions(notation=notation))
     assert re.search(r"G ?\(+battery_lt_20 & speed_gt_2\)? -> F", told)
     assert re.search(r"^  speed_gt_2_2 +speed > 2 m/s$", told, re.M)
     assert "(battery < 20)" in text(requirement())

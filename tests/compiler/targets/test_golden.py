@@ -7,7 +7,7 @@ import pytest
 
 from compiler.emit import TARGETS
 from compiler.project.folder import load
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from monitors.source_text import interceptor, kernel
 from tests.emitting import emitted
 
@@ -29,7 +29,7 @@ def test_the_papers_requirement(
         return
     if target == "ajpf-bundle":  # compared in test_bundle.py: `run.py` is no golden file
         return
-    options = Options(declarations=project.declarations, attribution=project.attribution)
+    options = TargetOptions(declarations=project.declarations, attribution=project.attribution)
     for artifact in TARGETS[target].emit(project.formalized, options):
         if target.startswith("ros") and artifact.path.name in SHARED:
             continue

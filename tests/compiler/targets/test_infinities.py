@@ -26,7 +26,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.javascript import monitor as javascript
 from compiler.targets.python import monitor as python
 from fretc.logs.signals.signals import sample
-from fretc.logs.stream import End, Stream
+from fretc.logs.stream import SampleStream, StreamEnd
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
 from monitors.kernel.variable_tables import read_variables
@@ -110,10 +110,10 @@ def expected(value: float | None) -> tuple[Truth, ...]:
 
 
 def streamed(bound: Bound, message: Mapping[str, object]) -> Truth:
-    stream = Stream(declare(bound.text), ["low"])
+    stream = SampleStream(declare(bound.text), ["low"])
     assert stream.message("/r", 10**9, message) is None
     found = stream.end()
-    assert isinstance(found, End)
+    assert isinstance(found, StreamEnd)
     return found.ticks[0].truth["low"]
 
 

@@ -26,7 +26,7 @@ from compiler.logic.spelling.reserved_words import LUSTRE, SMV, TABLES, C
 from compiler.project.lustre import lustre
 from compiler.targets.fret import quoted
 from compiler.targets.ltl import text as ltl
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.expressions import Name
@@ -234,7 +234,7 @@ def test_nusmv_s_grammar_has_each_as_an_identifier() -> None:
         for name, new in identifiers("smv", names).items():
             assert NUSMV.fullmatch(new), name
             assert new not in SMV, name
-    text = ltl(about(["G", "T", "LAST"]), Options("nusmv"))
+    text = ltl(about(["G", "T", "LAST"]), TargetOptions("nusmv"))
     assert "G(G_2 | T_2 | LAST_2)" in text
     assert re.search(r"^ *LAST_2 +the proposition `LAST`$", text, re.MULTILINE), text
 

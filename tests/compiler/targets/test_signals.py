@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from fretc.logs.signals.enum_values import enum_index
-from fretc.logs.signals.propositions import Steps, truth_values
+from fretc.logs.signals.propositions import StepFunction, truth_values
 from fretc.logs.signals.samples import EXACT, Values
 from fretc.logs.signals.traces import combined
 from fretish import expressions as e
@@ -164,7 +164,7 @@ def states(
 def decided(proposition: Proposition, truths: list[Truth]) -> Truth:
     """What a tick says that sees these instants, in an audit."""
     codes = np.array([(False, None, True).index(each) for each in truths], np.int8)
-    steps = Steps(np.arange(len(truths)), codes)
+    steps = StepFunction(np.arange(len(truths)), codes)
     ends = np.array([0]), np.array([len(truths)])
     (value,) = truth_values(combined(steps, *ends, proposition))
     return value

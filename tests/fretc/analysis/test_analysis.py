@@ -12,7 +12,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis import verdicts
 from fretc.analysis.analysis import analyze
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.findings import Conflict, OpenQuestion, Verdict
+from fretc.analysis.findings import Conflict, OpenQuestion, RealizabilityVerdict
 from fretc.analysis.games.squaring import IterativeSquaring
 from fretc.analysis.verdicts import Completeness
 from fretish.bindings.declarations import Role
@@ -21,8 +21,8 @@ from tests.effort import FULL
 from tests.requirement_sets import ROLES, analyzed, conflicts, drawn, requirement, roles, staged
 from tests.requirement_sets import named as named_true
 
-REALIZABLE, UNREALIZABLE = Verdict.REALIZABLE, Verdict.UNREALIZABLE
-NOT_CHECKED = Verdict.NOT_CHECKED
+REALIZABLE, UNREALIZABLE = RealizabilityVerdict.REALIZABLE, RealizabilityVerdict.UNREALIZABLE
+NOT_CHECKED = RealizabilityVerdict.NOT_CHECKED
 
 # Published sets ---------------------------------------------------------------------------------
 
@@ -92,7 +92,7 @@ def test_the_liquid_mixer_has_six_components_and_one_conflict() -> None:
 @pytest.mark.parametrize(
     ("chooser", "verdict"), [(Role.INPUT, UNREALIZABLE), (Role.OUTPUT, REALIZABLE)]
 )
-def test_who_chooses_a_mode_decides(chooser: Role, verdict: Verdict) -> None:
+def test_who_chooses_a_mode_decides(chooser: Role, verdict: RealizabilityVerdict) -> None:
     """FRET's issue 88."""
     sentences = (
         "in m mode the sw shall always satisfy x",

@@ -13,7 +13,7 @@ from compiler.project.folder import load
 from fretc.analysis.analysis import analyze
 from fretc.analysis.arena.roles import roles
 from fretc.analysis.assumptions import assumptions
-from fretc.analysis.evidence import AnalyzedSet, Document, document, read, suspicions
+from fretc.analysis.evidence import AnalysisDocument, AnalyzedSet, document, read, suspicions
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 SENTENCES = {
@@ -62,18 +62,18 @@ def rules_of(
 
 def analyzed(
     requirements: tuple[FormalizedRequirement, ...], assumed: tuple[FormalizedRequirement, ...]
-) -> Document:
+) -> AnalysisDocument:
     chosen = roles([*requirements, *assumed])
     assert not isinstance(chosen, tuple)
     return document(requirements, assumed, analyze(requirements, chosen, assumed), as_fret=False)
 
 
 @pytest.fixture(scope="module")
-def known(tmp_path_factory: pytest.TempPathFactory) -> Document:
+def known(tmp_path_factory: pytest.TempPathFactory) -> AnalysisDocument:
     return analyzed(*rules_of(tmp_path_factory.mktemp("known")))
 
 
-def test_nothing_is_suspect_while_nothing_changes(tmp_path: Path, known: Document) -> None:
+def test_nothing_is_suspect_while_nothing_changes(tmp_path: Path, known: AnalysisDocument) -> None:
     assert [*suspicions(known, *rules_of(tmp_path))] == []
 
 
@@ -89,14 +89,14 @@ def test_nothing_is_suspect_while_nothing_changes(tmp_path: Path, known: Documen
     ],
 )
 def test_whatever_the_analysis_read_makes_it_suspect(
-    tmp_path: Path, known: Document, old: str, new: str, why: str
+    tmp_path: Path, known: AnalysisDocument, old: str, new: str, why: str
 ) -> None:
     assert TABLES.count(old) == 1
     (first, *_) = suspicions(known, *rules_of(tmp_path, TABLES.replace(old, new)))
     assert first.startswith(why)
 
 
-def test_the_set_itself_counts(tmp_path: Path, known: Document) -> None:
+def test_the_set_itself_counts(tmp_path: Path, known: AnalysisDocument) -> None:
     """A new member may fight with the others, and without one the others may do less."""
     changed = {"R1": SENTENCES["R1"], "R3": SENTENCES["R2"]}
     assert [*suspicions(known, *rules_of(tmp_path, sentences=changed))] == [
@@ -106,13 +106,13 @@ def test_the_set_itself_counts(tmp_path: Path, known: Document) -> None:
 
 
 def test_an_answer_to_the_question_of_fret_is_no_answer_to_ours(
-    tmp_path: Path, known: Document
+    tmp_path: Path, known: AnalysisDocument
 ) -> None:
     (why,) = suspicions(replace(known, as_fret=True), *rules_of(tmp_path))
     assert why == "it answers FRET's question, in which `eventually` means at once"
 
 
-def test_words_and_places_do_not_count(tmp_path: Path, known: Document) -> None:
+def test_words_and_places_do_not_count(tmp_path: Path, known: AnalysisDocument) -> None:
     same = {"R1": f"  {SENTENCES['R1'].replace('200 milli', '200  milli')}", "R2": SENTENCES["R2"]}
     assert [*suspicions(known, *rules_of(tmp_path, sentences=same))] == []
 
@@ -126,7 +126,7 @@ def written(folder: Path, content: Any) -> str:
     return str(path)
 
 
-def test_what_was_written_is_read(tmp_path: Path, known: Document) -> None:
+def test_what_was_written_is_read(tmp_path: Path, known: AnalysisDocument) -> None:
     found = read(written(tmp_path, plain(known)))
     assert isinstance(found, AnalyzedSet)
     assert found.document == known
@@ -153,7 +153,7 @@ Change = Callable[[Any], object]
     ],
 )
 def test_a_verdict_that_does_not_follow_is_refused(
-    tmp_path: Path, known: Document, change: Change
+    tmp_path: Path, known: AnalysisDocument, change: Change
 ) -> None:
     content = json.loads(json.dumps(plain(known)))
     change(content)

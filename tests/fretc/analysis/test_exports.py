@@ -10,7 +10,7 @@ import pytest
 from compiler.project.folder import load_folder
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import roles
-from fretc.analysis.findings import Verdict
+from fretc.analysis.findings import RealizabilityVerdict
 from fretc.analysis.realizability_problem import stage
 from fretc.analysis.verdicts import verdict
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -135,13 +135,13 @@ def test_a_published_set_has_its_published_answer(
 @pytest.mark.parametrize(
     ("without", "delayed", "answer"),
     [
-        ("LPC_REACH_HOVER_12", True, Verdict.UNREALIZABLE),
-        ("LPC_REACH_HOVER_06", True, Verdict.REALIZABLE),
-        ("LPC_REACH_HOVER_06", False, Verdict.REALIZABLE),
+        ("LPC_REACH_HOVER_12", True, RealizabilityVerdict.UNREALIZABLE),
+        ("LPC_REACH_HOVER_06", True, RealizabilityVerdict.REALIZABLE),
+        ("LPC_REACH_HOVER_06", False, RealizabilityVerdict.REALIZABLE),
     ],
 )
 def test_hover_is_reached_within_twelve_ticks_and_not_within_six(
-    fretc: Fretc, without: str, delayed: bool, answer: Verdict
+    fretc: Fretc, without: str, delayed: bool, answer: RealizabilityVerdict
 ) -> None:
     """A plane that slows down by 10 knots a tick; `0.0 -> pre kias` says the same as `preReal`.
 

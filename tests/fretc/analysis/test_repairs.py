@@ -6,7 +6,7 @@ import pytest
 
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.analysis import analyze
-from fretc.analysis.findings import Analysis, Repair, Verdict
+from fretc.analysis.findings import Analysis, RealizabilityVerdict, Repair
 from fretish.bindings.declarations import Role
 from fretish.clock import Clock
 from tests.effort import FULL
@@ -101,7 +101,7 @@ def test_no_assumption_takes_a_trigger_away() -> None:
 
 def test_what_settles_one_conflict_of_several_says_so() -> None:
     found = fixed(*ONE_AT_A_TIME, "the sw shall never satisfy x")
-    assert found.verdict is Verdict.UNREALIZABLE
+    assert found.verdict is RealizabilityVerdict.UNREALIZABLE
     assert all(not each.settles for each in found.repairs)
     assert found.repairs
 

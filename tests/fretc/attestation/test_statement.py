@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 from compiler.files.checked_json import SchemaError
-from fretc.attestation.statement import REVIEW, Statement, Subject, read, text
+from fretc.attestation.statement import REVIEW, SignedItem, Statement, read, text
 
-ONE = Statement(REVIEW, (Subject(REVIEW, "R1:a", "ab" * 32), Subject(REVIEW, "", "cd" * 32)))
+ONE = Statement(REVIEW, (SignedItem(REVIEW, "R1:a", "ab" * 32), SignedItem(REVIEW, "", "cd" * 32)))
 
 
 def test_what_is_written_is_read_again() -> None:

@@ -7,10 +7,18 @@ from typing import Any
 
 from compiler.files.records import decoded, plain, replace
 from fretc.audit.evidence.probabilities import Outcomes
-from fretc.audit.evidence.samples import Surroundings, Window
-from fretc.audit.evidence.schema import Answer, Hashes, Health, Result, State, Threshold, Violation
+from fretc.audit.evidence.samples import RunPart, Surroundings
+from fretc.audit.evidence.schema import (
+    Answer,
+    Hashes,
+    Health,
+    Result,
+    StateChangeRecord,
+    ThresholdRecord,
+    Violation,
+)
 from fretc.audit.evidence.writer import unjudged_result
-from fretc.audit.measurements.tallies import Tally
+from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.measurements.violations import Moment
 
 SHA = "0" * 64
@@ -47,13 +55,15 @@ BOUND = {
 def result(**fields: Any) -> Result:
     """A result by the keys of its JSON object; texts and hashes may be any."""
     forms: dict[str, Callable[[Any], Any]] = {
-        "states": lambda each: decoded(each, tuple[State, ...]),
+        "states": lambda each: decoded(each, tuple[StateChangeRecord, ...]),
         "answers": lambda each: decoded(each, tuple[Answer, ...]),
         "triggers": lambda each: decoded(each, tuple[Moment, ...]),
         "open": lambda each: decoded(each, tuple[Moment, ...]),
         "violations": lambda each: decoded([BROKEN | one for one in each], tuple[Violation, ...]),
-        "thresholds": lambda each: decoded([BOUND | one for one in each], tuple[Threshold, ...]),
-        "propositions": lambda each: decoded(each, dict[str, Tally]),
+        "thresholds": lambda each: decoded(
+            [BOUND | one for one in each], tuple[ThresholdRecord, ...]
+        ),
+        "propositions": lambda each: decoded(each, dict[str, PropositionTally]),
         "hashes": lambda each: Hashes(**HASHES | each),
         "health": lambda each: decoded(plain(HEALTH) | each, Health),
         "trials": lambda each: decoded(each, Outcomes),
@@ -75,7 +85,7 @@ def violation(
     deadline: Moment | None = None,
     missing: str = "stopped",
     values: Mapping[str, float | None] = MappingProxyType({}),
-    window: Window | None = None,
+    window: RunPart | None = None,
 ) -> Violation:
     """A violation in a run that begins at 0."""
     return Violation(
@@ -93,7 +103,7 @@ def violation(
     )
 
 
-def _surroundings(window: Window) -> Surroundings:
+def _surroundings(window: RunPart) -> Surroundings:
     def ns(seconds: float) -> int:
         return round(seconds * 10**9)
 

@@ -19,7 +19,7 @@ from typing import Any
 import pytest
 
 from fretc.audit import dask_executor
-from fretc.audit.many_logs import Audit, Engine, LogResult, audit_logs
+from fretc.audit.many_logs import AuditOutcome, Engine, LogResult, audit_logs
 from fretc.audit.plan import packed, unpacked
 from fretish.diagnostics import extras
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -177,8 +177,8 @@ def test_a_log_that_kills_its_workers_is_told_and_the_others_are_audited(
     monkeypatch.setattr(dask_executor, "_work", deadly.work)
     monkeypatch.setattr(cluster.scheduler, "allowed_failures", int(FULL))
     there = audit_logs(plan(), LOGS[:5], engine(cluster))
-    assert isinstance(here, Audit)
-    assert isinstance(there, Audit)
+    assert isinstance(here, AuditOutcome)
+    assert isinstance(there, AuditOutcome)
     assert [r for r in there.results if r.run != deadly.LOG] == [
         r for r in here.results if r.run != deadly.LOG
     ]

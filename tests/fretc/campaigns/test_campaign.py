@@ -5,7 +5,15 @@ from pathlib import Path
 import pytest
 from rosbags.highlevel import AnyReader
 
-from fretc.campaigns.campaign import Run, assessed, campaign, recorded, share, simulated, table
+from fretc.campaigns.campaign import (
+    MissionResult,
+    assessed,
+    campaign,
+    recorded,
+    share,
+    simulated,
+    table,
+)
 from simulation.world.scenario import Scenario, load, names
 from tests.effort import FULL, some
 from tests.simulation.missions import Missions, cut_off
@@ -105,7 +113,7 @@ def test_the_interval_is_that_of_clopper_and_pearson(
 
 
 def test_the_table_has_a_line_for_each_scenario_and_the_violations() -> None:
-    one = Run(
+    one = MissionResult(
         scenario="walker",
         seed=1,
         duration=90.0,

@@ -16,7 +16,7 @@ from monitors.interceptor import Velocity as Twist
 from simulation.nodes import messages
 from simulation.nodes.safety import TooClose
 from simulation.world.lidar import Lidar
-from simulation.world.motion import Pose, Velocity
+from simulation.world.motion import BodyVelocity, Pose
 from simulation.world.scenario import Interceptor
 
 LIDAR = Lidar(beams=8)
@@ -41,7 +41,7 @@ def scan(*ranges: float) -> Scan:
 
 
 def odometry(forward: float) -> object:
-    return messages.odometry(0, "odom", Pose(0.0, 0.0), Velocity(forward, 0.0))
+    return messages.odometry(0, "odom", Pose(0.0, 0.0), BodyVelocity(forward, 0.0))
 
 
 FREE = scan(*[INF] * 8)
@@ -164,7 +164,7 @@ def commands(options: Interceptor, *arrivals: Any) -> list[Twist]:
             for _ in range(one):
                 gate.ring()
         elif isinstance(one, Twist):
-            gate.hear_command(messages.twist(Velocity(one.vx, one.wz)))
+            gate.hear_command(messages.twist(BodyVelocity(one.vx, one.wz)))
         else:
             gate.hear_stop(one)
     return out

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.audit.bindings.starter_files import Bound, first_requirement
+from fretc.audit.bindings.starter_files import UpperLimit, first_requirement
 from fretc.audit.bindings.starter_files import _limit as limit
 from tests.command import Fretc
 from tests.command import write as put
@@ -155,6 +155,6 @@ def test_a_limit_is_no_less_than_the_value_and_close_to_it(value: float) -> None
 
 
 def test_one_function_writes_the_first_requirement() -> None:
-    found = first_requirement(Bound("vx", "0.4", "m/s"), "is an example.")
+    found = first_requirement(UpperLimit("vx", "0.4", "m/s"), "is an example.")
     assert found.sentence == "the robot shall always satisfy vx <= 0.4"
     assert found.text == "vx is at most 0.4 m/s, always."

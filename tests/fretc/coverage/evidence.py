@@ -5,11 +5,11 @@ from collections.abc import Mapping
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.schema import (
     SCHEMA,
-    Bindings,
-    Document,
-    Requirement,
+    BindingsRecord,
+    EvidenceDocument,
+    RequirementRecord,
     Result,
-    Situation,
+    SituationRecord,
     Situations,
 )
 from tests.fretc.audit.results import SHA, moment, result
@@ -31,12 +31,14 @@ def of_run(run: str, shown: Shown, requirement: str = "R1") -> Result:
 def evidence(*results: Result, named: bool = True) -> EvidenceFile:
     """Of all of them; without `named` the requirements say of no situation."""
     ids = dict.fromkeys(each.requirement for each in results)
-    situations = tuple(Situation(key, f"it is {key}") for key in KEYS)
+    situations = tuple(SituationRecord(key, f"it is {key}") for key in KEYS)
     requirements = tuple(
-        Requirement(
+        RequirementRecord(
             id, "the sw shall satisfy p", SHA, **({"situations": situations} if named else {})
         )
         for id in ids
     )
-    document = Document(SCHEMA, "1", Bindings("bindings.toml", SHA), requirements, results)
+    document = EvidenceDocument(
+        SCHEMA, "1", BindingsRecord("bindings.toml", SHA), requirements, results
+    )
     return EvidenceFile("evidence.json", SHA, document)

@@ -16,15 +16,15 @@ from compiler.targets.python import monitor as target
 from fretc.audit.measurements.judgement import Judgement, judge
 from fretc.coverage import mutation_record
 from fretc.coverage.mutation import (
-    Difference,
     MutantBatch,
+    MutantDifference,
     MutationResult,
     difference,
     judgements,
     mutant_batch,
 )
 from fretc.coverage.mutation_output import lines
-from fretc.logs.signals.traces import Timeline, Trace
+from fretc.logs.signals.traces import Trace, WholeTicks
 from monitors import kernel
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth, Verdict
@@ -47,7 +47,7 @@ SENTENCES = [
 def trace_of(run: Sequence[Row], cut: Row | None = None) -> Trace:
     _, columns = packed({name: [row[name] for row in run] for name in run[0]})
     times = np.arange(len(run), dtype=np.int64) * 10**8
-    return Trace(Timeline(times, 10**8), columns, cut)
+    return Trace(WholeTicks(times, 10**8), columns, cut)
 
 
 def by_itself(own: Monitor, trace: Trace, *, intact: bool) -> Judgement:
@@ -151,8 +151,8 @@ def surveyed() -> MutationResult:
     of = mutant_batch(requirement(SENTENCES[3]))
     first, second, *_ = of.mutants
     apart = {
-        ("R1", first.key): (0, Difference("satisfied", "violated", 3)),
-        ("R1", second.key): (1, Difference("satisfied", "vacuous", None)),
+        ("R1", first.key): (0, MutantDifference("satisfied", "violated", 3)),
+        ("R1", second.key): (1, MutantDifference("satisfied", "vacuous", None)),
     }
     return MutationResult(("a.mcap", "b.mcap"), (of,), frozenset({"R1"}), apart, ())
 

@@ -17,7 +17,7 @@ from mcap_ros1._vendor import genpy
 from mcap_ros1._vendor.genpy import dynamic
 from mcap_ros2._dynamic import serialize_dynamic
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 
 SIZES = {
     "int8": "b", "uint8": "B", "int16": "h", "uint16": "H", "int32": "i", "uint32": "I",
@@ -125,7 +125,7 @@ class Encoder:
         text = kind.definition(ros1=ros1)
         encoding = "ros1" if ros1 else "cdr"
         schema = Schema(1, text.encode(), f"{'ros1' if ros1 else 'ros2'}msg", kind.name)
-        self.stream = Stream(Channel(1, "/x", encoding, {}, 1), schema)
+        self.stream = ChannelDefinition(Channel(1, "/x", encoding, {}, 1), schema)
         generate: Any = dynamic.generate_dynamic
         self._classes = generate(kind.name, text) if ros1 else {}
         self._encode = None if ros1 else serialize_dynamic(kind.name, text)[kind.name]

@@ -9,9 +9,9 @@ from mcap.reader import make_reader
 
 import fretc.logs.extraction
 import fretc.logs.topic_columns
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.messages.decoding import Decode, decoder, shape
-from fretc.logs.messages.layouts import Shape
+from fretc.logs.messages.layouts import TopicType
 from fretc.logs.messages.probes import trusted
 from fretc.logs.messages.vectorized import samples
 from fretc.logs.signals.samples import Recording
@@ -48,7 +48,7 @@ class Ways:
         monkeypatch.setattr(fretc.logs.extraction, "decoder", self._decoder)
         monkeypatch.setattr(fretc.logs.extraction, "trusted", self._trusted)
 
-    def _decoder(self, stream: Stream) -> Decode | str:
+    def _decoder(self, stream: ChannelDefinition) -> Decode | str:
         found = decoder(stream)
         if isinstance(found, str):
             return found
@@ -59,7 +59,7 @@ class Ways:
 
         return decode
 
-    def _trusted(self, shape: Shape, decode: Decode) -> bool:
+    def _trusted(self, shape: TopicType, decode: Decode) -> bool:
         before, answer = self.decoded, trusted(shape, decode)
         self.decoded = before
         return answer
@@ -405,10 +405,10 @@ def test_a_field_with_a_word_of_python_as_its_name_is_read_as_the_decoder_names_
 def test_a_layout_that_reads_otherwise_than_the_decoder_is_given_up(
     ways: Ways, log: Log, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def swapped(stream: Stream) -> Shape | None:
+    def swapped(stream: ChannelDefinition) -> TopicType | None:
         known = shape(stream)
         assert known is not None
-        return Shape(known.name, {known.name: known.types[known.name][::-1]}, cdr=True)
+        return TopicType(known.name, {known.name: known.types[known.name][::-1]}, cdr=True)
 
     monkeypatch.setattr(fretc.logs.extraction, "shape", swapped)
     numbers = [0.0 if i in (0, 4, 8) else float(i) for i in range(9)]
@@ -446,12 +446,12 @@ def test_of_few_large_messages_one_is_decoded_and_of_small_ones_three(ways: Ways
 # Logs that others recorded
 
 
-def streams(path: Path) -> Iterator[Stream]:
+def streams(path: Path) -> Iterator[ChannelDefinition]:
     with path.open("rb") as file:
         summary = make_reader(file).get_summary()
     assert summary is not None
     for channel in summary.channels.values():
-        yield Stream(channel, summary.schemas.get(channel.schema_id))
+        yield ChannelDefinition(channel, summary.schemas.get(channel.schema_id))
 
 
 @needs_logs

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.signals.samples import Recording, Samples, Topic
 from fretc.logs.signals.traces import Trace, trace
-from fretc.logs.stream import End, Stream, Tick, lookback
+from fretc.logs.stream import ClockTick, SampleStream, StreamEnd, lookback
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.kernel.columns import truths
@@ -93,14 +93,14 @@ def rows(found: Trace) -> list[tuple[int, Truth]]:
     return list(zip(times, truths(found.columns["p"], len(times)), strict=True))
 
 
-def ticks(found: tuple[Tick, ...] | Diagnostic) -> list[tuple[int, Truth]]:
+def ticks(found: tuple[ClockTick, ...] | Diagnostic) -> list[tuple[int, Truth]]:
     assert not isinstance(found, Diagnostic), found
     return [(tick.time, tick.truth["p"]) for tick in found]
 
 
-def ended(stream: Stream) -> End:
+def ended(stream: SampleStream) -> StreamEnd:
     found = stream.end()
-    assert isinstance(found, End), found
+    assert isinstance(found, StreamEnd), found
     return found
 
 
@@ -128,9 +128,9 @@ def declared(
 
 def streamed(
     declarations: Declarations, messages: Sequence[tuple[str, Sample]], cuts: Sequence[int]
-) -> tuple[list[tuple[int, Truth]], End]:
+) -> tuple[list[tuple[int, Truth]], StreamEnd]:
     """All ticks, where each message comes before time has passed it, and in no other order."""
-    stream, found, left = Stream(declarations, ["p"]), [], list(messages)
+    stream, found, left = SampleStream(declarations, ["p"]), [], list(messages)
     for cut in [*sorted(cuts), LATEST]:
         for topic, sample in left:
             if sample.time < cut:
@@ -187,7 +187,7 @@ def code(found: object) -> Code | None:
 
 
 def test_what_comes_late_is_refused_and_changes_nothing() -> None:
-    stream = Stream(bindings("x < 5"), ["p"])
+    stream = SampleStream(bindings("x < 5"), ["p"])
     assert stream.add("x", 30, 9.0) is None
     assert ticks(stream.until(31)) == [(30, False)]
     assert code(stream.add("x", 30, 1.0)) is Code.OUT_OF_ORDER
@@ -196,7 +196,7 @@ def test_what_comes_late_is_refused_and_changes_nothing() -> None:
 
 
 def test_time_does_not_go_back() -> None:
-    stream = Stream(bindings("x < 5"), ["p"])
+    stream = SampleStream(bindings("x < 5"), ["p"])
     stream.add("x", 30, 9.0)
     stream.until(45)
     assert ticks(stream.until(10)) == []
@@ -207,11 +207,11 @@ def test_time_does_not_go_back() -> None:
     ("time", "why"), [(0, Code.ZERO_STAMP), (-1, Code.BAD_MESSAGE), (2**62, Code.BAD_MESSAGE)]
 )
 def test_a_time_that_no_clock_tells_is_refused(time: int, why: Code) -> None:
-    assert code(Stream(bindings("x < 5"), ["p"]).add("x", time, 1.0)) is why
+    assert code(SampleStream(bindings("x < 5"), ["p"]).add("x", time, 1.0)) is why
 
 
 def test_no_tick_is_given_while_a_topic_that_is_missing_may_move_the_first_one() -> None:
-    stream = Stream(three(), ["p"])
+    stream = SampleStream(three(), ["p"])
     stream.add("x", 1, 1.0)
     stream.add("y", 4, 1.0)
     assert ticks(stream.until(60)) == []
@@ -222,7 +222,7 @@ def test_no_tick_is_given_while_a_topic_that_is_missing_may_move_the_first_one()
 
 
 def test_the_end_places_the_first_tick() -> None:
-    stream = Stream(three(), ["p"])
+    stream = SampleStream(three(), ["p"])
     stream.add("x", 1, 1.0)
     stream.add("y", 4, 1.0)
     stream.until(20)
@@ -238,7 +238,7 @@ def three() -> Declarations:
 
 
 def test_nothing_follows_the_end() -> None:
-    stream = Stream(bindings("x < 5"), ["p"])
+    stream = SampleStream(bindings("x < 5"), ["p"])
     stream.add("x", 1, 1.0)
     ended(stream)
     calls = (stream.end(), stream.until(5), stream.add("x", 9, 1.0))
@@ -246,7 +246,7 @@ def test_nothing_follows_the_end() -> None:
 
 
 def test_a_million_ticks_at_once_are_a_wrong_unit_of_time() -> None:
-    stream = Stream(bindings("x < 5"), ["p"])
+    stream = SampleStream(bindings("x < 5"), ["p"])
     stream.add("x", 1, 1.0)
     assert code(stream.until(10**9)) is Code.TOO_LARGE
     assert ticks(stream.until(2)) == [(1, True)]
@@ -255,19 +255,19 @@ def test_a_million_ticks_at_once_are_a_wrong_unit_of_time() -> None:
 def test_a_sample_keeps_to_the_kind_of_number_that_ticks_have_seen() -> None:
     """0.9 as a 32-bit float is 0.9, and is below it as a 64-bit float."""
     declarations = bindings("x < 0.9")
-    stream = Stream(declarations, ["p"])
+    stream = SampleStream(declarations, ["p"])
     stream.add("x", 1, np.float32(0.9))
     assert ticks(stream.until(2)) == [(1, False)]
     assert code(stream.add("x", 2, 0.5)) is Code.SEVERAL_TYPES
     assert stream.add("x", 2, None) is None
-    other = Stream(declarations, ["p"])
+    other = SampleStream(declarations, ["p"])
     other.add("x", 1, np.float32(0.9))
     other.add("x", 2, 0.5)
     assert ticks(other.until(2)) == [(1, True)]
 
 
 def test_whole_numbers_beyond_floats_are_compared_exactly() -> None:
-    stream = Stream(bindings(f"x = {2**60 + 1}"), ["p"])
+    stream = SampleStream(bindings(f"x = {2**60 + 1}"), ["p"])
     stream.add("x", 1, 2**60 + 1)
     stream.add("x", 2, 2**60)
     found = ticks(stream.until(2))
@@ -303,14 +303,14 @@ NESTED = '[clock]\ntick = "10 ns"\n[signal.a]\npath = "/t.m.data"\n[signal.b]\np
     ids=["mapping", "rclpy", "attributes"],
 )
 def test_messages_are_mappings_or_objects(message: object) -> None:
-    stream = Stream(declare(f'{NESTED}[proposition.p]\nexpr = "a = 3 and b = 1"\n'), ["p"])
+    stream = SampleStream(declare(f'{NESTED}[proposition.p]\nexpr = "a = 3 and b = 1"\n'), ["p"])
     assert stream.message("/t", 1, message) is None
     assert stream.message("/other", 1, message) is None
     assert ticks(stream.until(2)) == [(1, True)]
 
 
 def test_a_message_without_a_field_gives_none_of_its_samples() -> None:
-    stream = Stream(declare(f'{NESTED}[proposition.p]\nexpr = "a = 3 or b = 1"\n'), ["p"])
+    stream = SampleStream(declare(f'{NESTED}[proposition.p]\nexpr = "a = 3 or b = 1"\n'), ["p"])
     found = stream.message("/t", 1, {"m": {"data": 3}, "nn": [0, 1]})
     assert isinstance(found, Diagnostic)
     assert (found.code, found.help) == (Code.NO_FIELD, "did you mean `nn`?")
@@ -318,7 +318,7 @@ def test_a_message_without_a_field_gives_none_of_its_samples() -> None:
 
 
 def test_a_clock_of_messages_needs_messages() -> None:
-    stream = Stream(bindings("x < 5", clock='tick = "/x"'), ["p"])
+    stream = SampleStream(bindings("x < 5", clock='tick = "/x"'), ["p"])
     assert code(stream.add("x", 1, 1.0)) is Code.MESSAGE_CLOCK
 
 
@@ -328,7 +328,7 @@ def test_lookback_adds_up_what_is_within_each_other() -> None:
 
 
 def test_memory_does_not_grow_with_time() -> None:
-    stream = Stream(bindings("((x < 5 for 12 ns) or y < 5) for 9 ns"), ["p"])
+    stream = SampleStream(bindings("((x < 5 for 12 ns) or y < 5) for 9 ns"), ["p"])
     for time in range(1, 500):
         stream.add("x", time, 1.0)
         stream.add("y", time, 1.0)

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from compiler.targets.python import monitor as emitted
-from fretc.logs.signals.traces import Timeline
-from fretc.play.recorded import SHOWN, Run
+from fretc.logs.signals.traces import WholeTicks
+from fretc.play.recorded import SHOWN, RecordedRun
 from fretc.play.starts import MOST, Start
 from monitors.kernel import Column, Monitor
 from monitors.loading import load
@@ -21,9 +21,9 @@ from tests.strategies import Template, templates
 TICKS = 400
 
 
-def run_of(sentence: str, columns: dict[str, list[bool | None]]) -> Run:
+def run_of(sentence: str, columns: dict[str, list[bool | None]]) -> RecordedRun:
     count = len(next(iter(columns.values())))
-    times = Timeline(np.arange(count) * 100_000_000 + 5, 100_000_000)
+    times = WholeTicks(np.arange(count) * 100_000_000 + 5, 100_000_000)
     made = {
         name: Column(
             sum(1 << t for t, v in enumerate(values) if v),
@@ -32,7 +32,7 @@ def run_of(sentence: str, columns: dict[str, list[bool | None]]) -> Run:
         for name, values in columns.items()
     }
     subject = requirement(sentence)
-    return Run(subject, {name: made[name] for name in subject.watched}, times, "run.mcap")
+    return RecordedRun(subject, {name: made[name] for name in subject.watched}, times, "run.mcap")
 
 
 def signals(machine: Monitor, rows: list[dict[str, Any]]) -> list[tuple[Any, ...]]:

@@ -16,7 +16,7 @@ from compiler.project.folder import load
 from compiler.targets.python.monitor import text
 from fretc.play import versions as comparing
 from fretc.play.versions import Side, Versions, side_by_side, versions
-from fretc.testing.runs import Absence, Difference, difference
+from fretc.testing.runs import Absence, DistinguishingRun, difference
 from fretish.diagnostics.diagnostic import has_errors
 from monitors.loading import load as monitor
 from tests.monitoring import requirement
@@ -52,7 +52,7 @@ def test_a_shortest_run_tells_two_sentences_apart_or_none_does() -> None:
         for shorter in range(1, length + 1):
             for rows in words(shorter):
                 assert ends(one, rows) is ends(other, rows), (one, other, rows)
-        if isinstance(found, Difference):
+        if isinstance(found, DistinguishingRun):
             blank = dict.fromkeys("mpqs", False)
             rows = [
                 blank | {n: bool(v) for n, v in each.values.items()}
@@ -60,7 +60,7 @@ def test_a_shortest_run_tells_two_sentences_apart_or_none_does() -> None:
                 for _ in range(each.count)
             ]
             assert ends(one, rows) is not ends(other, rows), (one, other, rows)
-    assert fates == {Absence, Difference}
+    assert fates == {Absence, DistinguishingRun}
 
 
 def named(sentence: str, id: str) -> FormalizedRequirement:

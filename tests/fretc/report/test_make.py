@@ -7,7 +7,7 @@ import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 from compiler.project.folder import load
-from fretc.audit.many_logs import Audit, audit_logs
+from fretc.audit.many_logs import AuditOutcome, audit_logs
 from fretc.audit.plan import Plan, planned
 from fretc.report.make import make
 from fretish.diagnostics.diagnostic import Code, Severity
@@ -689,7 +689,7 @@ def test_the_evidence_of_the_recorded_run_fits_its_schema_and_is_reported(tmp_pa
     plan = planned(known)
     assert isinstance(plan, Plan)
     audit = audit_logs(plan, [TRACE, "traces/none.mcap"])
-    assert isinstance(audit, Audit)
+    assert isinstance(audit, AuditOutcome)
     validate("evidence.schema.json", json.loads(audit.evidence))
     file = tmp_path / "evidence.json"
     file.write_text(audit.evidence, encoding="utf-8")

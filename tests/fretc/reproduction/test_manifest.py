@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fretc.audit.evidence.schema import SCHEMA, Bindings, Document
+from fretc.audit.evidence.schema import SCHEMA, BindingsRecord, EvidenceDocument
 from fretc.logs.storage.folders import of_all
 from fretc.reproduction.manifest import Manifest, matches, read
 from tests.fretc.audit.results import result
@@ -22,7 +22,7 @@ def listed(folder: Path) -> dict[str, str]:
 def wrong(folder: Path, logs: dict[str, str]) -> list[str]:
     hashes = {path.name: listed(folder)[f"logs/run/{path.name}"] for path in folder.glob("*.mcap")}
     one = result(run="logs/run", hashes={"log": of_all(dict(sorted(hashes.items())))})
-    document = Document(SCHEMA, "", Bindings("", ""), (), (one,))
+    document = EvidenceDocument(SCHEMA, "", BindingsRecord("", ""), (), (one,))
     file = folder.parent / "manifest"
     file.write_text("".join(f"{sha}  {path}\n" for path, sha in logs.items()))
     manifest = read(str(file))

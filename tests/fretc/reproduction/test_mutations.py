@@ -16,10 +16,10 @@ import pytest
 from compiler.files.records import plain
 from compiler.logic.claims import (
     SCHEMA,
-    Document,
+    ClaimResult,
+    ClaimTrace,
     Layer,
-    Result,
-    Trace,
+    VerificationDocument,
     proof,
     proved,
     refuted,
@@ -35,15 +35,15 @@ from fretc.audit.plan import Plan, planned
 from fretc.audit.store.anywhere import required
 from fretc.reproduction import proofs as reproving
 from fretc.reproduction import results
-from fretc.reproduction.completeness import Scope
+from fretc.reproduction.completeness import ComparisonScope
 from fretc.reproduction.manifest import Manifest
 from fretc.reproduction.manifest import read as read_manifest
-from fretc.reproduction.outcome import Finding, Recheck
+from fretc.reproduction.outcome import ItemOutcome, Recheck
 from fretc.reproduction.results import recheck
 from fretc.traceability.chain import chains
 from fretc.traceability.lock import Lock, accepted
 from fretc.verification import reader as proven
-from fretc.verification.engines.sandbox import Limits
+from fretc.verification.engines.sandbox import CallLimits
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import write
 from tests.effort import FULL
@@ -218,7 +218,7 @@ class Case:
             return document
         runs = dict.fromkeys(result.run for result in document.results)
         there = {run: run for run in runs if run and Path(run).is_file()}
-        scope = Scope(tuple(claim.id for claim in self._plan.claims), self._lock)
+        scope = ComparisonScope(tuple(claim.id for claim in self._plan.claims), self._lock)
         again = recheck(document.document, self._plan, there, self._engine, scope, self._manifest)
         assert not isinstance(again, Diagnostic)
         return again
@@ -238,7 +238,7 @@ def stands(rechecks: Sequence[Recheck] | Diagnostic) -> bool:
     """Whether the command would exit with 0."""
     if isinstance(rechecks, Diagnostic):
         return False
-    return all(one.finding is Finding.STANDS for one in rechecks)
+    return all(one.finding is ItemOutcome.STANDS for one in rechecks)
 
 
 @pytest.fixture(scope="module")
@@ -313,7 +313,7 @@ def test_nothing_is_left_out(case: Case, name: str, named: bool) -> None:
 
 # Proofs ---------------------------------------------------------------------------------------
 
-TRACE = Trace(("p", "q"), ((True, False), (None, False)), ("it starts", "it ends"), 0)
+TRACE = ClaimTrace(("p", "q"), ((True, False), (None, False)), ("it starts", "it ends"), 0)
 PROOFS_NOW = (
     proof("r1", Layer.MONITOR, "it means it", proved("9 states"), "fretc", (), {"m": "a" * 64}),
     proof("r1", Layer.LOOP, "it is kept", refuted("at 1", TRACE), "fretc", ("(1) so",)),
@@ -325,14 +325,14 @@ PROOFS_NOW = (
 
 def test_no_change_to_proofs_is_certified(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reproving, "prove", lambda *arguments: PROOFS_NOW)
-    content = json.loads(json.dumps(plain(Document(SCHEMA, "0.1.0", PROOFS_NOW))))
+    content = json.loads(json.dumps(plain(VerificationDocument(SCHEMA, "0.1.0", PROOFS_NOW))))
 
     def judged(text: str) -> Sequence[Recheck] | Diagnostic:
         proofs = proven.read(write("build/changed.json", text))
         if isinstance(proofs, Diagnostic):
             return proofs
         again = reproving.prove_again(
-            case.project, proofs, Limits(), tuple(REQUIREMENTS), lambda words: None
+            case.project, proofs, CallLimits(), tuple(REQUIREMENTS), lambda words: None
         )
         assert not isinstance(again, Diagnostic)
         return again
@@ -340,7 +340,7 @@ def test_no_change_to_proofs_is_certified(case: Case, monkeypatch: pytest.Monkey
     assert stands(judged(json.dumps(content)))
     texts = [(what, at, text) for what, at, text in changes(content)]
     for i, record in enumerate(content["evidence"]):
-        for result in {*map(str, Result)} - {record["result"]}:
+        for result in {*map(str, ClaimResult)} - {record["result"]}:
             at = ("evidence", i, "result")
             texts.append((result, at, put(content, at, result)))
         for layer in {*map(str, Layer)} - {record["layer"]}:

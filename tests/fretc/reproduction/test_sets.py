@@ -7,9 +7,9 @@ from typing import Any
 from compiler.files.checked_json import SchemaError
 from compiler.files.records import decoded, plain
 from compiler.files.templating import to_json
-from fretc.analysis.analysis import Options, analyze
-from fretc.analysis.evidence import Document, document
-from fretc.reproduction.outcome import Finding
+from fretc.analysis.analysis import AnalysisOptions, analyze
+from fretc.analysis.evidence import AnalysisDocument, document
+from fretc.reproduction.outcome import ItemOutcome
 from fretc.reproduction.sets import compared
 from tests.requirement_sets import ROLES, requirement, requirements
 
@@ -50,23 +50,26 @@ def changes(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 def test_no_change_of_an_analysis_stands() -> None:
     members = requirements(*SENTENCES)
-    now = analyze(members, ROLES, ASSUMED, Options(60))
+    now = analyze(members, ROLES, ASSUMED, AnalysisOptions(60))
     assert now.conflicts
     assert now.vacuous
     assert now.redundant
     assert now.always
     assert now.repairs
     known: Any = json.loads(to_json(plain(document(members, ASSUMED, now, as_fret=False))))
-    assert all(each.finding is Finding.STANDS for each in compared(decoded(known, Document), now))
+    assert all(
+        each.finding is ItemOutcome.STANDS
+        for each in compared(decoded(known, AnalysisDocument), now)
+    )
     tried = 0
     for where, other in changes(known["analysis"]):
         if "seconds" in where or other == known["analysis"]:
             continue
         try:
-            forged = decoded({**known, "analysis": other}, Document)
+            forged = decoded({**known, "analysis": other}, AnalysisDocument)
         except SchemaError:
             continue
         found = [each.finding for each in compared(forged, now)]
-        assert {Finding.DIFFERS, Finding.UNKNOWN} & {*found}, where
+        assert {ItemOutcome.DIFFERS, ItemOutcome.UNKNOWN} & {*found}, where
         tried += 1
     assert tried > 100

@@ -14,7 +14,7 @@ from typing import Self
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.testing.conformance.conformance_run import ConformanceRun
 from fretc.testing.conformance.findings import Conformance
-from fretc.testing.conformance.program import Program
+from fretc.testing.conformance.program import ProgramRun
 from tests.requirement_sets import requirement, requirements, roles
 
 SENTENCES = (
@@ -81,7 +81,7 @@ def program(fault: str | None = None) -> str:
     return RIGHT.replace(was, wrong)
 
 
-class Within(Program):
+class Within(ProgramRun):
     """A run of a text in this process, in a thread of its own."""
 
     def __enter__(self) -> Self:
@@ -117,12 +117,12 @@ class Within(Program):
 
 def seen_of(text: str, folder: Path | None = None) -> Conformance:
     """What is seen of a program, run in that folder, or else within this process."""
-    kind: type[Program] = Within
+    kind: type[ProgramRun] = Within
     command = [text]
     if folder is not None:
         path = folder / "program.py"
         path.write_text(text)
-        kind, command = Program, [sys.executable, "-ISE", str(path)]
+        kind, command = ProgramRun, [sys.executable, "-ISE", str(path)]
     campaign = ConformanceRun([*RULES.values()], [ASSUMED], roles(INPUTS, OUTPUTS), 60)
     columns = campaign.oracle.inputs, campaign.oracle.outputs
     campaign.run(partial(kind, command, *columns, seconds=60), lambda words: None)

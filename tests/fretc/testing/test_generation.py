@@ -15,7 +15,7 @@ from compiler.situations.mutants import mutants
 from compiler.situations.situations import Situation, situations
 from fretc.testing.generation import Batch, batch
 from fretc.testing.suite import GoalResult, GoalStatus, MutantStatus, Polarity, Test
-from fretc.testing.words import Word, defined, judged, letters
+from fretc.testing.words import RunColumns, defined, judged, letters
 from tests.each import each
 from tests.effort import FULL, some
 from tests.requirement_sets import requirements
@@ -45,7 +45,7 @@ def made(*sentences: str) -> Batch:
     return batch(first, others, 60)
 
 
-def word_of(test: Test) -> Word:
+def word_of(test: Test) -> RunColumns:
     """A test as columns, from the rows that are written."""
     columns: dict[str, int] = dict.fromkeys(test.rows[0].values, 0)
     tick = 0
@@ -53,19 +53,19 @@ def word_of(test: Test) -> Word:
         for name, value in row.values.items():
             columns[name] |= (((1 << row.count) - 1) if value else 0) << tick
         tick += row.count
-    return Word(test.rows, columns, tick)
+    return RunColumns(test.rows, columns, tick)
 
 
-def words(atoms: Sequence[str]) -> Iterator[Word]:
+def words(atoms: Sequence[str]) -> Iterator[RunColumns]:
     """All words up to some length, the short ones first."""
     for ticks in count(1):
         if 1 << ticks * len(atoms) > MOST:
             return
         for columns in product(range(1 << ticks), repeat=len(atoms)):
-            yield Word((), dict(zip(atoms, columns, strict=True)), ticks)
+            yield RunColumns((), dict(zip(atoms, columns, strict=True)), ticks)
 
 
-def comes_by(word: Word, situation: Situation, last: int) -> bool:
+def comes_by(word: RunColumns, situation: Situation, last: int) -> bool:
     """Whether a word shows a situation at one of the ticks 0..last."""
     column = evaluate(situation.formula, word.columns, word.ticks)
     if situation.at_end:
@@ -76,7 +76,7 @@ def comes_by(word: Word, situation: Situation, last: int) -> bool:
 def manner(
     requirement: FormalizedRequirement,
     situation: Situation,
-    word: Word,
+    word: RunColumns,
     ending: tuple[int | None, bool],
 ) -> int | None:
     """How well a word shows a situation, 0 best; None: it does not show it.
@@ -221,20 +221,20 @@ def test_what_is_unknown_decides_and_no_shorter_run_depends_on_it(sentence: str)
         assert sum(row.values[situation.unknown] is None for row in tests[name].rows) == 1
 
 
-def depends(requirement: FormalizedRequirement, situation: Situation, word: Word) -> bool:
+def depends(requirement: FormalizedRequirement, situation: Situation, word: RunColumns) -> bool:
     """Whether the verdict of a word depends on an atom at a tick of the situation."""
     atom = situation.unknown
     assert atom is not None
     column = evaluate(situation.formula, word.columns, word.ticks)
     for tick in range(word.ticks):
         other = {**word.columns, atom: word.columns[atom] ^ 1 << tick}
-        opposite = Word(word.rows, other, word.ticks)
+        opposite = RunColumns(word.rows, other, word.ticks)
         if column >> tick & 1 and verdict(requirement, word) is not verdict(requirement, opposite):
             return True
     return False
 
 
-def verdict(requirement: FormalizedRequirement, word: Word) -> bool:
+def verdict(requirement: FormalizedRequirement, word: RunColumns) -> bool:
     return defined(requirement, letters(requirement, word))[1]
 
 

@@ -9,7 +9,7 @@ import pytest
 from compiler.formalization import reference
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of, letters_by_valuation
-from compiler.formalization.reference import State
+from compiler.formalization.reference import ReferenceState
 from compiler.situations.mutants import mutants
 from fretc.testing.generation import batch
 from fretc.testing.suite import GoalStatus, MutantStatus, Polarity
@@ -29,7 +29,9 @@ def accept_the_same(one: FormalizedRequirement, other: FormalizedRequirement) ->
     for each_rule in (one, other):
         template = reference.template(each_rule.sentence, each_rule.ticks or 0)
         sides.append((template, letters_by_valuation(each_rule.sentence, atoms)))
-    start: tuple[State | None, ...] = tuple(reference.initial(template) for template, _ in sides)
+    start: tuple[ReferenceState | None, ...] = tuple(
+        reference.initial(template) for template, _ in sides
+    )
     seen, waiting = {start}, [start]
     while waiting:
         states = waiting.pop()

@@ -4,8 +4,8 @@ import pytest
 
 from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
-from compiler.logic.claims import Layer, Proof, Result
-from compiler.targets.target import Options
+from compiler.logic.claims import ClaimResult, Layer, Proof
+from compiler.targets.target import TargetOptions
 from fretc.traceability.artefacts import joint_monitors
 from tests.monitoring import requirement
 
@@ -19,10 +19,10 @@ def test_a_proof_about_a_file_for_several_requirements_is_about_the_file_of_toda
 ) -> None:
     first = requirement("whenever p the sw shall within 3 ticks satisfy q", id="R1")
     second = requirement("the sw shall always satisfy p", id="R2")
-    products = TARGETS[target].emit([first, second], Options(one_file=True))
+    products = TARGETS[target].emit([first, second], TargetOptions(one_file=True))
     text = next(product.text for product in products if product.path.name == file)
     proofs = [
-        Proof(id, Layer.MONITOR, "c", Result.PROVED, "d", (), "e", {file: sha256(text)})
+        Proof(id, Layer.MONITOR, "c", ClaimResult.PROVED, "d", (), "e", {file: sha256(text)})
         for id in ("R1", "R2")
     ]
     assert sha256(text) in joint_monitors([first, second], proofs)

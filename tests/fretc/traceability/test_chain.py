@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from compiler.project.project import Project
 from fretc.audit.evidence import reader as reading
 from fretc.audit.evidence.result_summaries import ResultSummaries
-from fretc.traceability.chain import Chain, Link, Node, chains, suspects
+from fretc.traceability.chain import Chain, ChainItem, Link, chains, suspects
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.fretc.report import cases
 
@@ -158,7 +158,7 @@ def test_requirements_that_name_each_other_as_parents_have_a_chain(folder: Path)
 
 # Against reachability, written down directly ---------------------------------------------------
 
-NODES = [Node("text", str(i)) for i in range(7)]
+NODES = [ChainItem("text", str(i)) for i in range(7)]
 
 
 @given(st.sets(st.sampled_from([*combinations(range(7), 2)])), st.sets(st.integers(0, 6)))

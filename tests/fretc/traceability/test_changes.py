@@ -12,8 +12,8 @@ from compiler.project.folder import load_folder
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.store.anywhere import read as read_evidence
-from fretc.traceability.chain import Node, chains
-from fretc.traceability.comparison import Difference, differences
+from fretc.traceability.chain import ChainItem, chains
+from fretc.traceability.comparison import ReviewDifference, differences
 from fretc.traceability.lock import Lock, accepted, read, standings, text
 from fretc.traceability.meanings import agree
 from fretc.traceability.texts import as_table
@@ -190,7 +190,7 @@ def _bytes_of(folder: str) -> tuple[tuple[str, bytes], ...]:
     return tuple((str(p), p.read_bytes()) for p in sorted(Path(folder).rglob("*")) if p.is_file())
 
 
-def compared(lock: Lock | None = None) -> dict[str, Difference]:
+def compared(lock: Lock | None = None) -> dict[str, ReviewDifference]:
     """Each requirement that is not as it was."""
     project, evidence = load_folder("requirements"), _evidence(_bytes_of(EVIDENCE))
     assert not isinstance(project, Diagnostic)
@@ -202,7 +202,7 @@ def compared(lock: Lock | None = None) -> dict[str, Difference]:
     return {each.requirement: each for each in found if each.state != "same"}
 
 
-def listed(found: dict[str, Difference]) -> dict[str, list[Expected]]:
+def listed(found: dict[str, ReviewDifference]) -> dict[str, list[Expected]]:
     return {
         id: [(one.what, one.before or "", one.after or "") for one in each.changes]
         for id, each in found.items()
@@ -575,4 +575,4 @@ def test_what_cannot_be_formalized_now_is_told_by_its_text(
     found = compared()[id]
     assert found.changes
     assert found.suspects
-    assert not any(change.node == Node("formulas", id) for change in found.changes)
+    assert not any(change.node == ChainItem("formulas", id) for change in found.changes)

@@ -1,6 +1,6 @@
 import pytest
 
-from fretc.traceability.chain import Node
+from fretc.traceability.chain import ChainItem
 from fretc.traceability.lock import Lock, Review, read, text
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import write
@@ -12,7 +12,7 @@ REVIEW = Review(
     "safety engineer",
     "2026-11-22",
     "näher\nals 5 cm",
-    {Node("sentence", "R-1.a"): SHA, Node("verdict", "R-1.a runs/a b.mcap"): SHA},
+    {ChainItem("sentence", "R-1.a"): SHA, ChainItem("verdict", "R-1.a runs/a b.mcap"): SHA},
     {"runs/a b.mcap": "violated"},
 )
 
@@ -40,7 +40,9 @@ def test_no_lock_is_a_note() -> None:
     assert (diagnostic.code, diagnostic.is_error) == (Code.NO_SUCH_FILE, False)
 
 
-GOOD = text(Lock({"R1": Review("R1", "r", "s", "2026-01-02", "c", {Node("text", "R1"): SHA}, {})}))
+GOOD = text(
+    Lock({"R1": Review("R1", "r", "s", "2026-01-02", "c", {ChainItem("text", "R1"): SHA}, {})})
+)
 
 
 @pytest.mark.parametrize(
@@ -91,7 +93,7 @@ EDITS = [
 
 @pytest.mark.parametrize(("old", "new"), EDITS)
 def test_a_review_that_was_edited_by_hand_does_not_count(old: str, new: str) -> None:
-    prints = {Node("text", "R1"): SHA}
+    prints = {ChainItem("text", "R1"): SHA}
     known = text(
         Lock({"R1": Review("R1", "r", "s", "2026-01-02", "c", prints, {"a.mcap": "violated"})})
     )
@@ -122,7 +124,7 @@ def test_a_review_of_a_day_to_come_does_not_count(
 
 @pytest.mark.parametrize("id", ["schema", "review", "fingerprints", "verdicts", "seal", "date"])
 def test_a_requirement_may_have_any_id(id: str) -> None:
-    review = Review(id, "r", "s", "2026-01-02", "c", {Node("text", id): SHA}, {})
+    review = Review(id, "r", "s", "2026-01-02", "c", {ChainItem("text", id): SHA}, {})
     lock = Lock({id: review, "R1": Review("R1", "r", "s", "2026-01-02", "c", {}, {})})
     assert read(write("fretc.lock", text(lock))) == lock
 

@@ -9,9 +9,9 @@ from typing import Any
 from compiler.files.records import UNSET
 from fretc.audit.evidence.schema import (
     SCHEMA,
-    Bindings,
-    Document,
-    Requirement,
+    BindingsRecord,
+    EvidenceDocument,
+    RequirementRecord,
     Result,
     Selection,
 )
@@ -69,12 +69,14 @@ def hash_of(run: str, night: int) -> int:
     return int.from_bytes(f"{night}{run}"[:30].encode(), "big")
 
 
-def document(results: Iterable[Result], selection: Selection | None = None) -> Document:
+def document(results: Iterable[Result], selection: Selection | None = None) -> EvidenceDocument:
     found = tuple(results)
     ids = dict.fromkeys(each.requirement for each in found)
-    requirements = tuple(Requirement(id, f"the robot shall satisfy {id}", SHA) for id in ids)
-    bindings = Bindings("bindings.toml", SHA)
-    return Document(SCHEMA, "0", bindings, requirements, found, selection=selection or UNSET)
+    requirements = tuple(RequirementRecord(id, f"the robot shall satisfy {id}", SHA) for id in ids)
+    bindings = BindingsRecord("bindings.toml", SHA)
+    return EvidenceDocument(
+        SCHEMA, "0", bindings, requirements, found, selection=selection or UNSET
+    )
 
 
 def sample(audited: int, of: int, since: str | None = None, older: int = 0) -> Selection:

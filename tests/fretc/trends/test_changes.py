@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.audit.evidence.verdicts import BROKEN, SHOWN, VERDICTS
-from fretc.trends.changes import RED, Change, change, is_flaky
+from fretc.trends.changes import RED, VerdictChange, change, is_flaky
 
 ROUND = st.lists(st.sampled_from([*VERDICTS]), max_size=3)
 HISTORY = st.lists(ROUND, min_size=1, max_size=6).filter(any)
@@ -23,18 +23,18 @@ def shown(verdicts: list[str]) -> bool:
     return some and all(word in (*SHOWN, *silent) for word in verdicts)
 
 
-def naive(rounds: list[list[str]]) -> Change:
+def naive(rounds: list[list[str]]) -> VerdictChange:
     now, before = rounds[-1], [verdicts for verdicts in rounds[:-1] if verdicts]
     known = [violated(verdicts) for verdicts in before if violated(verdicts) or shown(verdicts)]
     if not now:
-        return Change.GONE
+        return VerdictChange.GONE
     if not before:
-        return Change.FIRST_VIOLATED if violated(now) else Change.FIRST
+        return VerdictChange.FIRST_VIOLATED if violated(now) else VerdictChange.FIRST
     if violated(now):
-        return Change.STILL if known[-1:] == [True] else Change.NEW
+        return VerdictChange.STILL if known[-1:] == [True] else VerdictChange.NEW
     if shown(now):
-        return Change.FIXED if known[-1:] == [True] else Change.STEADY
-    return Change.LOST if known else Change.NEVER_SHOWN
+        return VerdictChange.FIXED if known[-1:] == [True] else VerdictChange.STEADY
+    return VerdictChange.LOST if known else VerdictChange.NEVER_SHOWN
 
 
 @given(HISTORY)
@@ -44,13 +44,13 @@ def test_it_is_the_definition_in_words(rounds: list[list[str]]) -> None:
 
 @given(HISTORY)
 def test_what_is_violated_now_is_red_and_nothing_else_is(rounds: list[list[str]]) -> None:
-    red = (*RED, Change.STILL)
+    red = (*RED, VerdictChange.STILL)
     assert (change(rounds) in red) == violated(rounds[-1])
 
 
 @given(HISTORY)
 def test_a_violation_is_fixed_by_what_is_shown_alone(rounds: list[list[str]]) -> None:
-    if change(rounds) is Change.FIXED:
+    if change(rounds) is VerdictChange.FIXED:
         assert shown(rounds[-1])
         assert any(map(violated, rounds[:-1]))
 
@@ -68,13 +68,13 @@ def test_flaky_is_more_than_one_turn_or_both_at_one_commit(
 
 def test_each_change_by_its_example() -> None:
     bad, good, none = ["violated"], ["satisfied"], ["no data"]
-    assert change([good, bad]) is Change.NEW
-    assert change([bad, none, bad]) is Change.STILL
-    assert change([bad, none, good]) is Change.FIXED
-    assert change([bad, none]) is Change.LOST
-    assert change([bad, ["satisfied", "no data"]]) is Change.LOST
-    assert change([bad, ["satisfied", "vacuous"]]) is Change.FIXED
-    assert change([none, bad]) is Change.NEW
-    assert change([bad, []]) is Change.GONE
-    assert change([[], bad]) is Change.FIRST_VIOLATED
-    assert change([["vacuous"], ["vacuous"]]) is Change.NEVER_SHOWN
+    assert change([good, bad]) is VerdictChange.NEW
+    assert change([bad, none, bad]) is VerdictChange.STILL
+    assert change([bad, none, good]) is VerdictChange.FIXED
+    assert change([bad, none]) is VerdictChange.LOST
+    assert change([bad, ["satisfied", "no data"]]) is VerdictChange.LOST
+    assert change([bad, ["satisfied", "vacuous"]]) is VerdictChange.FIXED
+    assert change([none, bad]) is VerdictChange.NEW
+    assert change([bad, []]) is VerdictChange.GONE
+    assert change([[], bad]) is VerdictChange.FIRST_VIOLATED
+    assert change([["vacuous"], ["vacuous"]]) is VerdictChange.NEVER_SHOWN

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.schema import Result
-from fretc.trends.changes import RED, Change
-from fretc.trends.comparisons import Finding
+from fretc.trends.changes import RED, VerdictChange
+from fretc.trends.comparisons import ComparisonFinding
 from fretc.trends.trends import Trends, gone, not_selected
 from fretc.trends.trends import trends as trends_of
 from tests.effort import examples
@@ -30,7 +30,7 @@ def trends(*nights: Sequence[Result], by: str | None = None) -> Trends:
     return found
 
 
-def changes(found: Trends) -> dict[tuple[str, str], Change]:
+def changes(found: Trends) -> dict[tuple[str, str], VerdictChange]:
     return {(item.requirement, str(item.scenario)): item.change for item in found.items}
 
 
@@ -38,14 +38,14 @@ def test_evidence_is_ordered_by_its_runs_and_not_as_it_is_named() -> None:
     old = [judged("a.mcap", "satisfied", night=1)]
     new = [judged("a.mcap", "violated", night=2)]
     for given_order in ((old, new), (new, old)):
-        assert changes(trends(*given_order)) == {("R1", "a.mcap"): Change.NEW}
+        assert changes(trends(*given_order)) == {("R1", "a.mcap"): VerdictChange.NEW}
 
 
 def test_a_label_says_when_a_run_was() -> None:
     first = [judged("a.mcap", "violated", night=9, date="2026-11-20")]
     second = [judged("a.mcap", "satisfied", night=1, date="2026_11_21-22_00_00")]
     found = trends(second, first)
-    assert changes(found) == {("R1", "a.mcap"): Change.FIXED}
+    assert changes(found) == {("R1", "a.mcap"): VerdictChange.FIXED}
     assert [each.days for each in found.rounds] == ["2026-11-20", "2026-11-21"]
 
 
@@ -64,7 +64,7 @@ def test_equal_times_and_missing_ones_are_in_the_natural_order_of_names(
     found = trends_of(sources)
     assert isinstance(found, Trends)
     assert [each.name for each in found.rounds] == [f"n/{n}.json" for n in (2, 9, 10, 100)]
-    assert changes(found) == {("R1", "a.mcap"): Change.NEW}
+    assert changes(found) == {("R1", "a.mcap"): VerdictChange.NEW}
     why = "by name, since not all have a time" if night else "those of equal times by name"
     assert why in found.order
     assert "`fretc audit --label date=...` decides" in found.order
@@ -84,9 +84,9 @@ def test_versions_of_one_time_are_in_their_natural_order(order: Sequence[str], b
 def test_runs_of_a_scenario_are_comparable_whatever_their_names() -> None:
     before = [judged("x/1.mcap", scenario="door"), judged("x/2.mcap", scenario="door")]
     now = [judged("y/3.mcap", "violated", night=1, scenario="door")]
-    assert changes(trends(before, now)) == {("R1", "door"): Change.NEW}
+    assert changes(trends(before, now)) == {("R1", "door"): VerdictChange.NEW}
     apart = [judged("y/door", "violated", night=1)]
-    assert Change.GONE in changes(trends(before, apart)).values()
+    assert VerdictChange.GONE in changes(trends(before, apart)).values()
 
 
 def test_one_evidence_is_compared_day_by_day_or_by_a_label() -> None:
@@ -97,8 +97,8 @@ def test_one_evidence_is_compared_day_by_day_or_by_a_label() -> None:
     ]
     found = trends(runs)
     assert [each.name for each in found.rounds] == ["2025-11-08", "2025-11-09", "2025-11-10"]
-    assert changes(found) == {("R1", "a.mcap"): Change.STILL}
-    assert changes(trends(runs, by="version")) == {("R1", "a.mcap"): Change.NEW}
+    assert changes(found) == {("R1", "a.mcap"): VerdictChange.STILL}
+    assert changes(trends(runs, by="version")) == {("R1", "a.mcap"): VerdictChange.NEW}
     unlabelled = trends_of([EvidenceFile("", SHA, document(runs))], "robot")
     assert not isinstance(unlabelled, Trends)
     assert unlabelled.code.number == "F560"
@@ -142,16 +142,25 @@ def test_what_the_choice_of_logs_may_have_left_out_is_neither_gone_nor_fixed(cho
         judged("2.mcap", "satisfied", "R3", scenario="door", log=2),
     ]
     found = chosen(before, now, choice)
-    left_out = Change.NOT_SELECTED if choice in ("a sample", "since later") else Change.GONE
-    door = Change.NOT_SELECTED if left_out is Change.NOT_SELECTED else Change.FIXED
+    left_out = (
+        VerdictChange.NOT_SELECTED if choice in ("a sample", "since later") else VerdictChange.GONE
+    )
+    door = (
+        VerdictChange.NOT_SELECTED
+        if left_out is VerdictChange.NOT_SELECTED
+        else VerdictChange.FIXED
+    )
     assert changes(found) == {
         ("R1", "a.mcap"): left_out,
         ("R1", "b.mcap"): left_out,
-        ("R1", "other.mcap"): Change.FIRST,
-        ("R2", "c.mcap"): Change.GONE,  # the newest round does not have the requirement at all
+        ("R1", "other.mcap"): VerdictChange.FIRST,
+        (
+            "R2",
+            "c.mcap",
+        ): VerdictChange.GONE,  # the newest round does not have the requirement at all
         ("R3", "door"): door,
     }
-    if left_out is Change.NOT_SELECTED:
+    if left_out is VerdictChange.NOT_SELECTED:
         groups = {group.text for group in not_selected(found)}
         assert groups == {
             "scenario a.mcap: 1 shown", "scenario b.mcap: 1 violated", "scenario door: 1 violated",
@@ -174,8 +183,8 @@ def test_a_sample_hides_no_violation_and_is_no_loss_beside(
 def test_a_newer_log_of_a_scenario_takes_the_place_of_one_left_out_by_its_date() -> None:
     before = [judged("1.mcap", "violated", scenario="door")]
     now = [judged("2.mcap", "satisfied", night=1, scenario="door")]
-    assert changes(chosen(before, now, "since later")) == {("R1", "door"): Change.FIXED}
-    assert changes(chosen(before, now, "a sample")) == {("R1", "door"): Change.NOT_SELECTED}
+    assert changes(chosen(before, now, "since later")) == {("R1", "door"): VerdictChange.FIXED}
+    assert changes(chosen(before, now, "a sample")) == {("R1", "door"): VerdictChange.NOT_SELECTED}
 
 
 def chosen(before: Sequence[Result], now: Sequence[Result], choice: str) -> Trends:
@@ -190,7 +199,7 @@ def test_a_violation_is_told_where_the_requirement_has_changed_and_that_is_said(
     before = [judged("a.mcap", "satisfied")]
     now = [judged("a.mcap", "violated", night=1, sentence=OTHER)]
     (item,) = trends(before, now).items
-    assert (item.change, item.changed, item.flaky) == (Change.NEW, True, False)
+    assert (item.change, item.changed, item.flaky) == (VerdictChange.NEW, True, False)
 
 
 def test_one_commit_with_both_outcomes_is_flaky() -> None:
@@ -200,7 +209,7 @@ def test_one_commit_with_both_outcomes_is_flaky() -> None:
     ]
     (item,) = trends(runs).items
     assert item.flaky
-    assert item.change is Change.FIRST_VIOLATED
+    assert item.change is VerdictChange.FIRST_VIOLATED
 
 
 def test_it_is_worse_only_where_that_is_more_than_chance() -> None:
@@ -220,8 +229,10 @@ def test_it_is_worse_only_where_that_is_more_than_chance() -> None:
         ]
 
     steady, slower = trends(*nights(0.0)), trends(*nights(0.1))
-    assert not steady.with_finding(Finding.REGRESSED)
-    (found,) = slower.with_finding(Finding.REGRESSED)  # of one answer, the longest is the median
+    assert not steady.with_finding(ComparisonFinding.REGRESSED)
+    (found,) = slower.with_finding(
+        ComparisonFinding.REGRESSED
+    )  # of one answer, the longest is the median
     assert str(found.measure) == "longest latency"
     assert (found.runs_before, found.runs_after) == (20, 10)
     assert slower.is_worse
@@ -245,7 +256,7 @@ def test_a_margin_that_shrinks_is_worse_and_one_that_is_crossed_has_none_left() 
         ]
 
     found = trends(night(0, 0.2), night(1, 0.0))
-    (one,) = found.with_finding(Finding.REGRESSED)
+    (one,) = found.with_finding(ComparisonFinding.REGRESSED)
     assert one.measure.requirements == ("R1", "R2")
     assert one.measure.threshold == "clearance < 0.05 m (too_close)"
     assert one.after == 0
@@ -256,7 +267,7 @@ def test_few_runs_tell_nothing_and_that_is_said() -> None:
     before = [judged("0.mcap", late=[0.1], scenario="door")]
     now = [judged("1.mcap", night=1, late=[9.0], scenario="door")]
     found = trends(before, now)
-    assert len(found.with_finding(Finding.TOO_FEW)) == 1
+    assert len(found.with_finding(ComparisonFinding.TOO_FEW)) == 1
     assert not found.is_worse
 
 
@@ -270,14 +281,14 @@ def test_a_copy_of_a_log_counts_once() -> None:
             for run, log in enumerate(logs)
         ]
 
-    assert trends(before, late(range(12))).with_finding(Finding.REGRESSED)
-    assert not trends(before, late([7] * 12)).with_finding(Finding.REGRESSED)
+    assert trends(before, late(range(12))).with_finding(ComparisonFinding.REGRESSED)
+    assert not trends(before, late([7] * 12)).with_finding(ComparisonFinding.REGRESSED)
 
 
 def test_runs_of_a_requirement_that_was_another_one_are_not_compared() -> None:
     before = [judged(f"{run}.mcap", late=[0.1], scenario="d", sentence=OTHER) for run in range(12)]
     now = [judged(f"n{run}.mcap", night=1, late=[9.0], scenario="d") for run in range(12)]
-    assert not trends(before, now).with_finding(Finding.REGRESSED)
+    assert not trends(before, now).with_finding(ComparisonFinding.REGRESSED)
 
 
 VERDICTS = st.sampled_from(["satisfied", "violated", "no data", "vacuous", "inconclusive"])
@@ -308,10 +319,10 @@ def test_no_violation_of_the_newest_round_is_lost(
     keys = {(id, f"{run}.mcap") for runs in nights for run, id, _, _ in runs}
     assert told.keys() == keys
     for run, id, verdict, _ in nights[-1]:
-        red = told[id, f"{run}.mcap"] in (*RED, Change.STILL)
+        red = told[id, f"{run}.mcap"] in (*RED, VerdictChange.STILL)
         assert red == (verdict == "violated")
     missing = keys - {(id, f"{run}.mcap") for run, id, _, _ in nights[-1]}
-    assert {key for key, change in told.items() if change is Change.GONE} == missing
+    assert {key for key, change in told.items() if change is VerdictChange.GONE} == missing
     in_groups = [(i.requirement, str(i.scenario)) for group in gone(found) for i in group.items]
     assert sorted(in_groups) == sorted(missing)
 

@@ -12,9 +12,9 @@ import pytest
 from compiler.agents import checking
 from compiler.files.records import replace
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.claims import Layer, Outcome, Proof, Result, not_checked, vacuous
+from compiler.logic.claims import ClaimOutcome, ClaimResult, Layer, Proof, not_checked, vacuous
 from compiler.targets.ajpf.bundle import emit
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretc.verification.ajpf_results import ajpf_proofs, merged, read
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
@@ -84,7 +84,7 @@ def changed(mcapl: Mcapl, change: Change) -> None:
 def test_what_ajpf_shows_of_what_is_made_now_is_shown(ran: Mcapl) -> None:
     line = only(ran)
     assert (line.requirement, line.layer) == ("R1", Layer.AJPF)
-    assert line.result is Result.PROVED
+    assert line.result is ClaimResult.PROVED
     assert "(303, 303, 303, 303 states, " in line.detail
     assert line.claim == (
         "AJPF: every run of the agent of its bundle keeps R1: "
@@ -100,7 +100,7 @@ def test_what_ajpf_refutes_is_refuted_with_its_run(ran: Mcapl) -> None:
     ran.says({"R1.jpf": (RECORDED, 0)})
     ran.run()
     result = outcome(only(ran))
-    assert result.result is Result.COUNTEREXAMPLE
+    assert result.result is ClaimResult.COUNTEREXAMPLE
     assert result.detail == "AJPF found a run of 5 states that violates it"
     assert result.trace is not None
     assert result.trace.actions == ("", "", "", "drive_on", "")
@@ -120,7 +120,7 @@ def test_what_ajpf_refutes_is_refuted_with_its_run(ran: Mcapl) -> None:
     ],
 )
 def test_what_is_not_as_expected_shows_nothing(
-    ran: Mcapl, outputs: dict[str, tuple[str, int]], expected: Outcome
+    ran: Mcapl, outputs: dict[str, tuple[str, int]], expected: ClaimOutcome
 ) -> None:
     ran.says(outputs)
     ran.run()
@@ -137,18 +137,18 @@ def test_a_result_about_other_texts_is_stale(ran: Mcapl, name: str) -> None:
     reason = f"{name} is out of date: run AJPF again"
     assert outcome(only(ran)) == not_checked(reason)
     changed(ran, lambda content: content["files"].pop(name))
-    assert only(ran).result is Result.NOT_CHECKED
+    assert only(ran).result is ClaimResult.NOT_CHECKED
 
 
 @pytest.mark.slow
 def test_a_result_of_the_requirement_as_it_was_is_stale(ran: Mcapl) -> None:
     now = requirement(R1.replace("whenever", "upon"))
     result = outcome(only(ran, now))
-    assert result.result is Result.NOT_CHECKED
+    assert result.result is ClaimResult.NOT_CHECKED
     assert "SIF.psl" in result.detail
     gone = requirement(R1.replace("eventually", "always"))
     result = outcome(only(ran, gone))
-    assert result.result is Result.NOT_CHECKED
+    assert result.result is ClaimResult.NOT_CHECKED
     assert result.detail.startswith("R1 can no longer be exported as a bundle: F614 ")
 
 
@@ -158,7 +158,7 @@ def test_a_stale_refutation_is_told_as_one(ran: Mcapl) -> None:
     ran.run()
     changed(ran, lambda content: content["files"].update({"SIF.gwen": "0" * 64}))
     result = outcome(only(ran))
-    assert result.result is Result.NOT_CHECKED
+    assert result.result is ClaimResult.NOT_CHECKED
     assert result.detail.startswith("it was refuted; SIF.gwen is out of date")
 
 
@@ -186,7 +186,7 @@ def test_the_conclusion_of_the_file_is_not_believed(ran: Mcapl) -> None:
         content["checks"][0]["told"] = "VIOLATED"
 
     changed(ran, lie)
-    assert only(ran).result is Result.COUNTEREXAMPLE
+    assert only(ran).result is ClaimResult.COUNTEREXAMPLE
 
 
 @pytest.mark.slow
@@ -207,10 +207,10 @@ def test_a_result_is_held_against_the_logs_that_lie_beside_it(ran: Mcapl, name: 
 
     changed(ran, rehash)
     result = outcome(only(ran))
-    assert result.result is Result.NOT_CHECKED
+    assert result.result is ClaimResult.NOT_CHECKED
     assert result.detail.endswith(f"but logs/{name}.jpf.txt does not")
     log.unlink()
-    assert only(ran).result is Result.PROVED
+    assert only(ran).result is ClaimResult.PROVED
 
 
 @pytest.mark.slow
@@ -219,14 +219,14 @@ def test_an_agent_of_ones_own_counts_while_it_is_as_it_was(ran: Mcapl) -> None:
     own.write_text((ran.bundle / "SIF.gwen").read_text().replace("do_stopped", "brake"))
     assert ran.run("--agent", str(own)).returncode == 0
     line = only(ran)
-    assert line.result is Result.PROVED
+    assert line.result is ClaimResult.PROVED
     assert line.claim.startswith("AJPF: every run of the agent of mine.gwen (SHA-256 ")
     assert "mine.gwen" in line.artefacts
     assert "r1_ajpf/SIF.gwen" not in line.artefacts
     own.write_text("GWENDOLEN")
     assert outcome(only(ran)) == not_checked(f"the agent {own} was changed since: run AJPF again")
     own.unlink()
-    assert only(ran).result is Result.NOT_CHECKED
+    assert only(ran).result is ClaimResult.NOT_CHECKED
 
 
 @pytest.mark.parametrize(
@@ -272,31 +272,31 @@ def test_a_result_about_another_requirement_is_told_and_does_not_count(ran: Mcap
 
 def test_what_a_file_of_proofs_says_of_ajpf_gives_way_to_the_result_itself(ran: Mcapl) -> None:
     line = only(ran)
-    old = replace(line, result=Result.VACUOUS, detail="before")
-    other = replace(old, layer=Layer.MONITOR, result=Result.PROVED)
+    old = replace(line, result=ClaimResult.VACUOUS, detail="before")
+    other = replace(old, layer=Layer.MONITOR, result=ClaimResult.PROVED)
     assert [(p.layer, p.result) for p in merged([old, other], [line])] == [
         ("monitor", "proved"),
         ("ajpf", "proved"),
     ]
-    green = replace(old, result=Result.PROVED)
+    green = replace(old, result=ClaimResult.PROVED)
     (left,) = merged([green], [])
     assert (left.result, left.detail[:11]) == ("not checked", "it was prov")
-    red = replace(old, result=Result.COUNTEREXAMPLE)
+    red = replace(old, result=ClaimResult.COUNTEREXAMPLE)
     assert merged([red], []) == (red,)
 
 
 @pytest.mark.slow
 def test_a_weaker_property_does_not_show_the_requirement(ran: Mcapl) -> None:
     formalized = requirement("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
-    for artifact in emit([formalized], Options(weaken=True)):
+    for artifact in emit([formalized], TargetOptions(weaken=True)):
         ran.write(ran.folder / artifact.path, artifact.text)
     assert ran.run().returncode == 0
     result = outcome(only(ran, formalized))
-    assert result.result is Result.NOT_CHECKED
+    assert result.result is ClaimResult.NOT_CHECKED
     assert result.detail.startswith("what AJPF shows is weaker than R1: `within 3 ticks` has lost")
     ran.says({"R1.jpf": (RECORDED, 0)})
     ran.run()
-    assert only(ran, formalized).result is Result.COUNTEREXAMPLE
+    assert only(ran, formalized).result is ClaimResult.COUNTEREXAMPLE
 
 
 # The commands ----------------------------------------------------------------------------------

@@ -3,16 +3,16 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.logic.claims import Layer, Outcome, Proof, Result, proof
+from compiler.logic.claims import ClaimOutcome, ClaimResult, Layer, Proof, proof
 from fretc.commands.verify import _status
 from fretc.verification.text_output import SIGNS, lines
 
 ORDER = (
-    Result.COUNTEREXAMPLE,
-    Result.NOT_CHECKED,
-    Result.VACUOUS,
-    Result.PROVED,
-    Result.NOT_APPLICABLE,
+    ClaimResult.COUNTEREXAMPLE,
+    ClaimResult.NOT_CHECKED,
+    ClaimResult.VACUOUS,
+    ClaimResult.PROVED,
+    ClaimResult.NOT_APPLICABLE,
 )
 
 
@@ -27,12 +27,12 @@ def proofs(draw: st.DrawFn) -> list[Proof]:
         )
     )
     return [
-        proof(id, layer, f"claim {number}.", Outcome(result, f"reason {number}"), "fretc")
+        proof(id, layer, f"claim {number}.", ClaimOutcome(result, f"reason {number}"), "fretc")
         for number, (id, layer, result) in enumerate(drawn)
     ]
 
 
-results = st.sampled_from(Result)
+results = st.sampled_from(ClaimResult)
 
 
 @given(proofs())
@@ -57,7 +57,7 @@ def test_each_claim_that_is_not_proved_is_listed_worst_first(
 ) -> None:
     text = "\n".join(line for line, _ in lines(drawn, every_claim=every_claim))
     cells = {(each.requirement, each.layer) for each in drawn}
-    closed = (Result.PROVED, Result.NOT_APPLICABLE)
+    closed = (ClaimResult.PROVED, ClaimResult.NOT_APPLICABLE)
     for one in drawn:
         expected = every_claim or len(cells) == 1 or one.result not in closed
         assert text.count(one.claim) == expected, one
@@ -68,7 +68,7 @@ def test_each_claim_that_is_not_proved_is_listed_worst_first(
 
 @given(proofs())
 def test_where_nothing_is_open_a_requirement_is_a_line(drawn: list[Proof]) -> None:
-    fine = [one for one in drawn if one.result in (Result.PROVED, Result.NOT_APPLICABLE)]
+    fine = [one for one in drawn if one.result in (ClaimResult.PROVED, ClaimResult.NOT_APPLICABLE)]
     rows = {one.requirement for one in fine}
     cells = {(one.requirement, one.layer) for one in fine}
     if len(cells) > 1:
@@ -78,5 +78,5 @@ def test_where_nothing_is_open_a_requirement_is_a_line(drawn: list[Proof]) -> No
 @given(proofs())
 def test_the_status_is_that_of_the_worst_claim_that_applies(drawn: list[Proof]) -> None:
     worst = min((one.result for one in drawn), key=ORDER.index)
-    expected = {Result.COUNTEREXAMPLE: 1, Result.NOT_CHECKED: 3, Result.VACUOUS: 3}
+    expected = {ClaimResult.COUNTEREXAMPLE: 1, ClaimResult.NOT_CHECKED: 3, ClaimResult.VACUOUS: 3}
     assert _status(drawn) == expected.get(worst, 0)

@@ -13,7 +13,7 @@ from fretc.audit.plan import Plan, monitored_requirements
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
-from fretc.watch.recording import Recorder
+from fretc.watch.recording import RunRecorder
 from fretc.watch.session import EndedRun, Jump, Session
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.kernel.verdicts import Truth
@@ -42,7 +42,7 @@ def recorded(
     arrivals = sorted((each.arrival for each in some), key=lambda each: each.log_time)
     with TemporaryDirectory() as folder:
         path = Path(folder) / "run.mcap"
-        recorder = Recorder(path, plan.declarations.clock)
+        recorder = RunRecorder(path, plan.declarations.clock)
         for i, arrival in enumerate(arrivals):
             if i in missed:
                 before = arrivals[i - 1].log_time if i else arrival.log_time
@@ -150,7 +150,7 @@ def test_nothing_is_judged_while_the_source_is_gone(some: list[Sent], data: st.D
     session = Session(plan)
     with TemporaryDirectory() as folder:
         path = Path(folder) / "run.mcap"
-        recorder = Recorder(path, plan.declarations.clock)
+        recorder = RunRecorder(path, plan.declarations.clock)
         for i, arrival in enumerate(arrivals):
             if i == first:
                 session.interrupt()

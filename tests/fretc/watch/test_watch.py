@@ -10,12 +10,12 @@ import pytest
 from fretc.audit.plan import Plan
 from fretc.watch.events import DiagnosticEvent, RunEnded, StateChange, WatchEvent
 from fretc.watch.json_lines import line
-from fretc.watch.recording import Recorder
+from fretc.watch.recording import RunRecorder
 from fretc.watch.sources.source import (
     Arrival,
+    ConnectionLost,
     Event,
     Idle,
-    Interrupted,
     Missed,
     Opened,
     Problem,
@@ -144,7 +144,7 @@ def test_a_full_disk_ends_the_recording_and_not_the_watch(
 
     watch = Watch(plan, tmp_path / "run.mcap")
     first = [each for item in steady(0, 50) for each in watch.take(item)]
-    monkeypatch.setattr(Recorder, "message", full)
+    monkeypatch.setattr(RunRecorder, "message", full)
     news = first + told(watch, steady(50, 100))
     assert codes(news) == [Code.NOT_RECORDED]
     assert watch.failed
@@ -173,8 +173,8 @@ def test_what_was_not_missed_may_be_vacuous(plan: Plan) -> None:
     "events",
     [
         [Missed(START + 50 * MS, START + 60 * MS, 3)],
-        [Interrupted(START + 50 * MS, BROKEN), Reconnected(START + 50 * MS, START + 60 * MS)],
-        [Interrupted(START + 50 * MS, BROKEN)],
+        [ConnectionLost(START + 50 * MS, BROKEN), Reconnected(START + 50 * MS, START + 60 * MS)],
+        [ConnectionLost(START + 50 * MS, BROKEN)],
     ],
 )
 def test_what_was_missed_satisfies_nothing(plan: Plan, events: list[Event]) -> None:

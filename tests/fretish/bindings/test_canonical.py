@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.logs.signals.measures import Scope
+from fretc.logs.signals.measures import NameValues
 from fretc.logs.signals.propositions import truth
 from fretish import units
 from fretish.bindings.canonical import bound, clock, expression, parameter
@@ -211,7 +211,7 @@ def test_in_valid_a_percentage_is_read_in_the_unit_of_the_field_and_a_number_is_
     values = {"x": np.array([0.3, 3.0])}
     percent = units.unit("%")
     assert percent is not None
-    scope = Scope(2, values, unit=percent)
+    scope = NameValues(2, values, unit=percent)
     assert truth(one, scope).tolist() != truth(other, scope).tolist()
     assert expression(one, plain=False) != expression(other, plain=False)
 
@@ -247,7 +247,7 @@ def test_what_is_the_same_is_the_same_of_every_sample(
     near: Any = np.array([float(length * NAMES[field])], kind)
     around = [np.nextafter(near, kind(-9e9)), near, np.nextafter(near, kind(9e9))]
     scale = 1 / Fraction(NAMES[field])
-    scope = Scope(3, {"x": np.concatenate(around)}, scales={"x": scale})
+    scope = NameValues(3, {"x": np.concatenate(around)}, scales={"x": scale})
     assert truth(first, scope).tolist() == truth(second, scope).tolist()
 
 

@@ -10,7 +10,13 @@ from compiler.targets.python import monitor
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.explanations import Explanation, as_record, explanation, explanations, text
+from fretish.diagnostics.explanations import (
+    CodeExplanation,
+    as_record,
+    explanation,
+    explanations,
+    text,
+)
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from tests.each import each
@@ -100,7 +106,7 @@ def test_the_text_of_a_code() -> None:
 
 def test_a_code_without_an_example_has_none_in_its_record() -> None:
     assert as_record(Code.INTERNAL)["example"] is None
-    assert explanations()["F999"] == Explanation(
+    assert explanations()["F999"] == CodeExplanation(
         "fretc has a bug: it reached a state that should not occur. It gave no verdict.",
         "Report the bug with the input. `FRETC_TRACEBACK=1` shows the stack trace.",
     )

@@ -5,7 +5,7 @@ import pytest
 
 from simulation.nodes.navigation import Navigator, PoseError, clearance_grid, plan, pursue
 from simulation.world.lidar import Points
-from simulation.world.motion import STANDSTILL, Pose, Velocity
+from simulation.world.motion import STANDSTILL, BodyVelocity, Pose
 from simulation.world.scene import STORE, Box, Scene
 
 SPEED, TURN = 0.4, 0.2
@@ -55,13 +55,13 @@ def test_there_is_no_path_through_a_wall() -> None:
 
 def test_pursuit_drives_straight_at_full_speed_along_a_straight_path() -> None:
     path = np.column_stack([np.arange(0, 2, 0.05), np.zeros(40)])
-    assert pursue(path, Pose(0.0, 0.0), SPEED, TURN) == Velocity(SPEED, 0.0)
+    assert pursue(path, Pose(0.0, 0.0), SPEED, TURN) == BodyVelocity(SPEED, 0.0)
 
 
 def test_pursuit_turns_on_the_spot_towards_a_path_behind() -> None:
     path = np.column_stack([np.arange(0, 2, 0.05), np.zeros(40)])
-    assert pursue(path, Pose(0.0, 0.0, 2.0), SPEED, TURN) == Velocity(0.0, -TURN)
-    assert pursue(path, Pose(0.0, 0.0, -2.0), SPEED, TURN) == Velocity(0.0, TURN)
+    assert pursue(path, Pose(0.0, 0.0, 2.0), SPEED, TURN) == BodyVelocity(0.0, -TURN)
+    assert pursue(path, Pose(0.0, 0.0, -2.0), SPEED, TURN) == BodyVelocity(0.0, TURN)
 
 
 def test_pursuit_is_never_faster_than_allowed() -> None:

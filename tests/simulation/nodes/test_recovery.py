@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
-from simulation.nodes.recovery import Operator, way_out
+from simulation.nodes.recovery import OperatorNode, way_out
 from simulation.world.lidar import Points
-from simulation.world.motion import STANDSTILL, Velocity
+from simulation.world.motion import STANDSTILL, BodyVelocity
 from simulation.world.scene import ROBOT
 
-BACK, AHEAD = Velocity(-0.14, 0.0), Velocity(0.14, 0.0)
-MOVING = Velocity(0.2, 0.0)
+BACK, AHEAD = BodyVelocity(-0.14, 0.0), BodyVelocity(0.14, 0.0)
+MOVING = BodyVelocity(0.2, 0.0)
 
 
 def points(*places: tuple[float, float]) -> Points:
@@ -25,7 +25,7 @@ def points(*places: tuple[float, float]) -> Points:
     ],
     ids=["in front", "behind", "in front, and farther behind", "nowhere"],
 )
-def test_the_way_out_is_away_from_what_is_near(seen: Points, expected: Velocity) -> None:
+def test_the_way_out_is_away_from_what_is_near(seen: Points, expected: BodyVelocity) -> None:
     assert way_out(seen, ROBOT) == expected
 
 
@@ -43,7 +43,7 @@ def test_the_way_out_swings_no_corner_into_what_is_beside_the_robot() -> None:
 
 
 def test_the_operator_waits_until_the_robot_has_stood_for_three_seconds() -> None:
-    operator, near = Operator(ROBOT), points((0.34, 0.0))
+    operator, near = OperatorNode(ROBOT), points((0.34, 0.0))
     assert operator.step(0.0, False, MOVING, near) is None
     assert operator.step(1.0, True, MOVING, near) is None
     assert operator.step(2.0, True, STANDSTILL, near) is None
@@ -52,7 +52,7 @@ def test_the_operator_waits_until_the_robot_has_stood_for_three_seconds() -> Non
 
 
 def test_a_robot_that_moves_again_is_waited_for_anew() -> None:
-    operator, near = Operator(ROBOT), points((0.34, 0.0))
+    operator, near = OperatorNode(ROBOT), points((0.34, 0.0))
     for time, velocity in ((0.0, STANDSTILL), (2.0, MOVING), (2.1, STANDSTILL)):
         assert operator.step(time, True, velocity, near) is None
     assert operator.step(5.0, True, STANDSTILL, near) is None
@@ -60,7 +60,7 @@ def test_a_robot_that_moves_again_is_waited_for_anew() -> None:
 
 
 def test_the_manoeuvre_is_kept_for_two_seconds_and_then_the_planner_has_the_robot_back() -> None:
-    operator = Operator(ROBOT)
+    operator = OperatorNode(ROBOT)
     operator.step(0.0, True, STANDSTILL, points((0.34, 0.0)))
     assert operator.step(3.0, True, STANDSTILL, points((0.34, 0.0))) == BACK
     assert operator.step(4.9, False, MOVING, points((-0.34, 0.0))) == BACK
@@ -68,7 +68,7 @@ def test_the_manoeuvre_is_kept_for_two_seconds_and_then_the_planner_has_the_robo
 
 
 def test_a_stop_ends_the_manoeuvre() -> None:
-    operator = Operator(ROBOT)
+    operator = OperatorNode(ROBOT)
     operator.step(0.0, True, STANDSTILL, points((0.34, 0.0)))
     assert operator.step(3.0, True, STANDSTILL, points((0.34, 0.0))) == BACK
     assert operator.step(3.5, True, MOVING, points((-0.34, 0.0))) is None

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from simulation.world.lidar import Lidar
-from simulation.world.motion import STANDSTILL, Pose, Velocity
+from simulation.world.motion import STANDSTILL, BodyVelocity, Pose
 from simulation.world.robot import PHYSICS_STEP, Robot
 from simulation.world.scene import STORE, Barrel, Box, Scene
 
@@ -74,7 +74,7 @@ def test_the_lidar_agrees_with_an_independent_ray_caster(scene: Scene) -> None:
 
 def test_the_lidar_still_agrees_after_the_robot_has_moved() -> None:
     robot = Robot(STORE, QUIET, seed=1)
-    robot.drive(Velocity(0.3, 0.4), 800)
+    robot.drive(BodyVelocity(0.3, 0.4), 800)
     np.testing.assert_allclose(robot.scan(), cast(STORE, robot.pose), atol=2e-6)
 
 
@@ -106,17 +106,17 @@ def test_noise_is_the_same_for_a_seed_and_another_for_another() -> None:
 
 def test_the_robot_follows_its_command() -> None:
     robot = Robot(alone(), QUIET, seed=1)
-    robot.drive(Velocity(0.4, 0.0), 1000)
+    robot.drive(BodyVelocity(0.4, 0.0), 1000)
     assert robot.velocity.forward == pytest.approx(0.4, abs=0.01)
     assert robot.pose.x == pytest.approx(0.4 * 1000 * PHYSICS_STEP, abs=0.05)
-    robot.drive(Velocity(0.0, 0.5), 1000)
+    robot.drive(BodyVelocity(0.0, 0.5), 1000)
     assert robot.velocity.turn == pytest.approx(0.5, abs=0.01)
     assert robot.pose.yaw == pytest.approx(0.5 * 1000 * PHYSICS_STEP, abs=0.1)
 
 
 def test_braking_is_limited_by_the_force_of_the_motors() -> None:
     robot = Robot(alone(), QUIET, seed=1)
-    robot.drive(Velocity(0.4, 0.0), 1000)
+    robot.drive(BodyVelocity(0.4, 0.0), 1000)
     before = robot.pose.x
     robot.drive(STANDSTILL, 500)
     assert robot.velocity.forward == pytest.approx(0.0, abs=0.001)
@@ -133,14 +133,14 @@ def test_clearance_is_between_outline_and_obstacle() -> None:
 
 def test_clearance_is_that_of_this_moment_while_the_robot_moves() -> None:
     robot = Robot(alone(Box("box", 1.306, 0.0, 1.0, 1.0)), QUIET, 1)
-    robot.drive(Velocity(0.4, 0.0), 400)
+    robot.drive(BodyVelocity(0.4, 0.0), 400)
     assert robot.clearance() == pytest.approx(0.5 - robot.pose.x, abs=1e-4)
 
 
 def test_the_robot_touches_what_it_is_driven_into() -> None:
     robot = Robot(alone(Box("box", 1.306, 0.0, 1.0, 1.0)), QUIET, 1)
     assert not robot.touching()
-    robot.drive(Velocity(0.4, 0.0), 1000)
+    robot.drive(BodyVelocity(0.4, 0.0), 1000)
     assert robot.touching()
     assert robot.clearance() < 0.001
     assert robot.pose.x < 0.51
@@ -153,6 +153,6 @@ def test_a_walker_is_seen_where_it_is_and_is_as_hard_as_anything() -> None:
     robot.drive(STANDSTILL, 1)
     assert robot.scan()[180] == pytest.approx(0.75, abs=1e-5)
     assert robot.clearance() == pytest.approx(1.0 - 0.25 - 0.306, abs=1e-4)
-    robot.drive(Velocity(0.4, 0.0), 1500)
+    robot.drive(BodyVelocity(0.4, 0.0), 1500)
     assert robot.touching()
     assert robot.pose.x < 0.46

@@ -13,7 +13,7 @@ from compiler.agents.checking import agent_evidence
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.ajpf.bundle import TARGET, emit, refusal
-from compiler.targets.target import DEFAULT, Options
+from compiler.targets.target import DEFAULT, TargetOptions
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
@@ -25,10 +25,10 @@ from tests.programs import installed, needs
 ROOT = Path(__file__).parents[4]
 requirement = bound_requirement
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
-WEAKEN = Options(weaken=True)
+WEAKEN = TargetOptions(weaken=True)
 
 
-def bundle(made: FormalizedRequirement, options: Options = DEFAULT) -> dict[str, str]:
+def bundle(made: FormalizedRequirement, options: TargetOptions = DEFAULT) -> dict[str, str]:
     diagnostic = refusal(made, options)
     assert diagnostic is None, render(diagnostic)
     return {str(artifact.path): artifact.text for artifact in emit([made], options)}

@@ -15,7 +15,7 @@ from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.spot import equivalent, same_language
 from compiler.targets.ajpf import properties as ajpf
-from compiler.targets.target import DEFAULT, Options, Target
+from compiler.targets.target import DEFAULT, Target, TargetOptions
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
@@ -28,17 +28,19 @@ from tests.strategies import Template, templates
 
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
 LATE = "whenever too_close agilex_agent shall within 2 seconds satisfy stopped"
-WEAKEN = Options(weaken=True)
+WEAKEN = TargetOptions(weaken=True)
 
 
-def target(options: Options) -> Target:
+def target(options: TargetOptions) -> Target:
     plain = TARGETS["ajpf"]
     assert plain.weak is not None
     return plain.weak if options.weaken else plain
 
 
 @lru_cache(maxsize=1024)
-def emitted(sentence: str, options: Options = DEFAULT, id: str = "R1", bindings: str = "") -> str:
+def emitted(
+    sentence: str, options: TargetOptions = DEFAULT, id: str = "R1", bindings: str = ""
+) -> str:
     made = requirement(sentence, bindings, id)
     diagnostic = target(options).refuse(made)
     assert diagnostic is None, diagnostic
@@ -46,7 +48,7 @@ def emitted(sentence: str, options: Options = DEFAULT, id: str = "R1", bindings:
     return file.text
 
 
-def refused(sentence: str, options: Options = DEFAULT) -> str:
+def refused(sentence: str, options: TargetOptions = DEFAULT) -> str:
     diagnostic = target(options).refuse(requirement(sentence))
     assert diagnostic is not None
     assert diagnostic.code is Code.NOT_EXPRESSIBLE
@@ -70,7 +72,7 @@ def unbelieved(formula: f.Formula) -> f.Formula:
 
 
 @cache
-def expressible(options: Options = DEFAULT) -> list[Template]:
+def expressible(options: TargetOptions = DEFAULT) -> list[Template]:
     """Every fifth; all with the full profile."""
     chosen = some(templates((2,)), 5)
     return [t for t in chosen if target(options).refuse(requirement(t.sentence)) is None]

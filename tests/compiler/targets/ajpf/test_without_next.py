@@ -9,7 +9,14 @@ import pytest
 import spot
 
 from compiler.formalization.future import future
-from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait, obligation
+from compiler.formalization.obligation import (
+    TRAITS,
+    Demand,
+    Obligation,
+    ObligationKind,
+    Trait,
+    obligation,
+)
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.spot import equivalent, same_language
@@ -95,7 +102,7 @@ def test_what_has_no_form_changes_when_a_trace_stutters() -> None:
 def test_the_proof_at_emission_is_asked_of_every_shape() -> None:
     for scope in SCOPES:
         for condition in CONDITIONS:
-            for kind in Kind:
+            for kind in ObligationKind:
                 assert is_proved(scope, condition, kind) is (Trait.STEPS not in TRAITS[kind])
 
 
@@ -104,9 +111,9 @@ def test_a_wrong_form_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
         "compiler.targets.ajpf.without_next.next_free", lambda meant: f.eventually(f.Atom("r"))
     )
     is_proved.cache_clear()
-    assert is_proved(None, None, Kind.EVENTUALLY)
-    assert not is_proved(None, ConditionKind.HOLDING, Kind.EVENTUALLY)
-    assert not is_proved(ScopeKind.IN, None, Kind.EVENTUALLY)
+    assert is_proved(None, None, ObligationKind.EVENTUALLY)
+    assert not is_proved(None, ConditionKind.HOLDING, ObligationKind.EVENTUALLY)
+    assert not is_proved(ScopeKind.IN, None, ObligationKind.EVENTUALLY)
     is_proved.cache_clear()
 
 
@@ -214,9 +221,13 @@ def test_never_begins_is_that_no_demand_is_ever_made(
 ) -> None:
     """That is: even what cannot be met, demanded at once, is met."""
     meant = Obligation(
-        scope, M if scope else f.TRUE, condition, P if condition else f.TRUE, Demand(Kind.ALWAYS, Q)
+        scope,
+        M if scope else f.TRUE,
+        condition,
+        P if condition else f.TRUE,
+        Demand(ObligationKind.ALWAYS, Q),
     )
-    impossible = Demand(Kind.IMMEDIATELY, f.FALSE)
+    impossible = Demand(ObligationKind.IMMEDIATELY, f.FALSE)
     never = never_begins(meant)
     if condition is None and scope is None:
         assert never is None

@@ -12,7 +12,7 @@ from lark import Lark, Token, Tree
 
 from compiler.formalization import reference as counters
 from compiler.formalization.letters import atoms_of, letters_by_valuation
-from compiler.formalization.reference import State, accepts
+from compiler.formalization.reference import ReferenceState, accepts
 from compiler.logic import printing
 from compiler.logic.definition import holds
 from compiler.logic.spot import same_language
@@ -224,7 +224,7 @@ def assert_runs_as_defined(sentence: str, traces: int, length: int) -> None:
     parsed = parser().parse(text).children
     for _ in range(traces):
         model = Model(*parsed)  # type: ignore[arg-type]
-        state: State | None = counters.initial(known)
+        state: ReferenceState | None = counters.initial(known)
         rows: list[dict[str, bool]] = []
         odds = {name: choose.choice((0.15, 0.5, 0.85)) for name in order}
         for _ in range(length):

@@ -10,7 +10,7 @@ import pytest
 
 from compiler.project.folder import load
 from compiler.targets.c.monitor import TARGET
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.bindings.declarations import Path as Place
@@ -41,7 +41,7 @@ def test_the_projects_of_this_repository_compile_without_a_warning(
     folder: str, command: list[str], tmp_path: Path
 ) -> None:
     project = load([str(path) for path in sorted(ROOT.joinpath(folder).glob("*.fret"))])
-    for file in TARGET.emit(project.formalized, Options(one_file=True)):
+    for file in TARGET.emit(project.formalized, TargetOptions(one_file=True)):
         tmp_path.joinpath(str(file.path)).write_text(file.text, encoding="utf-8")
     compile_ = [installed(command[0]), *command[1:], "-c", "monitors_signals.c", "-o", "x.o"]
     done = subprocess.run(compile_, cwd=tmp_path, capture_output=True, text=True, check=False)

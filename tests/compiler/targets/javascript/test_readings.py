@@ -21,11 +21,11 @@ from compiler.targets.javascript.constants import Constants, scale, truth
 from compiler.targets.javascript.monitor import text
 from compiler.targets.python.comparisons import (
     NUMBER,
+    ComparisonWriter,
     CompiledComparison,
-    Input,
     NotCompiledError,
     Spelling,
-    Writer,
+    StepInput,
 )
 from compiler.targets.python.monitor import text as in_python
 from fretish import expressions as e
@@ -86,9 +86,11 @@ def by_node(cases: Sequence[tuple[e.Comparison, Units, Mapping[str, Any]]]) -> l
     texts = []
     for tree, units, _ in cases:
         names = {name.id for name in e.names(tree)}
-        inputs = {name: Input(NUMBER) for name in sorted(names)}
+        inputs = {name: StepInput(NUMBER) for name in sorted(names)}
         kept = {name: unit for name, unit in units.items() if name in names}
-        writer = Writer({name: name for name in names}, Spelling(constants.name, scale, truth))
+        writer = ComparisonWriter(
+            {name: name for name in names}, Spelling(constants.name, scale, truth)
+        )
         texts.append(f"(x, y, z) => {writer.comparison(CompiledComparison(inputs, tree, kept))}")
     values = [[plain(row.get(name)) for name in NAMES] for _, _, row in cases]
     parts = (

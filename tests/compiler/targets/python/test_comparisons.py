@@ -18,13 +18,13 @@ from compiler.targets.python import monitor as target
 from compiler.targets.python.comparisons import (
     FUNCTIONS,
     NUMBER,
+    ComparisonWriter,
     CompiledComparison,
-    Input,
     NotCompiledError,
-    Writer,
+    StepInput,
     fraction_text,
 )
-from fretc.logs.signals.measures import ExpressionError, Scope
+from fretc.logs.signals.measures import ExpressionError, NameValues
 from fretc.logs.signals.propositions import truth, truth_values
 from fretc.logs.signals.samples import widest
 from fretish import expressions as e
@@ -102,9 +102,11 @@ def compiled(
 ) -> Callable[[Mapping[str, Any]], Truth]:
     """The text of the comparison, executed as in a monitor."""
     names = {name.id for name in e.names(tree)}
-    inputs = {name: Input(NUMBER) for name in sorted(names)}
+    inputs = {name: StepInput(NUMBER) for name in sorted(names)}
     kept = {name: unit for name, unit in units.items() if name in names}
-    text = Writer({name: name for name in names}).comparison(CompiledComparison(inputs, tree, kept))
+    text = ComparisonWriter({name: name for name in names}).comparison(
+        CompiledComparison(inputs, tree, kept)
+    )
     code = compile(text, "comparison", "eval")
     functions = {name: getattr(readings, name) for name in FUNCTIONS}
 
@@ -120,7 +122,7 @@ def compiled(
 def audited(tree: e.Comparison, row: Mapping[str, Any], scales: Mapping[str, Fraction]) -> Truth:
     """What an audit says of the same numbers as samples."""
     numbers = {name: widest(np.array([_sample(value)])) for name, value in row.items()}
-    (value,) = truth_values(truth(tree, Scope(1, numbers, scales=scales)))
+    (value,) = truth_values(truth(tree, NameValues(1, numbers, scales=scales)))
     return value
 
 
@@ -416,7 +418,7 @@ def test_a_quantity_that_multiplies_is_one_in_audits_and_monitors(
     signals = requirement.declarations.signals
     numbers = {name: np.array([value]) for name, value in values.items()}
     scales = {name: signals[name].scale for name in values}
-    (audited,) = truth_values(truth(proposition.expression, Scope(1, numbers, scales=scales)))
+    (audited,) = truth_values(truth(proposition.expression, NameValues(1, numbers, scales=scales)))
     machine: Any = load("monitor", target.text(requirement))
     assert (audited, machine.truths(**values)) == (expected, (expected,))
 

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from compiler.emit import TARGETS
 from compiler.targets.interceptor_options import options as counted
 from compiler.targets.python.interceptor import MARKER, text
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretish.bindings.canonical import bound
 from fretish.bindings.declarations import Declarations, Interception, InterceptorForm
 from fretish.bindings.tables.reader import read_bindings
@@ -64,7 +64,7 @@ def declared(more: str) -> Declarations:
 
 
 def codes(more: str) -> list[str]:
-    return [d.code.number for d in TARGET.remarks(Options(declarations=declared(more)))]
+    return [d.code.number for d in TARGET.remarks(TargetOptions(declarations=declared(more)))]
 
 
 # The file -------------------------------------------------------------------------------------
@@ -155,7 +155,7 @@ def test_what_can_go_wrong_is_said() -> None:
     assert codes(f'{watched}hold = "250 ms"\n{assume}') == ["F630"]
     assert codes(f'{watched}hold = "251 ms"\n{assume}') == []
     assert codes(f"{watched}{assume.replace('lost = 2', 'lost = 0')}") == []
-    (diagnostic,) = TARGET.remarks(Options(declarations=declared(watched + assume)))
+    (diagnostic,) = TARGET.remarks(TargetOptions(declarations=declared(watched + assume)))
     assert diagnostic.message == (
         "zero is held for 0 s for certain, but messages may be lost for 200 ms: a robot that was "
         "stopped may move between two requests"

@@ -16,7 +16,7 @@ from compiler.project.folder import load
 from compiler.project.paths import expanded_paths
 from compiler.targets.python import interceptor
 from compiler.targets.ros import package as p
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import IDENTIFIER
@@ -32,7 +32,7 @@ def described(path: str) -> p.Package:
     project = load(paths)
     assert project.formalized
     assert [d for each in project.formalized if (d := p.refuse(each))] == []
-    options = Options(declarations=project.declarations, attribution=project.attribution)
+    options = TargetOptions(declarations=project.declarations, attribution=project.attribution)
     return p.package(project.formalized, options)
 
 
@@ -166,7 +166,7 @@ def _one(bindings: str, folder: Path) -> FormalizedRequirement:
 
 def test_without_an_interceptor_it_says_that_nothing_carries_out_a_stop(tmp_path: Path) -> None:
     subject = _one(BINDINGS, tmp_path)
-    options = Options(declarations=subject.declarations)
+    options = TargetOptions(declarations=subject.declarations)
     (found,) = p.remarks(options)
     assert found.code == Code.NO_INTERCEPTOR
     assert not found.is_error

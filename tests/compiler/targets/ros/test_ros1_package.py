@@ -14,7 +14,7 @@ from compiler.files.text_files import write as deliver
 from compiler.project.folder import load
 from compiler.project.paths import expanded_paths
 from compiler.targets.python import interceptor, monitor
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.programs import DEBIANS_PATH, DEBIANS_PYTHON, debians_python, installed
 from tests.ros1 import ros1_or_skip
@@ -28,7 +28,7 @@ def files(path: str) -> dict[str, str]:
     paths = expanded_paths([str(ROOT / path)])
     assert not isinstance(paths, Diagnostic)
     project = load(paths)
-    options = Options(declarations=project.declarations, attribution=project.attribution)
+    options = TargetOptions(declarations=project.declarations, attribution=project.attribution)
     return {
         str(file.path): file.text
         for file in TARGETS["ros1-package"].emit(project.formalized, options)

@@ -9,7 +9,7 @@ import pytest
 
 from compiler.project.folder import load
 from compiler.targets.rust.monitor import TARGET
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from tests.each import each
 from tests.effort import FULL, some
 from tests.programs import installed
@@ -30,7 +30,7 @@ def test_clippy_finds_nothing(folder: str, tmp_path: Path) -> None:
         requirements = tuple(
             numbered(case, i) for i, case in enumerate(collected(40 if FULL else 15))
         )
-    files = TARGET.emit(requirements, Options(one_file=True))
+    files = TARGET.emit(requirements, TargetOptions(one_file=True))
     write(tmp_path, {str(file.path): file.text for file in files})
     installed("cargo-clippy")
     command = [installed("cargo"), "clippy", "--offline", "--quiet", "--all-targets"]

@@ -13,11 +13,11 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.targets.python import monitor as target
-from fretc.analysis.analysis import Options, analyze
+from fretc.analysis.analysis import AnalysisOptions, analyze
 from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arithmetic import cells
-from fretc.analysis.findings import Verdict
+from fretc.analysis.findings import RealizabilityVerdict
 from fretc.analysis.games.game_traces import Counterstrategy
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretc.analysis.verdicts import verdict
@@ -27,7 +27,7 @@ from tests.effort import FULL, some
 from tests.fretc.analysis.games.strategies import Strategy
 from tests.requirement_sets import analyzed, requirement, requirements, roles, staged
 
-REALIZABLE, UNREALIZABLE = Verdict.REALIZABLE, Verdict.UNREALIZABLE
+REALIZABLE, UNREALIZABLE = RealizabilityVerdict.REALIZABLE, RealizabilityVerdict.UNREALIZABLE
 ENDLESS = Budget(float("inf"))
 BITS = {"i": 2, "j": 1, "o": 2, "u": 1}
 """Variables of drawn sets: whole numbers of so many bits."""
@@ -128,7 +128,7 @@ def test_the_tick_before_gives_no_wrong_verdict() -> None:
         links = " & ".join(f"!p{k} & G(X p{k} <-> {of}{k})" for k in range(2))
         past = {name: text.replace("p", f"preInt(0, {of})") for name, text in meant.items()}
         found, _ = verdict(staged_numbers(sentences, past), Budget(60))
-        if found.verdict is not Verdict.NOT_CHECKED:
+        if found.verdict is not RealizabilityVerdict.NOT_CHECKED:
             is_realizable = synthesized(sentences, meant, links, "oup")
             assert (found.verdict is REALIZABLE) is is_realizable, (sentences, past)
         answers.append(found.verdict)
@@ -229,7 +229,7 @@ def test_a_long_play_has_numbers_as_a_short_one_has(ticks: int) -> None:
         f"whenever t > 20 the sw shall for {ticks + 1} ticks satisfy v <= 31",
     )
     named = roles(["t"], ["v"])
-    found = analyze(requirements(*sentences), named, (), Options(repairs=False))
+    found = analyze(requirements(*sentences), named, (), AnalysisOptions(repairs=False))
     assert found.verdict is UNREALIZABLE
     assert found.complete
     (conflict,) = found.conflicts
@@ -246,7 +246,9 @@ def test_a_long_play_has_numbers_as_a_short_one_has(ticks: int) -> None:
     ("sum_", "answer"),
     some([("<= 20", REALIZABLE), ("< 20", UNREALIZABLE), ("!= 7", UNREALIZABLE)], 2),
 )
-def test_what_the_system_can_reach_depends_on_the_inputs(sum_: str, answer: Verdict) -> None:
+def test_what_the_system_can_reach_depends_on_the_inputs(
+    sum_: str, answer: RealizabilityVerdict
+) -> None:
     """Two pumps give what is asked of them, up to 10 each, where no more than 20 is asked."""
     found = analyzed(
         f"the sw shall always satisfy (v + w {sum_}) & v >= 0 & w >= 0 & v <= 10 & w <= 10",
@@ -274,7 +276,7 @@ def test_opposites_share_a_bit() -> None:
 def test_what_is_not_linear_is_not_checked() -> None:
     named = roles(["t"], ["v"])
     found = analyzed("whenever t > 1 the sw shall immediately satisfy v * t > 1", roles=named)
-    assert found.verdict is Verdict.NOT_CHECKED
+    assert found.verdict is RealizabilityVerdict.NOT_CHECKED
     assert found.why == "R1: `((v * t) > 1)` is not linear"
 
 
@@ -284,7 +286,7 @@ def test_too_many_patterns_are_not_checked(monkeypatch: pytest.MonkeyPatch) -> N
     count = 12 if FULL else 6
     assert cells.MOST == 2**12
     monkeypatch.setattr(cells, "MOST", 2**count)
-    for more, answer in ((0, REALIZABLE), (1, Verdict.NOT_CHECKED)):
+    for more, answer in ((0, REALIZABLE), (1, RealizabilityVerdict.NOT_CHECKED)):
         many = " & ".join(f"v{i} + v{i + 1} > {i}" for i in range(count + more))
         found = analyzed(
             f"whenever t > 1 the sw shall immediately satisfy {many}",

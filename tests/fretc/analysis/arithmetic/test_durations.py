@@ -7,7 +7,7 @@ import pytest
 
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
-from fretc.analysis.analysis import Options, analyze
+from fretc.analysis.analysis import AnalysisOptions, analyze
 from fretc.analysis.arena.budget import ENDLESS
 from fretc.analysis.findings import Analysis
 from fretc.analysis.games import game_traces, squaring
@@ -41,7 +41,7 @@ def made(ticks: int, within: int) -> list[FormalizedRequirement]:
 
 
 def found(requirements: list[FormalizedRequirement]) -> Analysis:
-    return analyze(requirements, ROLES, (), Options(repairs=False))
+    return analyze(requirements, ROLES, (), AnalysisOptions(repairs=False))
 
 
 @pytest.mark.slow

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from compiler.targets.python import monitor as target
-from fretc.analysis.analysis import Options, analyze
-from fretc.analysis.findings import Verdict
+from fretc.analysis.analysis import AnalysisOptions, analyze
+from fretc.analysis.findings import RealizabilityVerdict
 from fretc.analysis.games import game_traces, squaring
 from monitors.loading import load
 from tests.each import each
@@ -34,13 +34,15 @@ NAMED = roles(["t", "a"], ["v", "x"])
 )
 def test_a_rate_can_be_kept(others: list[str]) -> None:
     found = analyzed(RATE, *others, roles=NAMED)
-    assert found.verdict is Verdict.REALIZABLE, found.why
+    assert found.verdict is RealizabilityVerdict.REALIZABLE, found.why
 
 
 def test_the_first_tick_has_the_number_that_stands_there() -> None:
     late = "whenever preReal({}, v) > 3 the sw shall immediately satisfy v > 9"
     rest = ("the sw shall always satisfy v <= 3",)
-    assert analyzed(late.format("0.0"), *rest, roles=NAMED).verdict is Verdict.REALIZABLE
+    assert (
+        analyzed(late.format("0.0"), *rest, roles=NAMED).verdict is RealizabilityVerdict.REALIZABLE
+    )
     assert conflicts(analyzed(late.format("4.0"), *rest, roles=NAMED)) == [("R1", "R2")]
 
 
@@ -48,15 +50,17 @@ def test_the_first_tick_has_the_number_that_stands_there() -> None:
 def test_a_bound_is_reached_step_by_step() -> None:
     """From 0 by steps of 1 it takes two ticks to 2, and three to 3."""
     for ticks, goal, answer in (
-        *[(1, 3, Verdict.UNREALIZABLE)] * FULL,
-        (0, 2, Verdict.UNREALIZABLE),
-        (2, 3, Verdict.REALIZABLE),
+        *[(1, 3, RealizabilityVerdict.UNREALIZABLE)] * FULL,
+        (0, 2, RealizabilityVerdict.UNREALIZABLE),
+        (2, 3, RealizabilityVerdict.REALIZABLE),
     ):
         climb = f"upon a the sw shall within {ticks} ticks satisfy v >= {goal}"
         found = analyzed(RATE, climb, "the sw shall always satisfy v <= 4", roles=NAMED)
         assert found.verdict is answer, found.why
         assert found.complete
-        assert conflicts(found) == ([] if answer is Verdict.REALIZABLE else [("R1", "R2")])
+        assert conflicts(found) == (
+            [] if answer is RealizabilityVerdict.REALIZABLE else [("R1", "R2")]
+        )
 
 
 @pytest.mark.slow
@@ -89,9 +93,9 @@ def test_what_is_not_remembered_is_left_open() -> None:
         requirements(late),
         named,
         [requirement("A1", slow)],
-        Options(1 if FULL else 0.3, repairs=False),
+        AnalysisOptions(1 if FULL else 0.3, repairs=False),
     )
-    assert found.verdict is Verdict.NOT_CHECKED
+    assert found.verdict is RealizabilityVerdict.NOT_CHECKED
     assert "only the truth of its comparisons is kept" in found.why
 
 
@@ -102,7 +106,7 @@ def test_conflicts_with_the_past_and_beside_it_are_found() -> None:
         "the sw shall never satisfy v > 2",
     )
     found = analyzed(RATE, *fight, roles=NAMED)
-    assert found.verdict is Verdict.UNREALIZABLE
+    assert found.verdict is RealizabilityVerdict.UNREALIZABLE
     assert conflicts(found) == [("R1", "R2"), ("R2", "R3")]
     assert found.complete
     assert all(conflict.play for conflict in found.conflicts)
@@ -130,7 +134,9 @@ def test_plays_follow_their_own_numbers() -> None:
     shown = 0
     for seed in range(12) if FULL else (0, 3):  # which are answered in no time
         sentences = drawn(seed)
-        found = analyze(requirements(*sentences), NAMED, (), Options(seconds=5, repairs=False))
+        found = analyze(
+            requirements(*sentences), NAMED, (), AnalysisOptions(seconds=5, repairs=False)
+        )
         for conflict in found.conflicts:
             if not conflict.play or conflict.loop is not None:
                 continue
@@ -151,8 +157,8 @@ def test_plays_follow_their_own_numbers() -> None:
 def test_sorting_numbers_out_takes_the_time_of_the_question() -> None:
     many = [f"the sw shall always satisfy v{i} + v{i + 1} > v{i + 2}" for i in range(9)]
     named = roles(["a"], [f"v{i}" for i in range(11)])
-    found = analyze(requirements(*many), named, (), Options(seconds=0.02))
-    assert found.verdict is Verdict.NOT_CHECKED
+    found = analyze(requirements(*many), named, (), AnalysisOptions(seconds=0.02))
+    assert found.verdict is RealizabilityVerdict.NOT_CHECKED
     assert found.why == "not answered within 0.02 CPU seconds"
 
 
@@ -165,7 +171,7 @@ def test_what_no_number_before_helps_cannot_be_kept() -> None:
         "whenever a the sw shall immediately satisfy v > 5",
     )
     found = analyzed(*sentences, roles=NAMED)
-    assert found.verdict is Verdict.UNREALIZABLE
+    assert found.verdict is RealizabilityVerdict.UNREALIZABLE
     assert conflicts(found) == [("R1", "R3")]  # a may come at the first tick
     later = [each.replace("0.0", "7.0") for each in sentences]
     assert conflicts(analyzed(*later, roles=NAMED)) == [("R1", "R2", "R3")]

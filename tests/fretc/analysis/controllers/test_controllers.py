@@ -14,7 +14,7 @@ from fretc.analysis.arena.budget import Budget
 from fretc.analysis.controllers import moves
 from fretc.analysis.controllers.circuit import circuit
 from fretc.analysis.controllers.files import ControllerFormat, automata, controller
-from fretc.analysis.controllers.machine import Machine, NoMachineError, machine
+from fretc.analysis.controllers.machine import MealyMachine, NoMachineError, machine
 from fretc.analysis.controllers.moves import mealy
 from fretc.analysis.realizability_problem import RealizabilityProblem
 from monitors.kernel.verdicts import VIOLATED
@@ -31,14 +31,14 @@ WAITS = (
 )
 
 
-def made(setting: RealizabilityProblem) -> Machine | None:
+def made(setting: RealizabilityProblem) -> MealyMachine | None:
     """The machine of a set that can be kept."""
     game = setting.game(setting.arena.counters, ENDLESS)
     solution = game.solution()
     return machine(game, solution, ENDLESS) if solution.is_realizable else None
 
 
-def program(found: Machine, setting: RealizabilityProblem) -> Any:
+def program(found: MealyMachine, setting: RealizabilityProblem) -> Any:
     """The class that is written."""
     ids = [requirement.id for requirement in setting.requirements]
     text = controller([circuit(found, ids, 1)], dict.fromkeys(ids, ""), {}).text
@@ -47,7 +47,7 @@ def program(found: Machine, setting: RealizabilityProblem) -> Any:
     return space["Controller"]
 
 
-def hoa(found: Machine) -> str:
+def hoa(found: MealyMachine) -> str:
     return automata([mealy(found, ["R1"], ENDLESS)], ControllerFormat.HOA)[0].text
 
 
@@ -67,7 +67,7 @@ def formula(requirements: Sequence[FormalizedRequirement]) -> str:
 
 def machines(
     count: int, *, given: bool
-) -> Iterator[tuple[RealizabilityProblem, list[FormalizedRequirement], Machine]]:
+) -> Iterator[tuple[RealizabilityProblem, list[FormalizedRequirement], MealyMachine]]:
     for seed in range(count):
         promises = [assumed(("controller", seed, i)) for i in range(2)] if given else []
         setting = staged(*drawn(("controller", seed), most=4), assumed=promises)

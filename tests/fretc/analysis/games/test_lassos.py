@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.findings import Verdict
-from fretc.analysis.games.lassos import Impossible, SatisfyingRun, lasso
+from fretc.analysis.findings import RealizabilityVerdict
+from fretc.analysis.games.lassos import NoShortRun, SatisfyingRun, lasso
 from fretish.bindings.declarations import Role
 from tests.effort import FULL, examples
 from tests.requirement_sets import ROLES, analyzed, drawn, requirements, roles, staged
@@ -25,7 +25,7 @@ COUNTED = (
 RATE = "the sw shall always satisfy absReal(v - preReal({}, v)) <= {}"
 
 
-def found(*sentences: str, as_fret: bool = False) -> SatisfyingRun | Impossible | None:
+def found(*sentences: str, as_fret: bool = False) -> SatisfyingRun | NoShortRun | None:
     return lasso(requirements(*sentences), NAMED, Budget(60), as_fret=as_fret)
 
 
@@ -54,32 +54,38 @@ def test_a_goal_is_reached_just_where_the_rate_lets_it(
         assert abs(known[run.loop] - known[-1]) <= rate
         assert max(known[: bound + 1]) >= goal
     else:
-        assert run == Impossible(bound + 1)
+        assert run == NoShortRun(bound + 1)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("sentences", "verdict"),
     [
-        (["the sw shall eventually satisfy v > 5"], Verdict.REALIZABLE),
-        ([f"the sw shall within {SOON} ticks satisfy v > {SOON + 2}"], Verdict.UNREALIZABLE),
+        (["the sw shall eventually satisfy v > 5"], RealizabilityVerdict.REALIZABLE),
+        (
+            [f"the sw shall within {SOON} ticks satisfy v > {SOON + 2}"],
+            RealizabilityVerdict.UNREALIZABLE,
+        ),
         (
             [
                 f"whenever v > {HIGH} the sw shall eventually satisfy v < {LOW}",
                 f"whenever v < {LOW} the sw shall eventually satisfy v > {HIGH}",
                 *(COUNTED if FULL else ()),
             ],
-            Verdict.REALIZABLE,
+            RealizabilityVerdict.REALIZABLE,
         ),
-        (["the sw shall always satisfy v >= preReal(0.0, v) + 0.5 & v < 9"], Verdict.UNREALIZABLE),
+        (
+            ["the sw shall always satisfy v >= preReal(0.0, v) + 0.5 & v < 9"],
+            RealizabilityVerdict.UNREALIZABLE,
+        ),
     ][: 4 if FULL else 3],  # the last one takes longest
 )
 def test_what_no_memory_of_comparisons_tells_is_unrolled(
-    sentences: list[str], verdict: Verdict
+    sentences: list[str], verdict: RealizabilityVerdict
 ) -> None:
     whole = analyzed(RATE.format("0.0", 1), *sentences, roles=NAMED)
     assert whole.verdict is verdict
-    assert whole.consistent is (verdict is Verdict.REALIZABLE)
+    assert whole.consistent is (verdict is RealizabilityVerdict.REALIZABLE)
 
 
 @pytest.mark.slow
@@ -114,7 +120,7 @@ def test_without_numbers_it_is_as_the_game_says() -> None:
 def test_as_fret_nothing_is_owed_at_any_tick() -> None:
     sentences = (RATE.format("0.0", 1), "the sw shall eventually satisfy v > 5")
     assert isinstance(found(*sentences), SatisfyingRun)
-    assert isinstance(found(*sentences, as_fret=True), Impossible)
+    assert isinstance(found(*sentences, as_fret=True), NoShortRun)
 
 
 @pytest.mark.slow
@@ -123,4 +129,4 @@ def test_a_number_before_is_not_known_where_there_are_inputs() -> None:
     jump = "whenever x the sw shall immediately satisfy v >= 5"
     named = roles(["x"], ["v"])
     whole = analyzed(RATE.format("0.0", 1), jump, roles=named)
-    assert whole.verdict is not Verdict.REALIZABLE
+    assert whole.verdict is not RealizabilityVerdict.REALIZABLE

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
-from fretc.audit.bindings.quantities import QUANTITIES, Quantity
+from fretc.audit.bindings.quantities import QUANTITIES, NumberField
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.units import unit
@@ -44,7 +44,7 @@ def test_most_types_are_in_the_stores_that_they_are_checked_with() -> None:
 
 
 @pytest.mark.parametrize(("store", "type_", "quantity"), QUANTITIES_OF_TYPES)
-def test_each_field_is_one_of_the_type(store: Any, type_: str, quantity: Quantity) -> None:
+def test_each_field_is_one_of_the_type(store: Any, type_: str, quantity: NumberField) -> None:
     field = quantity.field.removesuffix("[:]")
     kind_of_field, many = kind(store, type_.replace("/", "/msg/"), field.split("."))
     is_text = type_ == "std_msgs/String"

@@ -20,7 +20,7 @@ import pytest
 from compiler.files.records import decoded
 from compiler.project.folder import load_folder
 from fretc.audit.evidence.result_summaries import ResultSummaries
-from fretc.audit.evidence.schema import Document
+from fretc.audit.evidence.schema import EvidenceDocument
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read, source
 from fretc.audit.store.writer import write_document
@@ -246,7 +246,7 @@ def _document() -> dict[str, Any]:
 
 def _keep(content: dict[str, Any]) -> None:
     """As a store that somebody wrote with the tool's own means."""
-    written = write_document(Path("build/evidence"), decoded(content, Document))
+    written = write_document(Path("build/evidence"), decoded(content, EvidenceDocument))
     assert not isinstance(written, Diagnostic)
 
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from compiler.files.records import plain
 from fretc.audit.evidence.reader import EvidenceFile, read
 from fretc.audit.evidence.run_plot_data import plot_data, position_at
-from fretc.audit.evidence.schema import MOST_POINTS, MOST_WORDS, Result, Way
+from fretc.audit.evidence.schema import MOST_POINTS, MOST_WORDS, Result, RobotPath
 from fretc.logs.signals.samples import Recording, Samples
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
@@ -58,7 +58,7 @@ def log(x: Samples, y: Samples, **changes: Any) -> Recording:
     )
 
 
-def way(rows: Sequence[tuple[int, float, float]], **changes: Any) -> Way | None:
+def way(rows: Sequence[tuple[int, float, float]], **changes: Any) -> RobotPath | None:
     times = np.array([time for time, _, _ in rows], np.int64) * MS
     x, y = (Samples(times, np.array([row[n] for row in rows])) for n in (1, 2))
     found = plot_data(log(x, y, **changes), declare(BINDINGS + MAP))
@@ -121,7 +121,7 @@ def test_the_way_is_where_the_robot_was_within_its_error(
 def test_unknown_places_pauses_and_losses_break_the_line() -> None:
     nan = float("nan")
     rows = [(t, t / 100, 0.0) for t in range(0, 10_000, 100)]
-    assert [*(way(rows) or Way((), (), (), (), 0, 0)).starts] == [0]
+    assert [*(way(rows) or RobotPath((), (), (), (), 0, 0)).starts] == [0]
     hole = [(t, nan if t == 5000 else x, y) for t, x, y in rows]
     late = [(t + 2000 * (t > 5000), x, y) for t, x, y in rows]
     for broken in (way(hole), way(late), way(rows, gaps=((5050 * MS, 5060 * MS),))):

@@ -5,7 +5,7 @@ import pytest
 
 from compiler.files.checked_json import SchemaError
 from compiler.files.records import decoded
-from fretc.audit.evidence.samples import Samples, Surroundings, Window, window
+from fretc.audit.evidence.samples import RunPart, SignalSamples, Surroundings, window
 
 RECORD: dict[str, Any] = {
     "start_ns": 1_000,
@@ -19,13 +19,13 @@ def changed(**changes: Any) -> Surroundings:
 
 
 def test_times_count_in_seconds_from_the_first_tick() -> None:
-    assert window(changed(), 1_000) == Window(
-        0.0, 4.0, {"vx": Samples((-1e-6, 0.0, 2.0), (0.5, None, -inf))}
+    assert window(changed(), 1_000) == RunPart(
+        0.0, 4.0, {"vx": SignalSamples((-1e-6, 0.0, 2.0), (0.5, None, -inf))}
     )
 
 
 def test_the_value_in_force_is_the_last_one_before() -> None:
-    samples = Samples((1.0, 2.0, 3.0), (0.5, None, 7.0))
+    samples = SignalSamples((1.0, 2.0, 3.0), (0.5, None, 7.0))
     assert [samples.at(t) for t in (0.9, 1.0, 1.9, 2.5, 9.0)] == [None, 0.5, 0.5, None, 7.0]
 
 

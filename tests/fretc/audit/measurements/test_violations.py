@@ -11,9 +11,9 @@ from fretc.audit.expected_response import demand
 from fretc.audit.measurements.violations import (
     MOST_SAMPLES,
     MOST_WINDOWS,
-    Demand,
+    DemandText,
     Moment,
-    Violation,
+    ViolationInterval,
     violations,
 )
 from fretc.logs.signals.samples import Recording, Samples
@@ -23,13 +23,13 @@ from tests.monitoring import requirement
 
 S = 10**9
 NAN, INF = float("nan"), float("inf")
-NO_DEADLINE = Demand()
+NO_DEADLINE = DemandText()
 WITHIN = "whenever near the rover shall within 2 ticks satisfy still"
 
 
 def violations_of(
-    outcome: Outcome, horizon: int | None = None, demand: Demand = NO_DEADLINE
-) -> list[Violation]:
+    outcome: Outcome, horizon: int | None = None, demand: DemandText = NO_DEADLINE
+) -> list[ViolationInterval]:
     log = recorded([FAR] * outcome.ticks, [MOVING] * outcome.ticks)
     return list(
         violations(outcome, demand, horizon, lambda t: Moment(t, t * S, float(t)), log, ["d"])
@@ -49,7 +49,7 @@ def outcome(
     )  # fmt: skip
 
 
-def triggers_of(stretches: Sequence[Violation]) -> list[int | None]:
+def triggers_of(stretches: Sequence[ViolationInterval]) -> list[int | None]:
     return [violation.trigger.tick if violation.trigger else None for violation in stretches]
 
 
@@ -75,38 +75,40 @@ def test_without_a_deadline_it_is_the_last_trigger_and_at_the_end_the_oldest_ope
 
 def test_the_deadline_is_told_where_there_is_one_within_the_run() -> None:
     one = outcome([(9, 9)], [5])
-    (violation,) = violations_of(one, horizon=4, demand=Demand("still", 4))
+    (violation,) = violations_of(one, horizon=4, demand=DemandText("still", 4))
     assert violation.deadline == Moment(9, 9 * S, 9.0)
     assert violation.missing == "still"
-    (none,) = violations_of(one, horizon=4, demand=Demand("still"))
+    (none,) = violations_of(one, horizon=4, demand=DemandText("still"))
     assert none.deadline is None
-    (later,) = violations_of(outcome([(9, 9)], [5], ticks=10), horizon=6, demand=Demand("still", 6))
+    (later,) = violations_of(
+        outcome([(9, 9)], [5], ticks=10), horizon=6, demand=DemandText("still", 6)
+    )
     assert later.deadline is None
 
 
 @pytest.mark.parametrize(
     ("timing", "expected"),
     [
-        ("immediately", Demand("q", 0)),
-        ("at the next timepoint", Demand("q", 1)),
-        ("within 3 ticks", Demand("q", 3)),
-        ("for 3 ticks", Demand("q")),
-        ("after 3 ticks", Demand("after 3 ticks satisfy q", 4)),
-        ("eventually", Demand("q")),
-        ("always", Demand("q")),
-        ("never", Demand("!q")),
-        ("until r", Demand("until r satisfy q")),
-        ("before r", Demand("before r satisfy q")),
+        ("immediately", DemandText("q", 0)),
+        ("at the next timepoint", DemandText("q", 1)),
+        ("within 3 ticks", DemandText("q", 3)),
+        ("for 3 ticks", DemandText("q")),
+        ("after 3 ticks", DemandText("after 3 ticks satisfy q", 4)),
+        ("eventually", DemandText("q")),
+        ("always", DemandText("q")),
+        ("never", DemandText("!q")),
+        ("until r", DemandText("until r satisfy q")),
+        ("before r", DemandText("before r satisfy q")),
     ],
 )
-def test_what_each_timing_demands(timing: str, expected: Demand) -> None:
+def test_what_each_timing_demands(timing: str, expected: DemandText) -> None:
     assert demand(requirement(f"whenever p the sw shall {timing} satisfy q")) == expected
 
 
 def test_an_only_scope_demands_that_it_is_not_so() -> None:
     assert demand(
         requirement("only in m mode, the sw shall within 3 ticks satisfy q & r")
-    ) == Demand("not (within 3 ticks satisfy q & r)")
+    ) == DemandText("not (within 3 ticks satisfy q & r)")
 
 
 # Signals around it
@@ -139,7 +141,7 @@ def test_the_sample_in_force_at_the_start_is_told_however_old_it_is() -> None:
     one = Samples(np.array([0], np.int64), np.array([0.5]))
     log = Recording("a", "", 1, 0, 20 * S, {"d": one}, np.array([], np.int64), (), {}, {}, (), True)
     (violation,) = violations(
-        outcome([(9, 9)], [9]), Demand(), 0, lambda t: Moment(t, t * S, float(t)), log, ["d"]
+        outcome([(9, 9)], [9]), DemandText(), 0, lambda t: Moment(t, t * S, float(t)), log, ["d"]
     )
     assert violation.window is not None
     assert violation.window.samples["d"].times.tolist() == [0]
@@ -154,7 +156,7 @@ def test_many_samples_are_thinned_evenly_with_the_least_and_the_greatest() -> No
         "a", "", 1, 0, 20 * S, {"d": many}, np.array([], np.int64), (), {}, {}, (), True
     )
     (violation,) = violations(
-        outcome([(9, 9)], [9]), Demand(), 0, lambda t: Moment(t, t * S, float(t)), log, ["d"]
+        outcome([(9, 9)], [9]), DemandText(), 0, lambda t: Moment(t, t * S, float(t)), log, ["d"]
     )
     assert violation.window is not None
     samples = violation.window.samples["d"]
@@ -164,7 +166,7 @@ def test_many_samples_are_thinned_evenly_with_the_least_and_the_greatest() -> No
     assert np.diff(samples.times).max() < 50 * S // 1000
     unknown = Samples(times, np.full(len(times), NAN))
     (violation,) = violations(
-        outcome([(9, 9)], [9]), Demand(), 0, lambda t: Moment(t, t * S, float(t)),
+        outcome([(9, 9)], [9]), DemandText(), 0, lambda t: Moment(t, t * S, float(t)),
         Recording("a", "", 1, 0, 1, {"d": unknown}, np.array([], np.int64), (), {}, {}, (), True),
         ["d"],
     )  # fmt: skip
@@ -182,7 +184,12 @@ def test_the_last_sample_at_the_broken_tick_is_kept_exactly(broken: int) -> None
         (), {}, {}, (), True,
     )  # fmt: skip
     (violation,) = violations(
-        outcome([(broken, 12)], [4]), Demand(), 20, lambda t: Moment(t, t * S, float(t)), log, ["d"]
+        outcome([(broken, 12)], [4]),
+        DemandText(),
+        20,
+        lambda t: Moment(t, t * S, float(t)),
+        log,
+        ["d"],
     )
     assert violation.window is not None
     times = violation.window.samples["d"].times

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from fretc.audit.phases.advice import Arc, longest
-from fretc.audit.phases.by_shift import Phases, Stretch
+from fretc.audit.phases.by_shift import PhaseInterval, Phases
 from tests.command import Fretc
 from tests.command import write as put
 from tests.fretc.audit.stepping import stepping
@@ -165,7 +165,7 @@ def test_what_is_open_at_the_end_is_judged_as_the_clock_says_at_each_phase(robot
 def phases(*stretches: tuple[int, str | None], period: int = 100) -> Phases:
     """Stretches by their first phases; the declared one is 0."""
     ends = [*(first for first, _ in stretches[1:]), period]
-    parts = [Stretch(f, end - 1, v) for (f, v), end in zip(stretches, ends, strict=True)]
+    parts = [PhaseInterval(f, end - 1, v) for (f, v), end in zip(stretches, ends, strict=True)]
     return Phases(period, 0, tuple(parts))
 
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from compiler.formalization.formalize import formalize
 from compiler.targets.python.monitor import text
 from fretc.audit.measurements.judgement import judge
-from fretc.audit.phases.by_shift import Phases, Stretch, phases
+from fretc.audit.phases.by_shift import PhaseInterval, Phases, phases
 from fretc.logs.signals.samples import Late, Recording, Samples, Topic
 from fretc.logs.signals.traces import trace
 from fretish.bindings.declarations import Declarations
@@ -271,24 +271,30 @@ def test_a_search_that_ends_early_says_so() -> None:
 # What is reported
 
 
-def phases_with(*stretches: Stretch, declared: int = 0, period: int = 100) -> Phases:
+def phases_with(*stretches: PhaseInterval, declared: int = 0, period: int = 100) -> Phases:
     return Phases(period, declared, stretches)
 
 
 def test_one_verdict_at_all_phases_is_not_told() -> None:
-    result = phases_with(Stretch(0, 99, "satisfied"))
+    result = phases_with(PhaseInterval(0, 99, "satisfied"))
     assert (result.text, result.nearest, result.exact, result.varies) == ("", None, True, False)
 
 
 def test_the_nearest_change_is_found_around_the_end_of_the_tick() -> None:
-    stretches = Stretch(0, 39, "satisfied"), Stretch(40, 90, "violated"), Stretch(91, 99, "vacuous")
+    stretches = (
+        PhaseInterval(0, 39, "satisfied"),
+        PhaseInterval(40, 90, "violated"),
+        PhaseInterval(91, 99, "vacuous"),
+    )
     assert [phases_with(*stretches, declared=d).nearest for d in (0, 8, 20, 39, 90, 91)] == [
         1, 9, 20, 1, 1, 1,
     ]  # fmt: skip
 
 
 def test_a_share_is_never_rounded_to_nothing_or_to_all() -> None:
-    result = phases_with(Stretch(0, 0, "violated"), Stretch(1, 999, "satisfied"), period=1000)
+    result = phases_with(
+        PhaseInterval(0, 0, "violated"), PhaseInterval(1, 999, "satisfied"), period=1000
+    )
     assert result.text == (
         "by phase of the ticks violated at less than 1 %, satisfied at 99 %, the nearest change is "
         "1 ns away"
@@ -302,4 +308,4 @@ def test_a_clock_that_ticks_by_message_has_no_phases() -> None:
 
 def test_a_log_shorter_than_a_tick_has_no_tick_at_the_later_phases() -> None:
     result = phases_of(declared(), recorded([(0, 1.0)], [(0, 1.0)], 4), monitor(SENTENCES[0]))
-    assert result.stretches == (Stretch(0, 4, "satisfied"), Stretch(5, 11, "no data"))
+    assert result.stretches == (PhaseInterval(0, 4, "satisfied"), PhaseInterval(5, 11, "no data"))

@@ -9,7 +9,7 @@ import pyarrow as pa
 import pytest
 
 from compiler.files.records import decoded
-from fretc.audit.evidence.schema import Document
+from fretc.audit.evidence.schema import EvidenceDocument
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.agreement import COLUMNS
 from fretc.audit.store.anywhere import read, source
@@ -23,7 +23,7 @@ from tests.fretc.audit.store.test_whole_numbers import evidence
 
 TICKS = ("results", 0, "ticks")
 LATE = ("results", 0, "violations", 0, "start_ns")
-DOCUMENT = decoded(json.loads(evidence((TICKS, 1), (TICKS, 2), (LATE, 2**63))), Document)
+DOCUMENT = decoded(json.loads(evidence((TICKS, 1), (TICKS, 2), (LATE, 2**63))), EvidenceDocument)
 """Three runs with something in each column, of which the last is not held by columns alone."""
 Forgery = tuple[str, TableName, pa.Table]
 

@@ -11,7 +11,7 @@ from pyarrow.parquet import ParquetFile
 
 from compiler.files.records import UNSET, decoded, replace, types
 from fretc.audit.evidence.result_summaries import brief, run_facts
-from fretc.audit.evidence.schema import Document, Result
+from fretc.audit.evidence.schema import EvidenceDocument, Result
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.reader import Store, evidence, opened
 from fretc.audit.store.tables import runs_of
@@ -110,11 +110,11 @@ def _fixed(value: dict[str, Any], name: str) -> dict[str, Any]:
 results = st.one_of(
     *(records(types.type_info(Result), held=held) for held in (True, True, False))
 ).map(lambda value: decoded(value, Result))
-heads = records(types.type_info(Document), "results", held=False)
+heads = records(types.type_info(EvidenceDocument), "results", held=False)
 
 
 @st.composite
-def documents(draw: st.DrawFn) -> Document:
+def documents(draw: st.DrawFn) -> EvidenceDocument:
     """Some results, of which some share what those of one run share."""
     found: list[Result] = []
     alike = draw(st.lists(st.booleans(), min_size=6, max_size=6))
@@ -123,10 +123,10 @@ def documents(draw: st.DrawFn) -> Document:
             one = replace(one, **{name: getattr(found[-1], name) for name in SHARED})
             one = replace(one, course=draw(st.sampled_from([UNSET, one.course])))
         found.append(one)
-    return replace(decoded(draw(heads) | {"results": []}, Document), results=tuple(found))
+    return replace(decoded(draw(heads) | {"results": []}, EvidenceDocument), results=tuple(found))
 
 
-def stored(folder: Path, document: Document) -> Store:
+def stored(folder: Path, document: EvidenceDocument) -> Store:
     sha256 = write_document(folder, document, 0.95)
     assert isinstance(sha256, str), sha256
     store = opened(str(folder))
@@ -140,10 +140,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("store")
 
 
-def document(*results: Result) -> Document:
+def document(*results: Result) -> EvidenceDocument:
     head = {"schema": "fretc-evidence-1", "fretc": "1", "requirements": [], "results": []}
     bindings = {"file": "bindings.toml", "sha256": SHA}
-    return replace(decoded(head | {"bindings": bindings}, Document), results=results)
+    return replace(decoded(head | {"bindings": bindings}, EvidenceDocument), results=results)
 
 
 def test_times_of_a_damaged_log_are_kept(tmp_path: Path) -> None:
@@ -168,7 +168,9 @@ def test_times_of_a_damaged_log_are_kept(tmp_path: Path) -> None:
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 @given(document=documents())
-def test_evidence_comes_back_from_a_store_to_the_letter(document: Document, folder: Path) -> None:
+def test_evidence_comes_back_from_a_store_to_the_letter(
+    document: EvidenceDocument, folder: Path
+) -> None:
     store = stored(folder, document)
     found = evidence(store)
     assert text(found.document) == text(document)

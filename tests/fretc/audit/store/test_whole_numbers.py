@@ -11,7 +11,7 @@ import pytest
 
 from compiler.files.records import types
 from fretc.audit.evidence.reader import EvidenceFile, read
-from fretc.audit.evidence.schema import Document, schema
+from fretc.audit.evidence.schema import EvidenceDocument, schema
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read as read_anywhere
 from fretc.audit.store.writer import write_document
@@ -82,7 +82,7 @@ _FIRST: tuple[type, ...] = (
 
 @cache
 def _empty() -> str:
-    document = filled(types.type_info(Document))
+    document = filled(types.type_info(EvidenceDocument))
     document["probabilities"][0]["bound"] = "0.5"
     return json.dumps(document)
 

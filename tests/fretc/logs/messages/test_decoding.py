@@ -8,7 +8,7 @@ from mcap.records import Channel, Schema
 from mcap_ros1.decoder import DecoderFactory as Ros1Decoders
 from mcap_ros2.decoder import DecoderFactory as Ros2Decoders
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.messages.decoding import decoder, stamp
 from fretc.logs.reader import look
 from fretish.bindings.declarations import short_type
@@ -143,8 +143,8 @@ def test_a_real_rosbag2_log_agrees_with_the_official_decoder() -> None:
 # A stream by itself
 
 
-def stream(encoding: str, schema: Schema | None) -> Stream:
-    return Stream(Channel(1, "/x", encoding, {}, 1), schema)
+def stream(encoding: str, schema: Schema | None) -> ChannelDefinition:
+    return ChannelDefinition(Channel(1, "/x", encoding, {}, 1), schema)
 
 
 def test_a_stream_without_definition_has_no_decoder() -> None:

@@ -6,21 +6,21 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from mcap.records import Channel, Schema
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.messages.decoding import shape
-from fretc.logs.messages.definitions import DefinitionError, Field, types
+from fretc.logs.messages.definitions import DefinitionError, MessageField, types
 from tests.effort import examples
 
 
-def number(name: str, type_: str) -> Field:
-    return Field(name, type_, many=False, count=None)
+def number(name: str, type_: str) -> MessageField:
+    return MessageField(name, type_, many=False, count=None)
 
 
-def array(name: str, type_: str, count: int | None = None) -> Field:
-    return Field(name, type_, many=True, count=count)
+def array(name: str, type_: str, count: int | None = None) -> MessageField:
+    return MessageField(name, type_, many=True, count=count)
 
 
-def fields(text: str, *, ros1: bool = False) -> tuple[Field, ...]:
+def fields(text: str, *, ros1: bool = False) -> tuple[MessageField, ...]:
     return types("one/T", text, ros1=ros1)["one/T"]
 
 
@@ -207,9 +207,9 @@ def test_types_may_be_as_deep_as_anyone_makes_them() -> None:
     assert len(types("one/T", deep(40), ros1=False)) == 43
 
 
-def stream(text: str, *, ros1: bool) -> Stream:
+def stream(text: str, *, ros1: bool) -> ChannelDefinition:
     schema = Schema(1, text.encode(), "ros1msg" if ros1 else "ros2msg", "one/T")
-    return Stream(Channel(1, "/x", "ros1" if ros1 else "cdr", {}, 1), schema)
+    return ChannelDefinition(Channel(1, "/x", "ros1" if ros1 else "cdr", {}, 1), schema)
 
 
 @given(st.text(), st.text())
@@ -229,5 +229,5 @@ def test_a_definition_that_is_no_utf_8_has_no_shape() -> None:
     assert whole.schema is not None
     assert shape(whole) is not None
     broken = replace(whole.schema, data=b"float64 x # \xff")
-    assert shape(Stream(whole.channel, broken)) is None
-    assert shape(Stream(whole.channel, None)) is None
+    assert shape(ChannelDefinition(whole.channel, broken)) is None
+    assert shape(ChannelDefinition(whole.channel, None)) is None

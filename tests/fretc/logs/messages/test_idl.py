@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mcap.records import Channel, Schema
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.messages.decoding import decoder, leaves, shape
 from fretc.logs.messages.definitions import DefinitionError
 from fretc.logs.messages.idl import types
@@ -101,8 +101,10 @@ module robot { module msg {
 """
 
 
-def stream(name: str, definition: str, encoding: str = "ros2idl") -> Stream:
-    return Stream(Channel(1, "/x", "cdr", {}, 1), Schema(1, definition.encode(), encoding, name))
+def stream(name: str, definition: str, encoding: str = "ros2idl") -> ChannelDefinition:
+    return ChannelDefinition(
+        Channel(1, "/x", "cdr", {}, 1), Schema(1, definition.encode(), encoding, name)
+    )
 
 
 def read(tmp_path: Path, definition: str = DEFINITION, count: int = 40) -> Recording:

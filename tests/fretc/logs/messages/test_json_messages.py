@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from fretc.logs.messages.json_messages import message_leaves, schema_leaves
-from fretc.logs.messages.leaves import Kind, Leaf
+from fretc.logs.messages.leaves import FieldKind, Leaf
 from fretc.logs.reader import look
 from fretc.logs.signals.samples import Recording
 from fretish.diagnostics.diagnostic import Code
@@ -26,7 +26,7 @@ path = "{path}"
 expr = "s < 5"
 """
 
-NUMBER = Leaf(Kind.NUMBER)
+NUMBER = Leaf(FieldKind.NUMBER)
 
 
 def log(path: Path, payloads: list[bytes], type_: str = "Thing", schema: bytes = b"{}") -> Path:
@@ -160,7 +160,7 @@ def test_the_numbers_of_a_schema_are_listed_through_its_references() -> None:
     }
     assert schema_leaves(json.dumps(schema).encode()) == {
         "n": NUMBER,
-        "name": Leaf(Kind.TEXT),
+        "name": Leaf(FieldKind.TEXT),
         "r[:]": NUMBER,
         "pose.x": NUMBER,
         "one.x": NUMBER,
@@ -187,8 +187,8 @@ def test_the_numbers_that_messages_hold_are_listed() -> None:
     sent = [b'{"a": {"b": 1}, "c": "x", "f": true}', b"bad", b'{"d": [1, null], "e": []}']
     assert message_leaves(sent) == {
         "a.b": NUMBER,
-        "c": Leaf(Kind.TEXT),
-        "f": Leaf(Kind.FLAG),
+        "c": Leaf(FieldKind.TEXT),
+        "f": Leaf(FieldKind.FLAG),
         "d[:]": NUMBER,
     }
 

@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.records import Channel, Schema
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.payloads import Payloads
 from fretc.logs.messages.decoding import decoder, shape
-from fretc.logs.messages.layouts import LayoutError, Layouts, Shape
+from fretc.logs.messages.layouts import LayoutError, Layouts, TopicType
 from tests.effort import FULL
 from tests.fretc.logs.kinds import Encoder, Kind, Part, kinds, message, official
 
@@ -88,18 +88,18 @@ def damaged(payload: bytes, some: random.Random) -> bytes:
 # Single layouts
 
 
-def known(text: str, *, ros1: bool = False, name: str = "one/T") -> Shape:
+def known(text: str, *, ros1: bool = False, name: str = "one/T") -> TopicType:
     found = shape(stream(text, ros1=ros1, name=name))
     assert found is not None
     return found
 
 
-def stream(text: str, *, ros1: bool = False, name: str = "one/T") -> Stream:
+def stream(text: str, *, ros1: bool = False, name: str = "one/T") -> ChannelDefinition:
     schema = Schema(1, text.encode(), "ros1msg" if ros1 else "ros2msg", name)
-    return Stream(Channel(1, "/x", "ros1" if ros1 else "cdr", {}, 1), schema)
+    return ChannelDefinition(Channel(1, "/x", "ros1" if ros1 else "cdr", {}, 1), schema)
 
 
-def at(shape: Shape, payload: bytes, *where: str) -> tuple[int, int | None]:
+def at(shape: TopicType, payload: bytes, *where: str) -> tuple[int, int | None]:
     found = shape.layout(memoryview(payload), [where]).locations[where]
     return found.at, found.count
 

@@ -3,11 +3,11 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from mcap.records import Channel, Schema
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.messages import probes
 from fretc.logs.messages.decoding import decoder, shape
 from fretc.logs.messages.definitions import types
-from fretc.logs.messages.layouts import Shape
+from fretc.logs.messages.layouts import TopicType
 from fretc.logs.messages.probes import probe, trusted
 from tests.effort import FULL
 from tests.fretc.logs.logs import definition
@@ -115,7 +115,7 @@ def test_common_types_are_trusted(encoding: str) -> None:
         text = definition(name, encoding)
         kind = "ros1msg" if encoding == "ros1" else "ros2msg"
         full = name if encoding == "ros1" else name.replace("/", "/msg/")
-        sent = Stream(Channel(1, "/x", encoding, {}, 1), Schema(1, text, kind, full))
+        sent = ChannelDefinition(Channel(1, "/x", encoding, {}, 1), Schema(1, text, kind, full))
         known, decode = shape(sent), decoder(sent)
         assert known is not None, name
         assert callable(decode)
@@ -123,6 +123,6 @@ def test_common_types_are_trusted(encoding: str) -> None:
 
 
 def test_made_up_texts_end_at_each_place_between_two_numbers_of_8_bytes() -> None:
-    known = Shape("one/T", types("one/T", "string s", ros1=False), cdr=True)
+    known = TopicType("one/T", types("one/T", "string s", ros1=False), cdr=True)
     payloads = [probe(known, seed) for seed in range(8)]
     assert sorted(len(payload) % 8 for payload in payloads if payload) == list(range(8))

@@ -13,7 +13,7 @@ from fretc.audit.one_log import examined
 from fretc.logs.signals.enum_values import enum_indices
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
-from fretc.logs.stream import End, Stream
+from fretc.logs.stream import SampleStream, StreamEnd
 from tests.effort import examples
 from tests.fretc.logs.logs import (
     MS,
@@ -363,14 +363,14 @@ def test_a_stream_sees_what_a_log_of_the_same_messages_shows(
     tmp_path: Path, rows: list[tuple[int, tuple[object, object, object]]]
 ) -> None:
     declarations, sent, now = declare(STREAMED), [], S
-    stream = Stream(declarations, ["p"])
+    stream = SampleStream(declarations, ["p"])
     for step, row in rows:
         message = dict(zip(("mode", "gear", "on"), row, strict=True))
         assert stream.message("/m", now, message) is None
         sent.append(said("/m", now, **message))
         now += step * MS
     end = stream.end()
-    assert isinstance(end, End)
+    assert isinstance(end, StreamEnd)
     recording = recorded(write(tmp_path / "l.mcap", sent), declarations)
     assert [tick.truth["p"] for tick in end.ticks] == column(recording, STREAMED)
     found = examined(recording, declarations, ["p"]).findings
@@ -380,12 +380,12 @@ def test_a_stream_sees_what_a_log_of_the_same_messages_shows(
 
 
 def test_a_word_may_be_added_where_messages_have_its_number() -> None:
-    stream = Stream(declare(STREAMED), ["p"])
+    stream = SampleStream(declare(STREAMED), ["p"])
     for time, word in ((S, "park"), (S + STEP, 3), (S + 2 * STEP, "reverse")):
         assert stream.add("gear", time, word) is None
     assert stream.add("mode", S, "drive") is None
     end = stream.end()
-    assert isinstance(end, End)
+    assert isinstance(end, StreamEnd)
     assert [tick.truth["p"] for tick in end.ticks] == [True, False, None]
     (finding,) = stream.findings
     assert finding.message == (
@@ -419,9 +419,9 @@ class Status:
 
 def test_the_constants_of_a_message_of_python_are_its_words() -> None:
     values = '["DRIVE", "DOCKING"]'
-    stream = Stream(declare(declared("/m.state.data", values, "mode = DOCKING")), ["p"])
+    stream = SampleStream(declare(declared("/m.state.data", values, "mode = DOCKING")), ["p"])
     for i, data in enumerate((4, 0, 7)):
         assert stream.message("/m", S + i * STEP, {"state": Status(data)}) is None
     end = stream.end()
-    assert isinstance(end, End)
+    assert isinstance(end, StreamEnd)
     assert [tick.truth["p"] for tick in end.ticks] == [True, False, None]

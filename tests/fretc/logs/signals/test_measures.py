@@ -10,7 +10,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from fretc.logs.signals.measures import Scope, number
+from fretc.logs.signals.measures import NameValues, number
 from fretc.logs.signals.propositions import TRUE, truth
 from fretc.logs.signals.samples import EXACT
 from fretish import expressions as e
@@ -46,7 +46,7 @@ def parsed(text: str) -> e.Expression:
 
 
 def is_true(text: str, x: Any, kind: np.dtype[Any], name: str = "1") -> bool:
-    scope = Scope(1, {"x": np.array([x], kind)}, scales={"x": FACTORS[name].factor})
+    scope = NameValues(1, {"x": np.array([x], kind)}, scales={"x": FACTORS[name].factor})
     return bool(truth(parsed(text), scope)[0] == TRUE)
 
 
@@ -177,20 +177,20 @@ def test_whole_numbers_of_64_bits_are_compared_as_whole_numbers(
 
 
 def test_a_fraction_among_whole_numbers_stays_a_fraction() -> None:
-    scope = Scope(3, {"x": np.array([0.5, 2**53 + 1, np.nan], EXACT)})
+    scope = NameValues(3, {"x": np.array([0.5, 2**53 + 1, np.nan], EXACT)})
     assert truth(parsed("x < 0.7"), scope).tolist() == [2, 0, 1]
     assert truth(parsed("min(x, 9007199254740993.5) < 0.7"), scope).tolist() == [2, 0, 1]
 
 
 @pytest.mark.parametrize("text", ["1e300", "-1e300", "18446744073709551616", "123456789e12"])
 def test_a_float_beyond_whole_numbers_is_its_decimal_beside_whole_numbers_too(text: str) -> None:
-    scope = Scope(2, {"x": np.array([float(text), 2**53 + 1], EXACT)})
+    scope = NameValues(2, {"x": np.array([float(text), 2**53 + 1], EXACT)})
     assert truth(parsed(f"x = {text}"), scope).tolist() == [2, 0]
 
 
 def test_the_lesser_of_two_whole_numbers_is_a_whole_number() -> None:
     numbers = {"x": np.array([2**53 + 1], EXACT), "y": np.array([2**53 + 3], EXACT)}
-    scope = Scope(1, numbers, scales=dict.fromkeys("xy", Fraction(1, 100)))
+    scope = NameValues(1, numbers, scales=dict.fromkeys("xy", Fraction(1, 100)))
     assert truth(parsed("min(x, y) = 9007199254740993 cm"), scope).tolist() == [2]
     assert truth(parsed("max(x, y) = 9007199254740995 cm"), scope).tolist() == [2]
     assert truth(parsed("min(x, y) = 9007199254740992 cm"), scope).tolist() == [0]
@@ -199,13 +199,15 @@ def test_the_lesser_of_two_whole_numbers_is_a_whole_number() -> None:
 def test_two_signals_of_one_unit_are_compared_as_they_were_recorded() -> None:
     scale = {"x": Fraction(1, 1000), "y": Fraction(1, 1000)}
     numbers = {"x": np.array([2**53 + 1], EXACT), "y": np.array([2.0**53])}
-    assert truth(parsed("x > y and not x = y"), Scope(1, numbers, scales=scale)).tolist() == [2]
+    assert truth(parsed("x > y and not x = y"), NameValues(1, numbers, scales=scale)).tolist() == [
+        2
+    ]
 
 
 def test_arithmetic_is_of_64_bit_floats_in_base_units() -> None:
     scales = {"x": Fraction(1, 100), "y": Fraction(1)}
     numbers = {"x": np.array([50.0]), "y": np.array([0.25], np.float32)}
-    scope = Scope(1, numbers, scales=scales)
+    scope = NameValues(1, numbers, scales=scales)
     assert number(parsed("x + y"), scope).tolist() == [0.75]
     assert number(parsed("x * y"), scope).tolist() == [0.125]
     assert number(parsed("x / y"), scope).tolist() == [2.0]
@@ -214,7 +216,7 @@ def test_arithmetic_is_of_64_bit_floats_in_base_units() -> None:
 
 
 def test_constants_beyond_all_floats_are_infinite() -> None:
-    scope = Scope(2, {"x": np.array([1e308, math.inf])})
+    scope = NameValues(2, {"x": np.array([1e308, math.inf])})
     assert truth(parsed("x < 1e999"), scope).tolist() == [2, 0]
     assert truth(parsed("x > -1e999"), scope).tolist() == [2, 2]
     assert is_true("x < 1e999 and x > -1e999", 2**64 - 1, EXACT)

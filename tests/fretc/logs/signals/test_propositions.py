@@ -6,8 +6,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from fretc.logs.signals.measures import ExpressionError, Scope, number
-from fretc.logs.signals.propositions import Steps, evaluate, truth
+from fretc.logs.signals.measures import ExpressionError, NameValues, number
+from fretc.logs.signals.propositions import StepFunction, evaluate, truth
 from fretc.logs.signals.samples import Recording, Samples
 from fretish import expressions as e
 from fretish.bindings import expressions as binding
@@ -48,7 +48,7 @@ def recording(
     )
 
 
-def steps(expression: str, log: Recording, max_age: str = "", unit: str = "1") -> Steps:
+def steps(expression: str, log: Recording, max_age: str = "", unit: str = "1") -> StepFunction:
     age = f'max_age = "{max_age}"\n' if max_age else ""
     signals = "".join(
         f'[signal.{name}]\npath = "/{name}.data"\nunit = "{unit}"\n{age}' for name in ("x", "y")
@@ -64,7 +64,7 @@ def proposition(expression: str) -> e.Expression:
     return found
 
 
-def pairs(found: Steps) -> list[tuple[int, Value]]:
+def pairs(found: StepFunction) -> list[tuple[int, Value]]:
     return list(zip(found.times.tolist(), found.values, strict=True))
 
 
@@ -171,8 +171,8 @@ def test_numbers_are_compared_in_the_base_unit() -> None:
 # Arithmetic and logic
 
 
-def scope(**numbers: float) -> Scope:
-    return Scope(1, {name: np.array([value]) for name, value in numbers.items()})
+def scope(**numbers: float) -> NameValues:
+    return NameValues(1, {name: np.array([value]) for name, value in numbers.items()})
 
 
 @pytest.mark.parametrize(

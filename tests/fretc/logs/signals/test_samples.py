@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.logs.signals.samples import EXACT, Series, Values, distinct, scaled, widest
+from fretc.logs.signals.samples import EXACT, NumberList, Values, distinct, scaled, widest
 from fretc.logs.signals.traces import trace
 from tests.fretc.logs.logs import MS, S, Sent, declare, recorded, said, scan, write
 
@@ -94,7 +94,7 @@ def test_whole_numbers_that_outgrow_floats_keep_those_before_them(
 
 
 def test_the_kind_of_a_series_is_the_narrowest_that_holds_all() -> None:
-    series = Series()
+    series = NumberList()
     parts: list[Values] = [np.array([0.1], np.float32), np.array([0.1]), widest(np.array([2**60]))]
     kinds = []
     for part in parts:

@@ -10,7 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mcap.records import Channel, Schema
 
-from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Recording
@@ -303,7 +303,7 @@ def test_each_zero_is_read_as_the_definition_says(
             id, definition("sensor_msgs/msg/LaserScan", "cdr"), "ros2msg", "sensor_msgs/LaserScan"
         )
         channel = Channel(id, topic, "cdr", {}, id)
-        streams[topic] = Stream(channel, schema)
+        streams[topic] = ChannelDefinition(channel, schema)
         columns.declare(streams[topic])
     for topic, log, time in rows:
         message = scan([1.0], log, stamp=time)

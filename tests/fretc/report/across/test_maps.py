@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.files.records import decoded
-from fretc.audit.evidence.schema import Way
+from fretc.audit.evidence.schema import RobotPath
 from fretc.report.across.layout import drawn_map
-from fretc.report.across.maps import RunResult, run_map
+from fretc.report.across.maps import MapResult, run_map
 from tests.effort import examples
 from tests.fretc.audit.results import result as record
 from tests.fretc.report.cases import R1, as_html, project, report_of, result, row, violation
@@ -22,14 +22,14 @@ PLAIN: dict[str, Any] = {
     "error": 0.01,
     "lines_left_out": 0,
 }
-WAY = decoded(PLAIN, Way)
+WAY = decoded(PLAIN, RobotPath)
 
 
-def of_run(*seconds: float) -> RunResult:
+def of_run(*seconds: float) -> MapResult:
     ns = [10**9 + round(s * 1e9) for s in seconds]
     broken = [{"start_ns": n, "start_s": s} for n, s in zip(ns, seconds, strict=True)]
     found = record(violations=broken)
-    return RunResult(row(1, "violated", place=0, violations_total=len(broken)), found)
+    return MapResult(row(1, "violated", place=0, violations_total=len(broken)), found)
 
 
 @given(st.lists(st.floats(0, 12).map(lambda number: round(number, 3)), max_size=30).map(sorted))

@@ -7,22 +7,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.audit.evidence.schema import Threshold
+from fretc.audit.evidence.schema import ThresholdRecord
 from fretc.report.across.uses import RunThresholds, percent, uses
 from tests.effort import examples
 from tests.fretc.report.cases import row
 
 
-def threshold(comparison: Any, least: Any, greatest: Any, **changes: Any) -> Threshold:
+def threshold(comparison: Any, least: Any, greatest: Any, **changes: Any) -> ThresholdRecord:
     kept = comparison in ("true", "false")
     near = greatest if comparison == "true" else least
     bound = changes.pop("bound", 0.4)
     margin = abs(bound - near) if kept and near is not None else None
     of: Any = ("fast", "vx", "<=", bound, "m/s", least, greatest, comparison, margin, None)
-    return replace_record(Threshold(*of), **changes)
+    return replace_record(ThresholdRecord(*of), **changes)
 
 
-def replace_record(each: Threshold, **changes: Any) -> Threshold:
+def replace_record(each: ThresholdRecord, **changes: Any) -> ThresholdRecord:
     from compiler.files.records import replace as changed
 
     return changed(each, **changes)

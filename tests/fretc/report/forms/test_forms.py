@@ -19,9 +19,9 @@ from hypothesis import strategies as st
 
 from fretc.report.forms.csv_rows import _harmless
 from fretc.report.forms.markdown import markdown
-from fretc.report.model.changes import Change
+from fretc.report.model.changes import RequirementChanges
 from fretc.report.model.marks import verdict_mark
-from fretc.report.model.views import Remark, Report
+from fretc.report.model.views import Remark, ReportView
 from fretc.report.sections.details import Details
 from tests.command import Fretc, made_once, write
 from tests.fretc.report import junit_schema
@@ -175,7 +175,7 @@ MARKS = ("violated", "refuted", "no data", "inconclusive", "vacuous", "satisfied
     st.sampled_from(["", "x" * 10_000]),
 )
 def test_markdown_is_one_screen_and_what_it_leaves_out_is_counted_and_never_worse(
-    plain: tuple[Report, Details],
+    plain: tuple[ReportView, Details],
     marks: list[tuple[str, bool]],
     changes: int,
     accepted: int,
@@ -188,7 +188,7 @@ def test_markdown_is_one_screen_and_what_it_leaves_out_is_counted_and_never_wors
         for n, (word, suspect) in enumerate(marks)
     ]
     flip = (("a.mcap", "satisfied", "violated"),)
-    change = Change("R0", "", "", "", "", (), (long,) * 9, (long,), (), "", flip)
+    change = RequirementChanges("R0", "", "", "", "", (), (long,) * 9, (long,), (), "", flip)
     remark = Remark("F203", "warning", long, accepted=long or "meant")
     text = markdown(
         replace(
@@ -228,7 +228,7 @@ def test_markdown_is_one_screen_and_what_it_leaves_out_is_counted_and_never_wors
 
 
 @pytest.fixture(scope="module")
-def plain(tmp_path_factory: pytest.TempPathFactory) -> tuple[Report, Details]:
+def plain(tmp_path_factory: pytest.TempPathFactory) -> tuple[ReportView, Details]:
     folder = tmp_path_factory.mktemp("plain")
     known = project(folder)
     build = report_of(known, folder, result(known, "violated", violations=[violation(14, 20, 11)]))

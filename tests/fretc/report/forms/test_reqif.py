@@ -20,7 +20,7 @@ from compiler.files.settings import Settings
 from compiler.project.parents import Parent, parents
 from fretc.report.forms.reqif import reqif as form
 from fretc.report.model.marks import verdict_mark
-from fretc.report.model.views import HazardView, Report
+from fretc.report.model.views import HazardView, ReportView
 from fretish.diagnostics import extras
 from tests.command import Fretc, made_once, write
 from tests.effort import FULL, examples
@@ -147,7 +147,7 @@ _exports: list[str] = []
 
 
 @pytest.fixture(scope="module")
-def small(tmp_path_factory: pytest.TempPathFactory) -> Report:
+def small(tmp_path_factory: pytest.TempPathFactory) -> ReportView:
     """One hazard, one requirement, one run."""
     folder = tmp_path_factory.mktemp("small")
     known = project(folder)
@@ -315,7 +315,7 @@ def test_a_project_without_hazards_and_runs_fits_the_schema(
 
 
 @pytest.mark.slow
-def test_a_project_of_nothing_fits_the_schema(small: Report, schema: XMLSchema) -> None:
+def test_a_project_of_nothing_fits_the_schema(small: ReportView, schema: XMLSchema) -> None:
     schema.validate(form(replace(small, hazards=(), matrix=(), requirements=())))
 
 
@@ -347,7 +347,7 @@ def held(text: str) -> str:
 @pytest.mark.slow
 @examples(8)
 @given(text=st.text(LETTERS, min_size=1))
-def test_any_text_comes_back(small: Report, schema: XMLSchema, text: str) -> None:
+def test_any_text_comes_back(small: ReportView, schema: XMLSchema, text: str) -> None:
     hazard = HazardView(f"{text}.", text, f".{text}.", "", "")
     exported = form(replace(small, hazards=(hazard,), project=text))
     schema.validate(exported)
@@ -356,7 +356,7 @@ def test_any_text_comes_back(small: Report, schema: XMLSchema, text: str) -> Non
 
 
 @pytest.mark.slow
-def test_a_thousand_requirements_are_all_there(small: Report) -> None:
+def test_a_thousand_requirements_are_all_there(small: ReportView) -> None:
     """By default a tenth of them."""
     count = 1000 if FULL else 100
     (view,), (row,) = small.requirements, small.matrix
@@ -370,7 +370,7 @@ def test_a_thousand_requirements_are_all_there(small: Report) -> None:
     assert sizes == (count + 1, count, count + 1)
 
 
-def test_of_many_runs_the_worst_are_listed(small: Report) -> None:
+def test_of_many_runs_the_worst_are_listed(small: ReportView) -> None:
     (view,) = small.requirements
     (good,) = view.results
     bad = replace(good, mark=verdict_mark("violated"), run_file="logs/bad.mcap")

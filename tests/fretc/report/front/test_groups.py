@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.report.front.groups import run_groups
-from fretc.report.sections.runs import Run, run_names
+from fretc.report.sections.runs import AuditedFile, run_names
 
 
 @dataclass
@@ -15,9 +15,9 @@ class Facts:
     labels: dict[str, str]
 
 
-def named(paths: Sequence[str], labels: Sequence[dict[str, str]]) -> list[Run]:
+def named(paths: Sequence[str], labels: Sequence[dict[str, str]]) -> list[AuditedFile]:
     return [
-        Run(n, cast(Any, Facts(path, label)), False, name=name)
+        AuditedFile(n, cast(Any, Facts(path, label)), False, name=name)
         for n, (path, label, name) in enumerate(
             zip(paths, labels, run_names(paths), strict=True), 1
         )

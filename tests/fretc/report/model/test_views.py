@@ -33,8 +33,8 @@ def within(view: Any) -> Iterator[Any]:
 
 def reached() -> list[Any]:
     """The report and all that is in it."""
-    classes: dict[Any, None] = {views.Report: None}
-    for view in (waiting := [views.Report]):
+    classes: dict[Any, None] = {views.ReportView: None}
+    for view in (waiting := [views.ReportView]):
         for each in within(view):
             if each not in classes:
                 classes[each] = None
@@ -48,7 +48,7 @@ PLAIN = {str: "string", int: "integer", float: "number", bool: "boolean", NoneTy
 
 @pytest.mark.parametrize("view", VIEWS, ids=lambda view: str(view.__name__))
 def test_the_schema_has_each_field_of_each_view_and_demands_it(view: Any) -> None:
-    schema = SCHEMA if view is views.Report else SCHEMA["$defs"][view.__name__]
+    schema = SCHEMA if view is views.ReportView else SCHEMA["$defs"][view.__name__]
     names = sorted(field.name for field in fields(view))
     assert sorted(schema["properties"]) == names
     assert sorted(schema["required"]) == names
@@ -56,7 +56,7 @@ def test_the_schema_has_each_field_of_each_view_and_demands_it(view: Any) -> Non
 
 
 def test_the_schema_has_no_more_than_the_views() -> None:
-    assert {*SCHEMA["$defs"], "Report"} == {view.__name__ for view in VIEWS}
+    assert {*SCHEMA["$defs"], "ReportView"} == {view.__name__ for view in VIEWS}
     assert SCHEMA["$id"] == SCHEMA["properties"]["schema"]["const"] == views.SCHEMA
 
 
@@ -89,7 +89,7 @@ def meant(hint: Any) -> set[str]:
 
 @pytest.mark.parametrize("view", VIEWS, ids=lambda view: str(view.__name__))
 def test_the_schema_gives_each_field_its_type(view: Any) -> None:
-    schema = SCHEMA if view is views.Report else SCHEMA["$defs"][view.__name__]
+    schema = SCHEMA if view is views.ReportView else SCHEMA["$defs"][view.__name__]
     for name, hint in get_type_hints(view).items():
         shape = schema["properties"][name]
         assert shapes(shape) == meant(hint), name

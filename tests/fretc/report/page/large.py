@@ -11,7 +11,7 @@ from fretc.report.make import ReportBuild
 from fretc.report.model.front import ColumnRun, RunGroup
 from fretc.report.model.marks import Mark, verdict_mark
 from fretc.report.model.results import ResultRow
-from fretc.report.model.views import HazardView, Report, RequirementView, Row
+from fretc.report.model.views import HazardRequirement, HazardView, ReportView, RequirementView
 from fretc.report.page.html import html
 from tests.fretc.report.cases import project, report_of, result
 
@@ -28,8 +28,8 @@ def worst(marks: Sequence[Mark]) -> Mark:
 
 
 def enlarged(
-    report: Report, requirements: int, groups: Sequence[tuple[str, int]], choose: Choose
-) -> Report:
+    report: ReportView, requirements: int, groups: Sequence[tuple[str, int]], choose: Choose
+) -> ReportView:
     """So many requirements, ten to a hazard, in so many runs of each group.
 
     `choose` says the mark of a requirement in a run; None: the run has no result of it.
@@ -45,7 +45,7 @@ def enlarged(
     columns = iter(runs)
     named = [RunGroup(name, tuple(next(columns) for _ in range(count))) for name, count in groups]
     views: list[RequirementView] = []
-    rows: list[Row] = []
+    rows: list[HazardRequirement] = []
     for number in range(requirements):
         results = _results(like, number, runs, choose)
         mark = worst([each.mark for each in results])

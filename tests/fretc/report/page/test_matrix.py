@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from fretc.report.make import ReportBuild
 from fretc.report.model.front import RunGroup
 from fretc.report.model.marks import Mark
-from fretc.report.model.views import Report
+from fretc.report.model.views import ReportView
 from fretc.report.page.matrix import Picture, picture
 from tests.fretc.report.cases import as_json, project, report_of, requirement, result
 from tests.fretc.report.page.large import MARKS, enlarged, mostly_satisfied, page, small
@@ -28,7 +28,7 @@ def build(tmp_path_factory: pytest.TempPathFactory) -> ReportBuild:
 
 
 @pytest.fixture(scope="module")
-def base(build: ReportBuild) -> Report:
+def base(build: ReportBuild) -> ReportView:
     assert build.report is not None
     return build.report
 
@@ -41,7 +41,7 @@ def reports(draw: st.DrawFn) -> list[list[int | None]]:
     return draw(st.lists(one, min_size=1, max_size=12))
 
 
-def made(base: Report, table: list[list[int | None]]) -> Report:
+def made(base: ReportView, table: list[list[int | None]]) -> ReportView:
     def choose(requirement: int, run: int) -> Mark | None:
         number = table[requirement][run]
         return None if number is None else MARKS[number]
@@ -58,7 +58,7 @@ def columns(groups: tuple[RunGroup, ...]) -> list[str]:
 @given(reports())
 @settings(max_examples=30)
 def test_each_requirement_has_one_mark_in_each_run_and_it_is_its_verdict(
-    base: Report, table: list[list[int | None]]
+    base: ReportView, table: list[list[int | None]]
 ) -> None:
     report = made(base, table)
     shown = picture(report, frozenset(), ALL)
@@ -74,7 +74,7 @@ def test_each_requirement_has_one_mark_in_each_run_and_it_is_its_verdict(
 @given(reports())
 @settings(max_examples=30)
 def test_the_small_picture_counts_each_cell_once_and_lists_all_that_is_red(
-    base: Report, table: list[list[int | None]]
+    base: ReportView, table: list[list[int | None]]
 ) -> None:
     report = made(base, table)
     shown = picture(report, frozenset(), NONE)
@@ -105,7 +105,7 @@ def decoded(shown: Picture) -> dict[str, list[str]]:
     }
 
 
-def whole(report: Report) -> dict[str, list[str]]:
+def whole(report: ReportView) -> dict[str, list[str]]:
     runs = [run.anchor for group in report.front.groups for run in group.runs]
     known = {v.anchor: {r.run: r.mark.text for r in v.results} for v in report.requirements}
     return {anchor: [words.get(run, "") for run in runs] for anchor, words in known.items()}

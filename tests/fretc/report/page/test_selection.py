@@ -6,9 +6,9 @@ import pytest
 
 from benchmarks.report import evidence, project
 from fretc.report.make import ReportBuild, make
-from fretc.report.model.views import Report
+from fretc.report.model.views import ReportView
 from fretc.report.page import selection as choosing
-from fretc.report.page.selection import DETAILED, PICTURES, Selection
+from fretc.report.page.selection import DETAILED, PICTURES, PageContent
 from fretc.report.page.selection import selection as chosen_of
 from tests.effort import some
 from tests.fretc.report.cases import as_html, report_of, result
@@ -23,12 +23,12 @@ def reported(folder: Path, requirements: int, runs: int, share: float) -> tuple[
     return build, as_html(build)
 
 
-def whole(build: ReportBuild) -> Report:
+def whole(build: ReportBuild) -> ReportView:
     assert build.report is not None
     return build.report
 
 
-def selection(build: ReportBuild) -> Selection:
+def selection(build: ReportBuild) -> PageContent:
     assert build.report is not None
     assert build.details is not None
     return chosen_of(build.report, build.details)

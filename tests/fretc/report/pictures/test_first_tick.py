@@ -5,7 +5,7 @@ from math import inf
 import pytest
 
 from compiler.files.records import replace
-from fretc.audit.evidence.samples import Samples, Window
+from fretc.audit.evidence.samples import RunPart, SignalSamples
 from fretc.audit.evidence.schema import Violation
 from fretc.report.model.pictures import SpanMark
 from fretc.report.pictures.first_tick import reading
@@ -20,8 +20,8 @@ RESULT = replace(EMPTY, units={"x": "m"})
 def broken(value: float | None, *times: float, values: tuple[float, ...] = ()) -> Violation:
     """Broken at 12.3 s, with samples of `x` at these times."""
     at = moment(123, 12.3)
-    samples = Samples(times, values or (value,) * len(times))
-    return violation(at, at, None, None, "q", {"x": value}, Window(10.0, 13.3, {"x": samples}))
+    samples = SignalSamples(times, values or (value,) * len(times))
+    return violation(at, at, None, None, "q", {"x": value}, RunPart(10.0, 13.3, {"x": samples}))
 
 
 @pytest.mark.parametrize(

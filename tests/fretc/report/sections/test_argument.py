@@ -11,7 +11,7 @@ import yaml
 from compiler.project.project import Project
 from fretc.report.forms.gsn import gsn
 from fretc.report.make import make
-from fretc.report.model.views import Report
+from fretc.report.model.views import ReportView
 from fretc.report.sections.argument import Element, argument
 from tests.fretc.report.cases import (
     BINDINGS,
@@ -33,7 +33,7 @@ CLAIM = "the monitor means what the sentence says (by fretc)"
 
 def reported(
     known: Project, folder: Path, *results: Mapping[str, Any], proofs: Any = None
-) -> Report:
+) -> ReportView:
     """The report, with an argument that every requirement of gsn2x lets pass."""
     path = folder / "verification.json"
     if proofs is not None:
@@ -51,7 +51,7 @@ def reported(
     return report
 
 
-def elements(report: Report) -> dict[str, Element]:
+def elements(report: ReportView) -> dict[str, Element]:
     return {each.id: each for each in argument(report)}
 
 

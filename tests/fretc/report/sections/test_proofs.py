@@ -11,11 +11,11 @@ from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
 from compiler.project.project import Project
 from compiler.targets.python import monitor
-from compiler.targets.target import Options
+from compiler.targets.target import TargetOptions
 from fretc.cli import cli
 from fretc.report.forms.junit import junit
 from fretc.report.make import ReportBuild, make
-from fretc.report.sections.argument import Kind, argument
+from fretc.report.sections.argument import ElementKind, argument
 from fretish.diagnostics.diagnostic import Code
 from tests.command import Fretc, write
 from tests.each import each
@@ -107,7 +107,7 @@ def test_the_argument_rests_on_proofs_and_on_nothing_that_is_refuted(tmp_path: P
     report = reported(tmp_path, {}, {"layer": "loop"}, verify=[]).report
     assert report is not None
     claim = "the monitor means what the sentence says (by fretc)"
-    assert [each.text for each in argument(report) if each.kind is Kind.SOLUTION] == [
+    assert [each.text for each in argument(report) if each.kind is ElementKind.SOLUTION] == [
         "R1 is satisfied in 1 audited run",
         f"Proved: {claim}",
         f"Proved: {claim}",
@@ -192,7 +192,7 @@ def test_a_proof_of_the_monitor_of_some_requirements_stands(
     requirements = {
         formalized.id: formalized for formalized in project(tmp_path, own, *beside).formalized
     }
-    made = TARGETS[kind].emit([requirements[id] for id in part], Options(one_file=True))
+    made = TARGETS[kind].emit([requirements[id] for id in part], TargetOptions(one_file=True))
     files = {file.path.name: sha256(file.text) for file in reversed(made)}
     lines = [{"requirement": id, "artefacts": files} for id in part]
     for place in (None, 0, 1):

@@ -9,7 +9,7 @@ import pytest
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.testing.conformance.findings import Failure
 from fretc.testing.suite import Repeat
-from fretc.testing.words import Word, defined, letters
+from fretc.testing.words import RunColumns, defined, letters
 from tests.each import each
 from tests.effort import some
 from tests.fretc.testing.controllers import ASSUMED, FAULTS, RULES, program, seen_of
@@ -22,7 +22,7 @@ def is_broken(requirement: FormalizedRequirement, rows: tuple[Repeat, ...]) -> l
         name: sum(bool(values[name]) << tick for tick, values in enumerate(ticks))
         for name in requirement.watched
     }
-    broken, _ = defined(requirement, letters(requirement, Word(rows, columns, len(ticks))))
+    broken, _ = defined(requirement, letters(requirement, RunColumns(rows, columns, len(ticks))))
     return [broken is not None and tick >= broken for tick in range(len(ticks))]
 
 

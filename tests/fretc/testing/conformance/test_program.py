@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from fretc.testing.conformance.program import LONGEST_LINE, Program, ProgramError
+from fretc.testing.conformance.program import LONGEST_LINE, ProgramError, ProgramRun
 from monitors.kernel.variables import Variable
 from tests.each import each
 
@@ -35,11 +35,13 @@ WRONG = {
 """Code and a word of the message, and what a program does."""
 
 
-def started(text: str, seconds: float = 20) -> Program:
-    return Program([sys.executable, "-ISE", "-c", START + text], ("speed", "x"), OUTPUTS, seconds)
+def started(text: str, seconds: float = 20) -> ProgramRun:
+    return ProgramRun(
+        [sys.executable, "-ISE", "-c", START + text], ("speed", "x"), OUTPUTS, seconds
+    )
 
 
-def steps(program: Program, ticks: int) -> None:
+def steps(program: ProgramRun, ticks: int) -> None:
     with program:
         for _ in range(ticks):
             program.step([1, True])
@@ -72,7 +74,7 @@ def test_a_line_too_many_is_seen() -> None:
 
 def test_a_command_that_is_none_has_a_code(tmp_path: Path) -> None:
     for command in ([str(tmp_path / "none")], [str(tmp_path)], ["\0"]):
-        with pytest.raises(ProgramError) as caught, Program(command, (), OUTPUTS, 1):
+        with pytest.raises(ProgramError) as caught, ProgramRun(command, (), OUTPUTS, 1):
             pass
         assert caught.value.diagnostic.code.number == "F940"
 

@@ -20,7 +20,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from fretc.testing.assembly import suite
 from fretc.testing.exports import simulator
 from fretc.testing.exports.files import INDEX, SuiteFormat, files
-from fretc.testing.exports.pytest_file import Language
+from fretc.testing.exports.pytest_file import MonitorLanguage
 from fretc.testing.generation import Batch, batch
 from fretc.testing.suite import Polarity, Suite
 from monitors.loading import executed, load
@@ -63,7 +63,7 @@ def written(
     folder: Path,
     form: SuiteFormat,
     *sentences: str,
-    languages: Sequence[Language] = (Language.PYTHON,),
+    languages: Sequence[MonitorLanguage] = (MonitorLanguage.PYTHON,),
 ) -> tuple[Suite, tuple[FormalizedRequirement, ...]]:
     found, every = made(*sentences)
     artifacts, _ = files(found, every, form, languages)
@@ -192,7 +192,7 @@ def test_a_wrong_monitor_fails(tmp_path: Path) -> None:
         assert failures(tmp_path / "test_r1.py"), set(text.splitlines()) - {*right.splitlines()}
 
 
-ALL = (*Language,)
+ALL = (*MonitorLanguage,)
 needs_both = needs("cc", "node")
 
 

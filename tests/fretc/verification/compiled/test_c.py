@@ -4,20 +4,20 @@ from dataclasses import replace
 
 import pytest
 
-from compiler.logic.claims import Result
+from compiler.logic.claims import ClaimResult
 from fretc.verification.c import language as c
 from fretc.verification.c.build import compiler
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.tools import ToolError, compiled
 from fretc.verification.compiled.verifying import verified
-from fretc.verification.engines.sandbox import Limits
+from fretc.verification.engines.sandbox import CallLimits
 from tests.compiled_monitors import WITHIN, edited, given_c
 from tests.each import each
 from tests.monitoring import requirement
 from tests.programs import needs
 
 CC = compiler() or ""
-LIMITS = Limits(seconds=20)
+LIMITS = CallLimits(seconds=20)
 pytestmark = needs("gcc")
 
 
@@ -48,7 +48,7 @@ def test_undefined_behaviour_ends_the_process_and_proves_nothing() -> None:
     )
     wrong = edited(largest, "(rail->oldest_1 < 4) ? (rail->oldest_1 + 1) : 4", "rail->oldest_1 + 1")
     ((_, outcome, _, _),) = verified([one], wrong, c, CC, LIMITS)
-    assert outcome.result is Result.NOT_CHECKED
+    assert outcome.result is ClaimResult.NOT_CHECKED
     assert "crashed" in outcome.detail
 
 
@@ -60,7 +60,7 @@ def test_an_overflow_that_a_compiler_need_not_see_proves_nothing() -> None:
     twice, harmless = f"{counted} : {counted}", "rail->oldest_1 < 9"
     fine = edited(given_c(one), counted, f"({harmless}) ? {twice}")
     ((_, outcome, _, _),) = verified([one], fine, c, CC, LIMITS)
-    assert outcome.result is Result.PROVED, outcome.detail
+    assert outcome.result is ClaimResult.PROVED, outcome.detail
     for overflow in (
         "2147483643 + rail->oldest_1 + 1 > 2147483643 + rail->oldest_1",
         "(2147483643 + rail->oldest_1) - 2147483643 == rail->oldest_1",
@@ -71,5 +71,5 @@ def test_an_overflow_that_a_compiler_need_not_see_proves_nothing() -> None:
     ):
         wrong = edited(given_c(one), counted, f"({overflow}) ? {twice}")
         ((_, outcome, _, _),) = verified([one], wrong, c, CC, LIMITS)
-        assert outcome.result is Result.NOT_CHECKED, overflow
+        assert outcome.result is ClaimResult.NOT_CHECKED, overflow
         assert "not laid out" in outcome.detail, (overflow, outcome.detail)

@@ -83,7 +83,7 @@ def test_a_line_of_another_kind_proves_nothing(tongue: Tongue, checker: Checker)
     rail = library.CompiledDelayed
     honest = rail.step
 
-    def length(self: library.CompiledDelayed, ring: library.Ring) -> int:
+    def length(self: library.CompiledDelayed, ring: library.RingOffsets) -> int:
         return 4
 
     def step(self: library.CompiledDelayed, state: bytes, letter: FreeLetter) -> tuple[object, ...]:

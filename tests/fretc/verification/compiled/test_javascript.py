@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from compiler.logic.claims import Result
+from compiler.logic.claims import ClaimResult
 from fretc.verification.compiled.verifying import explored
 from fretc.verification.javascript import language as javascript
 from tests.compiled_monitors import REFUTED, WITHIN, Checker, edited, given_javascript
@@ -22,7 +22,7 @@ def test_a_counter_without_end_has_too_many_states(tmp_path: Path) -> None:
     )
     checked, executable = Checker(javascript, tmp_path).prepared(endless, one)
     outcome = explored(one, executable, checked.plan(one), 200 if FULL else 40)
-    assert outcome.result is Result.NOT_CHECKED
+    assert outcome.result is ClaimResult.NOT_CHECKED
 
 
 @needs_node

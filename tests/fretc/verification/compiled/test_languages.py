@@ -10,12 +10,12 @@ from tempfile import mkdtemp
 import pytest
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.claims import Result
+from compiler.logic.claims import ClaimResult
 from compiler.targets.python.monitor import text
 from fretc.verification.compiled.readings import PythonRail
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.verifying import explored, verified
-from fretc.verification.engines.sandbox import Limits
+from fretc.verification.engines.sandbox import CallLimits
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 from tests import meaning
@@ -41,7 +41,7 @@ from tests.monitoring import requirement
 from tests.programs import installed
 from tests.strategies import templates
 
-LIMITS = Limits(seconds=20)
+LIMITS = CallLimits(seconds=20)
 
 
 @pytest.fixture(params=TONGUES)
@@ -68,7 +68,7 @@ def test_each_requirement_of_one_text_is_proved(tongue: Tongue, checker: Checker
     requirements = [requirement(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
     outcomes = checker.outcomes(tongue.given(*requirements), requirements)
     for one, outcome in zip(requirements, outcomes, strict=True):
-        assert outcome.result is Result.PROVED, one.sentence
+        assert outcome.result is ClaimResult.PROVED, one.sentence
 
 
 @pytest.mark.slow
@@ -77,7 +77,7 @@ def test_a_long_bound_is_proved_as_it_is(tongue: Tongue, checker: Checker) -> No
     bound = 1000 if FULL else 300
     one = requirement(f"whenever p the sw shall within {bound} ticks satisfy q")
     outcome = checker.outcome(tongue.given(one), one)
-    assert outcome.result is Result.PROVED
+    assert outcome.result is ClaimResult.PROVED
     assert f"{bound + 2} states" in outcome.detail
 
 
@@ -89,7 +89,7 @@ def test_every_template_is_proved(scope: str, tongue: Tongue, checker: Checker) 
     for one, outcome in zip(
         requirements, checker.outcomes(tongue.given(*requirements), requirements), strict=True
     ):
-        assert outcome.result is Result.PROVED, one.sentence
+        assert outcome.result is ClaimResult.PROVED, one.sentence
 
 
 @pytest.mark.slow
@@ -98,13 +98,13 @@ def test_every_template_is_proved(scope: str, tongue: Tongue, checker: Checker) 
 def test_what_takes_too_long_is_not_proved(tongue: Tongue, monkeypatch: pytest.MonkeyPatch) -> None:
     """A CPU second; by default less on the wall clock, which ends it as well."""
     if not FULL:
-        monkeypatch.setattr(Limits, "wall", 0.5)
+        monkeypatch.setattr(CallLimits, "wall", 0.5)
     one = requirement("whenever p the sw shall within 100000 ticks satisfy q")
     program = tongue.language.tool()
     assert program is not None
     monitor = tongue.given(one)
-    (found,) = verified([one], monitor, tongue.language, program, Limits(seconds=1))
-    assert found.outcome.result is Result.NOT_CHECKED
+    (found,) = verified([one], monitor, tongue.language, program, CallLimits(seconds=1))
+    assert found.outcome.result is ClaimResult.NOT_CHECKED
     assert found.outcome.detail.startswith("out of time")
 
 
@@ -114,7 +114,7 @@ def test_too_many_states_are_not_proved(tongue: Tongue, checker: Checker) -> Non
     one = requirement("whenever p the sw shall within 100 ticks satisfy q")
     checked, executable = checker.prepared(tongue.given(one), one)
     outcome = explored(one, executable, checked.plan(one), 150)
-    assert outcome.result is Result.NOT_CHECKED
+    assert outcome.result is ClaimResult.NOT_CHECKED
 
 
 @pytest.mark.slow
@@ -125,7 +125,7 @@ def test_comments_and_layout_are_free(tongue: Tongue, checker: Checker) -> None:
     assert text != monitor.text
     loose = replace(monitor, text=text)
     if FULL or tongue.name != "rust":  # it takes longest to compile
-        assert checker.outcome(loose, one).result is Result.PROVED
+        assert checker.outcome(loose, one).result is ClaimResult.PROVED
     else:
         assert tongue.language.checked(loose, [one]).is_original
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from compiler.logic.claims import Layer, Outcome, Result, not_checked, proved
+from compiler.logic.claims import ClaimOutcome, ClaimResult, Layer, not_checked, proved
 from compiler.targets.dafny import text
 from fretc.verification.engines import crosshair
 from fretc.verification.engines.crosshair import with_crosshair
@@ -51,7 +51,9 @@ class Fake:
         self.folder = folder
         monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
 
-    def says(self, body: str, version: str = "Dafny 2.3.0.10506", text: str = LEMMAS) -> Outcome:
+    def says(
+        self, body: str, version: str = "Dafny 2.3.0.10506", text: str = LEMMAS
+    ) -> ClaimOutcome:
         old = version.startswith("Dafny")
         newer = "Dafny: Error: unknown switch: --version" if old else version
         script = (
@@ -74,7 +76,7 @@ def test_all_verified_is_proved(dafny: Fake) -> None:
 def test_lines_that_debians_z3_adds_do_not_matter(dafny: Fake) -> None:
     noise = "Prover error: line 18 column 28: unknown parameter 'model_compress'"
     answer = dafny.says(f'echo "{noise}"; echo; echo "{FINISHED} 2 verified, 0 errors"')
-    assert answer.result is Result.PROVED
+    assert answer.result is ClaimResult.PROVED
 
 
 @pytest.mark.slow
@@ -134,7 +136,7 @@ def test_dafny_2_is_asked_in_its_own_way(dafny: Fake) -> None:
         '[ "$*" = "/compile:0 /timeLimit:1 text.dfy" ] || exit 9\n'
         f'grep -q "lemma B" text.dfy && echo "{FINISHED} 2 verified, 0 errors"'
     )
-    assert dafny.says(body).result is Result.PROVED
+    assert dafny.says(body).result is ClaimResult.PROVED
 
 
 def test_a_program_without_a_version_is_not_dafny(dafny: Fake) -> None:
@@ -148,7 +150,7 @@ def test_without_dafny_nothing_is_known_and_what_to_do_is_said(
     monkeypatch.setenv("PATH", str(tmp_path))
     result, engine = dafny_answer(LEMMAS)
     assert engine == "Dafny"
-    assert result.result is Result.NOT_CHECKED
+    assert result.result is ClaimResult.NOT_CHECKED
     assert result.detail.startswith("Dafny is not installed: put `dafny` on the PATH")
 
 
@@ -158,8 +160,8 @@ def test_nothing_is_claimed_of_another_text(dafny: Fake) -> None:
     good = text(formalized, None)
     for other in (good.replace("==>", "==> true ||"), good + "\n"):
         proofs = with_dafny(formalized, other, None)
-        assert {one.result for one in proofs} == {Result.NOT_CHECKED}
-    assert {one.result for one in with_dafny(formalized, good, None)} == {Result.PROVED}
+        assert {one.result for one in proofs} == {ClaimResult.NOT_CHECKED}
+    assert {one.result for one in with_dafny(formalized, good, None)} == {ClaimResult.PROVED}
 
 
 def test_each_part_of_the_file_has_a_line_of_its_own(dafny: Fake) -> None:
@@ -200,7 +202,7 @@ def test_each_part_of_the_file_has_a_line_of_its_own(dafny: Fake) -> None:
 # Dafny ----------------------------------------------------------------------------------------
 
 
-def say(text: str) -> Outcome:
+def say(text: str) -> ClaimOutcome:
     return dafny_answer(text, seconds=120)[0]
 
 
@@ -230,13 +232,13 @@ def modules(texts: Iterable[str]) -> str:
 @full_only("the lemmas that say most are verified with the mutants")
 @needs_dafny
 def test_dafny_verifies_monitors_at_any_bound() -> None:
-    assert say(modules(monitors())).result is Result.PROVED
+    assert say(modules(monitors())).result is ClaimResult.PROVED
 
 
 @full_only("the lemmas that say most are verified with the mutants")
 @needs_dafny
 def test_dafny_verifies_the_interceptor_and_the_loop() -> None:
-    assert say(latching()).result is Result.PROVED
+    assert say(latching()).result is ClaimResult.PROVED
 
 
 @pytest.mark.slow
@@ -295,7 +297,7 @@ def test_dafny_rejects_mutants_and_nothing_else() -> None:
             )
         )
     )
-    assert answer.result is Result.NOT_CHECKED
+    assert answer.result is ClaimResult.NOT_CHECKED
     assert re.findall(r"`(\w+)` \(line", answer.detail) == [
         *("CommandCallback", "InvariantHolds", "HeldIsOwed", "NeverViolated")
     ]
@@ -315,7 +317,7 @@ def test_dafny_rejects_mutants_by_each_lemma_and_method_that_depends_on_them(
 ) -> None:
     text, names = case
     answer = say(text())
-    assert answer.result is Result.NOT_CHECKED
+    assert answer.result is ClaimResult.NOT_CHECKED
     assert names <= {*re.findall(r"`(\w+)` \(line", answer.detail)}
 
 
@@ -357,11 +359,11 @@ def test_crosshair_confirms_and_refutes_contract_by_contract() -> None:
     )
     assert kept.engine.startswith("CrossHair 0.0.")
     assert broken.claim == "`bounded` keeps `__return__ <= 10`"
-    assert broken.result is Result.COUNTEREXAMPLE
+    assert broken.result is ClaimResult.COUNTEREXAMPLE
     assert "when calling bounded(" in broken.detail
-    raised = [one for one in proofs[2:] if one.result is Result.COUNTEREXAMPLE]
+    raised = [one for one in proofs[2:] if one.result is ClaimResult.COUNTEREXAMPLE]
     assert raised
-    assert not any(one.result is Result.PROVED for one in proofs[2:])
+    assert not any(one.result is ClaimResult.PROVED for one in proofs[2:])
 
 
 @pytest.mark.slow
@@ -373,7 +375,7 @@ def test_what_crosshair_does_not_confirm_is_not_checked() -> None:
         '    """\n    return x**3 + y**3 != z**3\n'
     )
     (proof,) = with_crosshair(hard, seconds=1 if FULL else 0.3)
-    assert proof.result is Result.NOT_CHECKED
+    assert proof.result is ClaimResult.NOT_CHECKED
 
 
 @pytest.mark.slow
@@ -381,7 +383,7 @@ def test_a_core_that_is_no_module_is_not_checked() -> None:
     failing = CORE.partition("def divided")[0].replace("def", "raise ImportError\n\n\ndef")
     proofs = with_crosshair(failing, seconds=1)
     assert len(proofs) == 2
-    assert not any(one.result is Result.PROVED for one in proofs)
+    assert not any(one.result is ClaimResult.PROVED for one in proofs)
 
 
 def test_without_crosshair_each_contract_is_not_checked(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,13 @@ from types import SimpleNamespace
 
 import pytest
 
-from fretc.verification.engines.sandbox import DEFAULT, Limits, NoResult, Session, confined
+from fretc.verification.engines.sandbox import (
+    DEFAULT,
+    CallLimits,
+    NoResult,
+    SandboxSession,
+    confined,
+)
 from tests.effort import full_only
 
 
@@ -50,7 +56,7 @@ def die() -> None:
 
 @pytest.mark.slow
 def test_time_on_the_wall_is_limited(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Limits, "wall", 0.7)
+    monkeypatch.setattr(CallLimits, "wall", 0.7)
     assert confined(DEFAULT, sleep) == NoResult("out of time: no answer within 0.7 s")
     assert multiprocessing.active_children() == []
 
@@ -75,7 +81,7 @@ def work(seconds: float) -> tuple[int, float]:
 
 @pytest.mark.slow
 def test_calls_of_a_session_share_a_process_and_each_has_its_limits() -> None:
-    with Session(Limits(seconds=1, memory=2**30)) as session:
+    with SandboxSession(CallLimits(seconds=1, memory=2**30)) as session:
         session.call(pretend, 0.0)
         assert session.call(spin) == NoResult("out of time: more than 1 CPU seconds")
         assert session.call(twice, 21) == 42
@@ -97,7 +103,7 @@ def test_calls_of_a_session_share_a_process_and_each_has_its_limits() -> None:
 
 @full_only("CPU seconds")
 def test_the_limit_is_counted_from_what_was_taken_before_the_call() -> None:
-    with Session(Limits(seconds=1)) as session:
+    with SandboxSession(CallLimits(seconds=1)) as session:
         assert session.call(spin) == NoResult("out of time: more than 1 CPU seconds")
         answers = [session.call(work, seconds) for seconds in (0, 1.2, 0)]
     found = [each for each in answers if not isinstance(each, NoResult)]

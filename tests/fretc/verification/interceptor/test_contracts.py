@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from compiler.logic.claims import Layer, Proof, Result, proved
+from compiler.logic.claims import ClaimResult, Layer, Proof, proved
 from compiler.targets.interceptor_options import options as counted
 from compiler.targets.python.interceptor import text
 from fretc.verification.interceptor.contracts import contracts
-from fretc.verification.interceptor.file import Core, Head, core, head
+from fretc.verification.interceptor.file import Core, PureCore, core, head
 from fretc.verification.interceptor.incoming import COMMAND, RELEASE, RING, SCAN, STOP
 from fretc.verification.interceptor.machine import InterceptorMachine, NotAnInterceptorError
 from fretish.bindings.declarations import Interception, InterceptorForm
@@ -70,12 +70,12 @@ def mutant(*changes: tuple[str, str], of: str = EMITTED) -> str:
 
 def refuted(proofs: tuple[Proof, ...]) -> set[str]:
     assert all(e.result in ("proved", "counterexample") for e in proofs), proofs[0].result
-    return {e.claim for e in proofs if e.result is Result.COUNTEREXAMPLE}
+    return {e.claim for e in proofs if e.result is ClaimResult.COUNTEREXAMPLE}
 
 
 def reason(text: str, options: Options = OPTIONS) -> str:
     (result,) = {outcome(e) for e in contracts(text, options)}
-    assert result.result is Result.NOT_CHECKED
+    assert result.result is ClaimResult.NOT_CHECKED
     return result.detail
 
 
@@ -254,7 +254,7 @@ def test_equal_numbers_that_add_up_differently_are_not_one_state(
         (OBEYS, f"stop=requested and {sum_} {obeys} 9007199254740992"),
     )
     results = {e.claim: e.result for e in contracts(changed, OPTIONS)}
-    assert results[SETS] is not Result.PROVED
+    assert results[SETS] is not ClaimResult.PROVED
 
 
 def test_zero_in_whole_numbers_is_none() -> None:
@@ -282,7 +282,7 @@ def test_a_latch_that_releases_is_told() -> None:
 
 def replayed(text: str, options: Options, evidence: Proof) -> list[tuple[str, Any]]:
     """What the text says when the run of a counterexample is given to it with true velocities."""
-    assert evidence.result is Result.COUNTEREXAMPLE
+    assert evidence.result is ClaimResult.COUNTEREXAMPLE
     assert evidence.run is not None
     read = core(text)
     assert isinstance(read, Core)
@@ -305,7 +305,7 @@ def replayed(text: str, options: Options, evidence: Proof) -> list[tuple[str, An
 def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
     text = mutant((WATCH_SCAN, ""))
     proof = next(e for e in contracts(text, OPTIONS) if e.claim == NO_SCAN)
-    assert proof.result is Result.COUNTEREXAMPLE
+    assert proof.result is ClaimResult.COUNTEREXAMPLE
     assert proof.detail == "a run of 2 steps breaks it"
     assert proof.run is not None
     assert proof.run.names == (
@@ -436,13 +436,13 @@ def test_a_core_without_an_event_is_none() -> None:
 
 def said_nothing(why: str, *changes: tuple[str, str]) -> None:
     (result,) = {outcome(e) for e in contracts(mutant(*changes), OPTIONS, most=MOST)}
-    assert result.result is Result.NOT_CHECKED
+    assert result.result is ClaimResult.NOT_CHECKED
     assert result.detail.startswith(why)
 
 
 def test_the_core_ends_where_the_node_begins() -> None:
     core = head(EMITTED)
-    assert isinstance(core, Head)
+    assert isinstance(core, PureCore)
     assert EMITTED.startswith(core.text)
     assert core.text.rstrip().endswith("# latching = false\n)")
     assert head(core.text) == core

@@ -14,11 +14,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from compiler.logic.claims import Result
+from compiler.logic.claims import ClaimResult
 from compiler.targets.python import interceptor
 from fretc.verification.engines.crosshair import contract_texts
 from fretc.verification.interceptor.contracts import contracts
-from fretc.verification.interceptor.file import Head, core, head, otherwise
+from fretc.verification.interceptor.file import PureCore, core, head, otherwise
 from fretc.verification.interceptor.machine import Event, InterceptorMachine, NotAnInterceptorError
 from fretish.bindings.declarations import Interception, InterceptorForm
 from monitors.interceptor import Options
@@ -181,7 +181,7 @@ def test_the_loop_does_not_take_it(name: str) -> None:
 def test_the_contracts_are_not_proved_of_it(name: str) -> None:
     proofs = contracts(TEXTS[name], OPTIONS)
     assert not Path("PWNED").exists(), "it was executed"
-    assert not all(one.result is Result.PROVED for one in proofs)
+    assert not all(one.result is ClaimResult.PROVED for one in proofs)
 
 
 @pytest.mark.parametrize(
@@ -226,7 +226,7 @@ def with_helper(name: str, text: str = BASE) -> str:
 
 
 def all_proved(text: str) -> bool:
-    return all(one.result is Result.PROVED for one in contracts(text, OPTIONS))
+    return all(one.result is ClaimResult.PROVED for one in contracts(text, OPTIONS))
 
 
 def test_a_helper_with_a_name_of_its_own_changes_nothing() -> None:
@@ -251,7 +251,7 @@ def test_the_names_of_nodes_are_those_that_a_core_is_tempted_by() -> None:
 @pytest.mark.parametrize("name", ["isfinite", "twist", "velocity", "Node", "all", "print"])
 def test_neither_engine_takes_a_core_that_shadows_its_node(name: str) -> None:
     text = with_helper(name)
-    assert not any(one.result is Result.PROVED for one in contracts(text, OPTIONS))
+    assert not any(one.result is ClaimResult.PROVED for one in contracts(text, OPTIONS))
     with pytest.raises(NotAnInterceptorError):
         InterceptorMachine(text, SETTINGS)
 
@@ -274,7 +274,7 @@ def test_a_velocity_has_its_six_numbers_and_no_others(old: str, new: str) -> Non
     """The node makes one of six numbers and takes it apart by their places."""
     text = sub(old, new)
     assert isinstance(head(text), str)
-    assert not any(one.result is Result.PROVED for one in contracts(text, OPTIONS))
+    assert not any(one.result is ClaimResult.PROVED for one in contracts(text, OPTIONS))
 
 
 @pytest.mark.slow
@@ -397,7 +397,7 @@ def _never(*_: object) -> None:
 @pytest.mark.slow
 @each("place", PLACES[1:])
 def test_the_places_themselves_are_of_the_language(place: str) -> None:
-    assert isinstance(head(sub(SCAN, f"    return ({place.format('0')}), None\n")), Head)
+    assert isinstance(head(sub(SCAN, f"    return ({place.format('0')}), None\n")), PureCore)
 
 
 @pytest.mark.slow
@@ -442,5 +442,5 @@ def test_a_contract_that_is_not_of_fretc_is_seen(name: str, line: str) -> None:
     before, _, after = BASE.partition(name)
     quoted = after.partition('"""')
     changed = f'{before}{name}{quoted[0]}"""{line}\n\n    {quoted[2]}'
-    assert isinstance(head(changed), Head), "it is pure all the same"
+    assert isinstance(head(changed), PureCore), "it is pure all the same"
     assert contract_texts(changed) != contract_texts(BASE)

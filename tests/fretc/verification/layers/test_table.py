@@ -14,7 +14,7 @@ from compiler.project.folder import load
 from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.verification import verify
-from fretc.verification.engines.sandbox import Limits
+from fretc.verification.engines.sandbox import CallLimits
 from fretc.verification.layers.request import Request
 from fretc.verification.layers.table import TABLE, Method
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -64,7 +64,7 @@ def _prove(
 
 
 def asked(project: Project, *provers: str) -> list[tuple[str, str]] | Diagnostic:
-    proofs = verify.prove(project, Request((), Limits(), provers=provers))
+    proofs = verify.prove(project, Request((), CallLimits(), provers=provers))
     if isinstance(proofs, Diagnostic):
         return proofs
     return [(line.engine, line.requirement) for line in proofs]
@@ -99,7 +99,7 @@ def test_monitors_are_refused_only_where_a_layer_steps_them(
     monkeypatch.setattr(monitor, "refuse", lambda requirement: refusal)
     for method in TABLE:
         layers = [layer for layer in Layer if layer == method.name]
-        request = Request(layers, Limits(), provers=[method.name])
+        request = Request(layers, CallLimits(), provers=[method.name])
         ids = [requirement.id for requirement in project.formalized]
         expected = dict.fromkeys(ids, refusal) if method.needs_monitor else {}
         assert verify.refusals(project, request) == expected, method.name

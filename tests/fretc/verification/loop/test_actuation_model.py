@@ -1,10 +1,10 @@
 """The drive computes each passage once, also for loops that share it."""
 
-from fretc.verification.loop.actuation_model import Channel
+from fretc.verification.loop.actuation_model import ActuationAssumptions
 from fretc.verification.loop.search import Parts, new_drive, reach
 from tests.loops import EVENTUALLY, WITHIN, case, interceptor_options
 
-CHANNEL = Channel(2, latency=2, lost=1, braking=1)
+CHANNEL = ActuationAssumptions(2, latency=2, lost=1, braking=1)
 SETTINGS = interceptor_options(hold=1)
 
 

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import pytest
 
-from compiler.logic.claims import Result, not_checked, proved
+from compiler.logic.claims import ClaimResult, not_checked, proved
 from fretc.verification.loop import abstraction as looptwin
 from fretc.verification.loop import invariant
 from fretc.verification.loop.abstraction import Plain, Times, TwinState, covered
-from fretc.verification.loop.actuation_model import Channel
-from fretc.verification.loop.bounds import Answer, Question, search
+from fretc.verification.loop.actuation_model import ActuationAssumptions
+from fretc.verification.loop.bounds import BoundsResult, Question, search
 from fretc.verification.loop.model import Loop
 from fretc.verification.loop.search import Parts
 from monitors.interceptor import Options
@@ -19,11 +19,14 @@ from tests.monitoring import requirement
 
 HUNDRED_MS = 10**8
 USUAL = interceptor_options(hold=4, stop_timeout=24)
-DECLARED = Channel(2, latency=2, lost=1, braking=4)
+DECLARED = ActuationAssumptions(2, latency=2, lost=1, braking=4)
 
 
 def question(
-    sentence: str, settings: Options = USUAL, channel: Channel = DECLARED, core: str = CORE
+    sentence: str,
+    settings: Options = USUAL,
+    channel: ActuationAssumptions = DECLARED,
+    core: str = CORE,
 ) -> Question:
     parsed = requirement(sentence)
     return Question(
@@ -34,7 +37,7 @@ def question(
 @pytest.mark.slow
 def test_a_bound_that_is_long_enough() -> None:
     answer = search(question(WITHIN.format(4)))
-    assert answer.answered.result is Result.PROVED
+    assert answer.answered.result is ClaimResult.PROVED
     assert answer.answered.detail.startswith("by an inductive invariant; ")
     assert answer.enough == proved(
         "the smallest satisfied bound is 4 ticks (400 ms); with one tick less a run of 5 ticks "
@@ -45,8 +48,8 @@ def test_a_bound_that_is_long_enough() -> None:
 @pytest.mark.slow
 def test_a_bound_that_is_a_tick_too_short_is_shown_by_a_run() -> None:
     answer = search(question(WITHIN.format(3)))
-    assert answer.answered.result is Result.PROVED, "the law holds all the same"
-    assert answer.enough.result is Result.COUNTEREXAMPLE
+    assert answer.answered.result is ClaimResult.PROVED, "the law holds all the same"
+    assert answer.enough.result is ClaimResult.COUNTEREXAMPLE
     assert answer.enough.detail == "the smallest satisfied bound is 4 ticks (400 ms)"
     assert answer.enough.trace is not None
     assert len(answer.enough.trace.rows) == 5
@@ -57,18 +60,20 @@ def test_a_bound_that_is_a_tick_too_short_is_shown_by_a_run() -> None:
     ("channel", "least"),
     some(
         [
-            (Channel(1), 1),
-            (Channel(1, lost=2), 3),
-            (Channel(3, latency=4, lost=1, braking=3), 4),
-            (Channel(1, lost=2, edge=True, heartbeat=3), 7),
-            (Channel(2, latency=3, lost=1, braking=2, edge=True, heartbeat=2), 5),
-            (Channel(2, latency=1, braking=2, edge=True, heartbeat=4), 2),
+            (ActuationAssumptions(1), 1),
+            (ActuationAssumptions(1, lost=2), 3),
+            (ActuationAssumptions(3, latency=4, lost=1, braking=3), 4),
+            (ActuationAssumptions(1, lost=2, edge=True, heartbeat=3), 7),
+            (ActuationAssumptions(2, latency=3, lost=1, braking=2, edge=True, heartbeat=2), 5),
+            (ActuationAssumptions(2, latency=1, braking=2, edge=True, heartbeat=4), 2),
             (DECLARED, 4),
         ],
         3,
     )[-2:],
 )
-def test_the_least_bound_is_the_one_that_is_proved(channel: Channel, least: int) -> None:
+def test_the_least_bound_is_the_one_that_is_proved(
+    channel: ActuationAssumptions, least: int
+) -> None:
     answer = search(question(EVENTUALLY, interceptor_options(), channel))
     plural = "" if least == 1 else "s"
     assert answer.enough == proved(
@@ -82,7 +87,7 @@ def test_a_loop_that_does_something_else_is_not_checked() -> None:
         CORE, "return after, ZERO if halted(after, options) else command", "return after, command"
     )
     reason = not_checked("the loop has a step that its integer model does not have")
-    assert search(question(WITHIN.format(4), core=wrong)) == Answer(reason, reason)
+    assert search(question(WITHIN.format(4), core=wrong)) == BoundsResult(reason, reason)
 
 
 FORGETS = (
@@ -103,17 +108,25 @@ def test_small_times_say_nothing_of_long_ones_where_the_core_is_another() -> Non
     for old, new in FORGETS:
         core = edited(core, old, new)
     small = search(question(WITHIN.format(4), interceptor_options(hold=1), core=core))
-    assert small.enough.result is Result.PROVED, "under the declared times it is as good as any"
-    assert small.answered.result is Result.NOT_CHECKED
+    assert small.enough.result is ClaimResult.PROVED, (
+        "under the declared times it is as good as any"
+    )
+    assert small.answered.result is ClaimResult.NOT_CHECKED
     assert small.answered.detail.startswith("the interceptor's core is not the one that fretc")
-    large = Channel(1, latency=2, lost=14, braking=4) if FULL else Channel(1, lost=10)
+    large = (
+        ActuationAssumptions(1, latency=2, lost=14, braking=4)
+        if FULL
+        else ActuationAssumptions(1, lost=10)
+    )
     answer = search(question(EVENTUALLY, interceptor_options(hold=1), large, core))
-    assert answer.enough.result is not Result.PROVED
+    assert answer.enough.result is not ClaimResult.PROVED
 
 
 def test_a_twin_that_promises_too_much_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Compared with the loop with one lost message less than there is."""
-    loop = Parts.of(case(WITHIN.format(9), interceptor_options(), Channel(1, lost=2))).loop
+    loop = Parts.of(
+        case(WITHIN.format(9), interceptor_options(), ActuationAssumptions(1, lost=2))
+    ).loop
     assert covered(loop, 10**5, 9).uncovered is None
     loop.channel = replace(loop.channel, lost=1)
     monkeypatch.setattr(Loop, "_fates", lambda *_: [(True, 0), (False, 2)])
@@ -124,7 +137,11 @@ def test_a_twin_that_promises_too_much_is_found(monkeypatch: pytest.MonkeyPatch)
 
 def test_a_twin_whose_heart_beats_too_fast_is_found() -> None:
     loop = Parts.of(
-        case(WITHIN.format(9), interceptor_options(), Channel(1, lost=1, edge=True, heartbeat=3))
+        case(
+            WITHIN.format(9),
+            interceptor_options(),
+            ActuationAssumptions(1, lost=1, edge=True, heartbeat=3),
+        )
     ).loop
     assert covered(loop, 10**5, 9).uncovered is None
     right = looptwin.times_of
@@ -142,5 +159,5 @@ def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.Monke
 
     real = invariant._invariant
     monkeypatch.setattr(invariant, "_invariant", too_strong)
-    answer = search(question(EVENTUALLY, interceptor_options(), Channel(1)))
+    answer = search(question(EVENTUALLY, interceptor_options(), ActuationAssumptions(1)))
     assert answer.answered == not_checked("of the invariant: a step does not preserve it")

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from fretc.verification.interceptor.machine import Event
-from fretc.verification.loop.actuation_model import ActuationState, Channel
+from fretc.verification.loop.actuation_model import ActuationAssumptions, ActuationState
 from fretc.verification.loop.model import Environment, Node
 from fretc.verification.loop.search import Case, Parts
 from monitors.interceptor import Options
@@ -148,22 +148,33 @@ def _same(wheels: ActuationState, row: Row) -> bool:
 @pytest.mark.parametrize(
     ("settings", "channel"),
     [
-        (interceptor_options(hold=2, stop_timeout=6), Channel(2, latency=2, lost=1, braking=2)),
-        (interceptor_options(), Channel(1, latency=2, lost=2, braking=1)),
-        (interceptor_options(command_timeout=2), Channel(2, latency=1, braking=3, punctual=True)),
-        (LATCH, Channel(1, edge=True)),
-        (interceptor_options(hold=1), Channel(3, latency=0, lost=1, edge=True, braking=1)),
+        (
+            interceptor_options(hold=2, stop_timeout=6),
+            ActuationAssumptions(2, latency=2, lost=1, braking=2),
+        ),
+        (interceptor_options(), ActuationAssumptions(1, latency=2, lost=2, braking=1)),
+        (
+            interceptor_options(command_timeout=2),
+            ActuationAssumptions(2, latency=1, braking=3, punctual=True),
+        ),
+        (LATCH, ActuationAssumptions(1, edge=True)),
+        (
+            interceptor_options(hold=1),
+            ActuationAssumptions(3, latency=0, lost=1, edge=True, braking=1),
+        ),
         (
             interceptor_options(stop_timeout=5),
-            Channel(1, latency=2, lost=1, edge=True, heartbeat=3),
+            ActuationAssumptions(1, latency=2, lost=1, edge=True, heartbeat=3),
         ),
         (
             interceptor_options(hold=2),
-            Channel(2, latency=3, lost=2, edge=True, braking=1, heartbeat=2),
+            ActuationAssumptions(2, latency=3, lost=2, edge=True, braking=1, heartbeat=2),
         ),
     ],
 )
-def test_every_simulated_tick_is_a_step_of_the_model(settings: Options, channel: Channel) -> None:
+def test_every_simulated_tick_is_a_step_of_the_model(
+    settings: Options, channel: ActuationAssumptions
+) -> None:
     known = case(WITHIN.format(30), settings, channel)
     for seed in range(6) if FULL else (known.channel.cells % 2,):
         simulation = Simulation(known, seed)
@@ -172,7 +183,9 @@ def test_every_simulated_tick_is_a_step_of_the_model(settings: Options, channel:
 
 def test_the_simulation_does_something() -> None:
     known = case(
-        WITHIN.format(30), interceptor_options(hold=2), Channel(2, latency=2, lost=1, braking=2)
+        WITHIN.format(30),
+        interceptor_options(hold=2),
+        ActuationAssumptions(2, latency=2, lost=1, braking=2),
     )
     simulation = Simulation(known, 1)
     rows = [simulation.tick() for _ in range(200)]
@@ -182,7 +195,9 @@ def test_the_simulation_does_something() -> None:
 
 
 def test_a_run_says_what_is_heard_in_its_order() -> None:
-    loop = Parts.of(case(WITHIN.format(2), interceptor_options(hold=1), Channel(1))).loop
+    loop = Parts.of(
+        case(WITHIN.format(2), interceptor_options(hold=1), ActuationAssumptions(1))
+    ).loop
     tick, after = next(
         (tick, after)
         for tick, after in loop.steps(loop.initial)

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from compiler.logic import formula as f
-from compiler.logic.claims import Outcome, Result, not_checked, vacuous
-from fretc.verification.loop.actuation_model import Channel
+from compiler.logic.claims import ClaimOutcome, ClaimResult, not_checked, vacuous
+from fretc.verification.loop.actuation_model import ActuationAssumptions
 from fretc.verification.loop.search import is_safety, search
 from monitors.interceptor import Options
 from tests.each import each
@@ -24,12 +24,12 @@ from tests.loops import (
 )
 from tests.monitoring import with_step, without_step
 
-EDGE = Channel(1, edge=True)
+EDGE = ActuationAssumptions(1, edge=True)
 
 
-def trace(outcome: Outcome) -> list[str]:
+def trace(outcome: ClaimOutcome) -> list[str]:
     """The rows of a run as digits, each with what happened."""
-    assert outcome.result is Result.COUNTEREXAMPLE
+    assert outcome.result is ClaimResult.COUNTEREXAMPLE
     assert outcome.trace is not None
     rows = ["".join("-" if v is None else str(int(v)) for v in row) for row in outcome.trace.rows]
     return [f"{row} {action}" for row, action in zip(rows, outcome.trace.actions, strict=True)]
@@ -42,16 +42,16 @@ def trace(outcome: Outcome) -> list[str]:
 @pytest.mark.parametrize(
     ("settings", "channel", "kept", "released"),
     [
-        (LATCH, Channel(1, edge=True), "counterexample", "counterexample"),
-        (LATCH, Channel(1, edge=True, punctual=True), "proved", "counterexample"),
-        (TIMER, Channel(1), "proved", "proved"),
-        (TIMER, Channel(1, lost=2), "counterexample", "proved"),
-        (TIMER, Channel(1, lost=2, edge=True), "counterexample", "counterexample"),
+        (LATCH, ActuationAssumptions(1, edge=True), "counterexample", "counterexample"),
+        (LATCH, ActuationAssumptions(1, edge=True, punctual=True), "proved", "counterexample"),
+        (TIMER, ActuationAssumptions(1), "proved", "proved"),
+        (TIMER, ActuationAssumptions(1, lost=2), "counterexample", "proved"),
+        (TIMER, ActuationAssumptions(1, lost=2, edge=True), "counterexample", "counterexample"),
     ],
     ids=["the paper's", "with a busy planner", "timer", "lossy", "lossy and on change only"],
 )
 def test_what_each_loop_keeps_within_two_ticks(
-    settings: Options, channel: Channel, kept: str, released: str
+    settings: Options, channel: ActuationAssumptions, kept: str, released: str
 ) -> None:
     results = search(case(WITHIN.format(2), settings, channel))
     assert (results.kept.result, results.released.result) == (kept, released)
@@ -59,7 +59,9 @@ def test_what_each_loop_keeps_within_two_ticks(
 
 def test_without_a_bound_only_what_is_sent_once_is_lost() -> None:
     results = {
-        lost: search(case(EVENTUALLY, TIMER, Channel(1, lost=2, edge=edge))).kept.result
+        lost: search(
+            case(EVENTUALLY, TIMER, ActuationAssumptions(1, lost=2, edge=edge))
+        ).kept.result
         for lost, edge in (("level", False), ("edge", True))
     }
     assert results == {"level": "proved", "edge": "counterexample"}
@@ -68,7 +70,7 @@ def test_without_a_bound_only_what_is_sent_once_is_lost() -> None:
 @pytest.mark.slow
 def test_a_heartbeat_repairs_what_is_lost_on_change_only() -> None:
     """Two messages may be lost, three ticks apart: after six ticks the third one is heard."""
-    lossy = Channel(1, lost=2, edge=True, heartbeat=3)
+    lossy = ActuationAssumptions(1, lost=2, edge=True, heartbeat=3)
     results = {n: search(case(WITHIN.format(n), TIMER, lossy)) for n in (6, 7)}
     assert (results[6].kept.result, results[7].kept.result) == ("counterexample", "proved")
     assert results[7].released.result == "proved"
@@ -87,7 +89,7 @@ def test_a_heartbeat_repairs_what_is_lost_on_change_only() -> None:
 @pytest.mark.parametrize(("timeout", "released"), [(6, "counterexample"), (7, "proved")])
 def test_a_watchdog_lets_go_where_the_heartbeat_is_faster(timeout: int, released: str) -> None:
     """Two cells to a tick: three ticks of silence, and no more."""
-    beating = Channel(2, edge=True, heartbeat=3)
+    beating = ActuationAssumptions(2, edge=True, heartbeat=3)
     results = search(case(WITHIN.format(3), interceptor_options(stop_timeout=timeout), beating))
     assert (results.kept.result, results.released.result) == ("proved", released)
 
@@ -95,7 +97,10 @@ def test_a_watchdog_lets_go_where_the_heartbeat_is_faster(timeout: int, released
 def test_a_heartbeat_of_one_tick_speaks_at_every_tick() -> None:
     traces = {
         search(case(WITHIN.format(3), TIMER, channel)).kept
-        for channel in (Channel(1, lost=2), Channel(1, lost=2, edge=True, heartbeat=1))
+        for channel in (
+            ActuationAssumptions(1, lost=2),
+            ActuationAssumptions(1, lost=2, edge=True, heartbeat=1),
+        )
     }
     (result,) = {one.result for one in traces}
     assert result == "proved"
@@ -118,7 +123,7 @@ def test_without_a_bound_that_run_has_no_end() -> None:
         "101111 a stop is requested, and the message is sent; `true` is received",
         "001-11 a stop is requested, and no message is sent",
     ]
-    assert kept.result is Result.COUNTEREXAMPLE
+    assert kept.result is ClaimResult.COUNTEREXAMPLE
     assert kept.trace is not None
     assert (kept.trace.names, kept.trace.cycle) == (
         ("near", "stopped", "request", "delivered", "halt", "wheels"),
@@ -127,7 +132,7 @@ def test_without_a_bound_that_run_has_no_end() -> None:
 
 
 def test_a_loop_that_loses_two_messages_keeps_a_bound_of_three() -> None:
-    lossy = Channel(1, lost=2)
+    lossy = ActuationAssumptions(1, lost=2)
     results = {n: search(case(WITHIN.format(n), TIMER, lossy)).kept.result for n in (2, 3)}
     assert results == {2: "counterexample", 3: "proved"}
     assert trace(search(case(WITHIN.format(2), TIMER, lossy)).kept)[1:] == [
@@ -142,15 +147,15 @@ def test_a_loop_that_loses_two_messages_keeps_a_bound_of_three() -> None:
     ("channel", "least"),
     some(
         [
-            (Channel(2, latency=2, lost=1, braking=4), 4),
-            (Channel(2, latency=2, braking=4), 3),
-            (Channel(2, latency=1, braking=1), 1),
-            (Channel(2, latency=2, braking=1), 2),
+            (ActuationAssumptions(2, latency=2, lost=1, braking=4), 4),
+            (ActuationAssumptions(2, latency=2, braking=4), 3),
+            (ActuationAssumptions(2, latency=1, braking=1), 1),
+            (ActuationAssumptions(2, latency=2, braking=1), 2),
         ],
         2,
     ),
 )
-def test_latency_losses_and_braking_add_up(channel: Channel, least: int) -> None:
+def test_latency_losses_and_braking_add_up(channel: ActuationAssumptions, least: int) -> None:
     settings = interceptor_options(hold=4, stop_timeout=24)
     kept = search(case(WITHIN.format(least), settings, channel)).kept.result
     short = "immediately" if least == 1 else f"within {least - 1} ticks"
@@ -164,7 +169,7 @@ def test_latency_losses_and_braking_add_up(channel: Channel, least: int) -> None
 def test_a_robot_may_stand_earlier_than_it_must() -> None:
     """Else nobody could refute that it moves on for three ticks after the trigger."""
     sentence = "upon near the sw shall after 3 ticks satisfy stopped"
-    results = search(case(sentence, TIMER, Channel(1, braking=3)))
+    results = search(case(sentence, TIMER, ActuationAssumptions(1, braking=3)))
     assert results.kept.result == "counterexample"
 
 
@@ -192,8 +197,8 @@ def test_an_interceptor_that_forwards_while_it_is_stopped_is_refuted() -> None:
 
 def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
     """The observer is the monitor that fretc makes, not the one that is late."""
-    known = case(WITHIN.format(2), TIMER, Channel(1, lost=1))
-    assert search(known).kept.result is Result.PROVED
+    known = case(WITHIN.format(2), TIMER, ActuationAssumptions(1, lost=1))
+    assert search(known).kept.result is ClaimResult.PROVED
     signals = "self.r1_signals = (near, since_1, False, since_2, "
     late = edited(known.safety, signals, "self.r1_signals = (False, since_1, False, since_1, ")
     assert search(with_safety(known, with_step(late))).kept.result == "counterexample"
@@ -227,14 +232,18 @@ def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
 def test_what_is_no_pure_interceptor_is_not_checked(fault: tuple[str, str, str]) -> None:
     old, new, reason = fault
     results = search(
-        case(WITHIN.format(2), channel=Channel(1, scans=True), core=edited(CORE, old, new))
+        case(
+            WITHIN.format(2),
+            channel=ActuationAssumptions(1, scans=True),
+            core=edited(CORE, old, new),
+        )
     )
     assert results.kept == results.released == not_checked(reason)
 
 
 def test_an_interceptor_whose_numbers_grow_for_ever_is_not_checked() -> None:
     grows = edited(CORE, SCANNED, "return replace(state, scan_age=state.scan_age + 1), None")
-    known = case(WITHIN.format(2), channel=Channel(1, scans=True), core=grows)
+    known = case(WITHIN.format(2), channel=ActuationAssumptions(1, scans=True), core=grows)
     reason = "its State takes more than 500 values"
     assert search(replace(known, limit=500)).kept == not_checked(reason)
 
@@ -244,14 +253,14 @@ def test_an_interceptor_whose_numbers_grow_for_ever_is_not_checked() -> None:
 
 def test_a_demand_that_never_begins_is_vacuous() -> None:
     results = search(case("whenever near & !near the sw shall within 2 ticks satisfy stopped"))
-    assert results.kept.result is Result.VACUOUS
+    assert results.kept.result is ClaimResult.VACUOUS
     assert results.kept.detail.startswith("no demand ever begins")
 
 
 def test_a_robot_that_never_moves_is_vacuous() -> None:
     frozen = edited(CORE, "        stop=False,\n", "        stop=True,\n")
     results = search(case(WITHIN.format(2), interceptor_options(latching=True), core=frozen))
-    assert results.kept.result is Result.VACUOUS
+    assert results.kept.result is ClaimResult.VACUOUS
     assert results.kept.detail.startswith("the robot never moves")
 
 
@@ -262,7 +271,7 @@ def test_a_stop_that_is_never_in_force_is_vacuous() -> None:
 
 
 def test_too_many_states_are_not_checked() -> None:
-    known = replace(case(WITHIN.format(2), TIMER, Channel(1, lost=2)), limit=3)
+    known = replace(case(WITHIN.format(2), TIMER, ActuationAssumptions(1, lost=2)), limit=3)
     assert search(known).kept == not_checked("more than 3 states")
 
 
@@ -294,7 +303,7 @@ def test_what_a_core_says_of_itself_does_not_release_a_stop() -> None:
     """Its `halted` says no, and its steps go by another function."""
     lying = CORE.replace("halted(", "kept_back(")
     lying = edited(lying, "def kept_back(state: State, options: Options) -> bool:", HALTED)
-    for settings, channel in ((LATCH, EDGE), (TIMER, Channel(1, lost=2, edge=True))):
+    for settings, channel in ((LATCH, EDGE), (TIMER, ActuationAssumptions(1, lost=2, edge=True))):
         known = case(WITHIN.format(9), settings, channel)
         assert search(known).released.result == "counterexample"
         assert search(replace(known, interceptor=lying)).released.result == "counterexample"
@@ -330,5 +339,5 @@ def test_a_safety_function_that_remembers_more_than_is_put_back_is_not_stepped(
     ):
         text = edited(text, old, new)
     kept = search(with_safety(known, with_step(text))).kept
-    assert kept.result is Result.NOT_CHECKED
+    assert kept.result is ClaimResult.NOT_CHECKED
     assert "it is not laid out as fretc writes it" in kept.detail

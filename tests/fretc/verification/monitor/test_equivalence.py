@@ -11,7 +11,7 @@ from compiler.formalization.letters import Valuation, letters_by_valuation
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.logic.definition import holds
-from fretc.verification.monitor.equivalence import Difference, Equivalence, Judgement, compare
+from fretc.verification.monitor.equivalence import DifferingTrace, Equivalence, Judgement, compare
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.diagnostics.source import Source
@@ -95,7 +95,7 @@ def test_the_order_of_the_atoms_is_the_callers() -> None:
         return Monitor(0, lambda state, letter: monitor.transition(state, (letter[1], letter[0])))
 
     assert isinstance(compare(swapped(within(3)), sentence_within(3), 3, ("q", "p")), Equivalence)
-    assert compare(swapped(within(3)), sentence_within(3), 3, ("p", "q")) == Difference(
+    assert compare(swapped(within(3)), sentence_within(3), 3, ("p", "q")) == DifferingTrace(
         valuations("q - - -"), expected=PENDING, actual=VIOLATED
     )
 
@@ -133,7 +133,7 @@ def test_satisfied_is_for_ever_and_must_be_said_at_once() -> None:
     }
     late: Table = right | {(0, True): (2, PENDING)}
     assert isinstance(compare(tabled(right), sentence, 1, ("q",)), Equivalence)
-    assert compare(tabled(late), sentence, 1, ("q",)) == Difference(
+    assert compare(tabled(late), sentence, 1, ("q",)) == DifferingTrace(
         ((True,),), expected=judgement, actual=PENDING
     )
 
@@ -143,7 +143,7 @@ def test_a_lost_cause_is_told_though_fret_would_still_accept_the_trace() -> None
     sentence = read("whenever p the sw shall after 2 ticks satisfy q")
     silent = Monitor(0, lambda state, letter: (0, PENDING))
     only_broken = compare(silent, sentence, 2, ("p", "q"))
-    assert only_broken == Difference(valuations("pq"), expected=VIOLATED, actual=PENDING)
+    assert only_broken == DifferingTrace(valuations("pq"), expected=VIOLATED, actual=PENDING)
 
     def step(count: int, letter: Valuation) -> tuple[int, Judgement]:
         p, q = letter
@@ -165,12 +165,12 @@ def test_a_deadline_that_is_one_tick_off_is_found(n: int, slip: int) -> None:
     result = compare(within(n + slip), sentence_within(n), n, ("p", "q"))
     wrong_at = n if slip > 0 else n - 1
     judgements = (VIOLATED, PENDING) if slip > 0 else (PENDING, VIOLATED)
-    assert result == Difference(((True, False), *[(False, False)] * wrong_at), *judgements)
+    assert result == DifferingTrace(((True, False), *[(False, False)] * wrong_at), *judgements)
 
 
 def test_a_trigger_that_restarts_the_clock_is_found() -> None:
     result = compare(within(2, restarts=True), sentence_within(2), 2, ("p", "q"))
-    assert result == Difference(valuations("p - p"), VIOLATED, PENDING)
+    assert result == DifferingTrace(valuations("p - p"), VIOLATED, PENDING)
 
 
 @pytest.mark.slow
@@ -178,7 +178,7 @@ def test_a_trigger_that_restarts_a_long_clock_is_found() -> None:
     """There are millions of pairs, but some thousand states decide."""
     n, most = (10_000, 10**6) if FULL else (500, 25_000)
     result = compare(within(n, restarts=True), sentence_within(n), n, ("p", "q"), most)
-    assert isinstance(result, Difference)
+    assert isinstance(result, DifferingTrace)
     assert len(result.word) == n + 1
     assert result.word[0] == (True, False)
     assert any(p for p, _ in result.word[1:])
@@ -193,19 +193,19 @@ def test_the_verdict_on_the_finite_trace_counts() -> None:
         return after, (verdict, after == 0)
 
     result = compare(Monitor(0, step), sentence_within(2), 2, ("p", "q"))
-    assert result == Difference(valuations("p"), expected=PENDING, actual=("pending", False))
+    assert result == DifferingTrace(valuations("p"), expected=PENDING, actual=("pending", False))
 
 
 def test_a_rule_for_every_tick_is_not_one_for_rising_edges() -> None:
     sentence = read("upon p the sw shall within 1 tick satisfy q")
     result = compare(within(1), sentence, 1, ("p", "q"))
-    assert result == Difference(valuations("pq p -"), expected=PENDING, actual=VIOLATED)
+    assert result == DifferingTrace(valuations("pq p -"), expected=PENDING, actual=VIOLATED)
 
 
 def test_no_shorter_word_tells_the_two_apart() -> None:
     """All words up to the length of the refutation, through the right monitor and the wrong."""
     result = compare(within(3, restarts=True), sentence_within(3), 3, ("p", "q"))
-    assert isinstance(result, Difference)
+    assert isinstance(result, DifferingTrace)
 
     def judgements(monitor: Monitor, word: tuple[Valuation, ...]) -> list[Judgement]:
         judgements = [monitor.step(letter) for letter in word]
@@ -256,9 +256,9 @@ def test_what_is_proved_is_equal_and_what_is_equal_is_proved(changes: Steps) -> 
     steps = with_a_double() | changes
     machine = Monitor(0, lambda state, letter: steps[state, letter])
     result = compare(machine, sentence_within(2), 2, ("p", "q"))
-    assert isinstance(result, Difference) is tell_apart(steps)
-    assert isinstance(result, Difference) is not isinstance(result, Equivalence)
-    if isinstance(result, Difference):
+    assert isinstance(result, DifferingTrace) is tell_apart(steps)
+    assert isinstance(result, DifferingTrace) is not isinstance(result, Equivalence)
+    if isinstance(result, DifferingTrace):
         right, wrong = within(2), Monitor(0, machine.transition)
         judgements = [(right.step(letter), wrong.step(letter)) for letter in result.word]
         assert judgements[-1] == (result.expected, result.actual)

@@ -10,7 +10,7 @@ from functools import cache
 
 import pytest
 
-from compiler.logic.claims import Result
+from compiler.logic.claims import ClaimResult
 from compiler.targets.python import monitor as target
 from monitors.loading import load
 from tests.compiler.formalization.test_mutants import DIFFERS, MARK, REFUSED, REFUTED, SAME, Judge
@@ -191,7 +191,7 @@ def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: s
     own = own.replace('"longname": "longname"', f'"longname": "{name}"')
     own = own.replace('("longname", "longname", True)', f'("{name}", "longname", True)')
     assert load("renamed", text[:place] + own).PROPOSITIONS["longname"] == name
-    assert verified(formalized, text[:place] + own).result is Result.NOT_CHECKED
+    assert verified(formalized, text[:place] + own).result is ClaimResult.NOT_CHECKED
 
 
 @pytest.mark.slow

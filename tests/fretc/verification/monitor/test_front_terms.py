@@ -6,7 +6,7 @@ from functools import cache
 import pytest
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.logic.claims import Outcome, Result
+from compiler.logic.claims import ClaimOutcome, ClaimResult
 from compiler.targets.python import monitor as target
 from tests.each import each
 from tests.effort import some
@@ -18,7 +18,7 @@ LESS = 'compared(battery, "<", exact("20"))'
 KEPT = "self.kept = (speed,)"
 EARLIER = '_earlier_1 = first(exact("0")) if kept is None else kept[0]'
 NUMBER = 'battery = measurement(battery, "battery")'
-WRONG, REFUSED, SAME = Result.COUNTEREXAMPLE, Result.NOT_CHECKED, Result.PROVED
+WRONG, REFUSED, SAME = ClaimResult.COUNTEREXAMPLE, ClaimResult.NOT_CHECKED, ClaimResult.PROVED
 
 FAULTS = (
     # Constants, operators, operands.
@@ -84,7 +84,7 @@ def made() -> tuple[FormalizedRequirement, str]:
     return right, target.text(right)
 
 
-def with_fault(old: str, new: str) -> Outcome:
+def with_fault(old: str, new: str) -> ClaimOutcome:
     right, text = made()
     place = text.index("# The requirements ---")
     assert text[place:].count(old) == 1, text[place:].count(old)
@@ -98,7 +98,7 @@ def test_what_fretc_writes_is_proved() -> None:
 
 @pytest.mark.slow
 @each("fault", some(FAULTS, 5, 4))
-def test_a_fault_comes_to_what_is_written_beside_it(fault: tuple[str, str, Result]) -> None:
+def test_a_fault_comes_to_what_is_written_beside_it(fault: tuple[str, str, ClaimResult]) -> None:
     old, new, expected = fault
     outcome = with_fault(old, new)
     assert outcome.result is expected, outcome

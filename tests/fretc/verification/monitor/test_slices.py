@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from compiler.logic.claims import Outcome, Result
+from compiler.logic.claims import ClaimOutcome, ClaimResult
 from fretc.verification.monitor.slices import slice_of
 from monitors.loading import load
 from tests.effort import FULL
@@ -26,7 +26,7 @@ SENTENCES = (
 MANY = tuple(f"whenever a{i} the sw shall within 2 ticks satisfy b{i}" for i in range(9))
 
 
-def check(place: int, text: str, sentences: tuple[str, ...] = SENTENCES) -> Outcome:
+def check(place: int, text: str, sentences: tuple[str, ...] = SENTENCES) -> ClaimOutcome:
     requirements = [requirement(sentence, f"R{i + 1}") for i, sentence in enumerate(sentences)]
     return verified(requirements[place], text, others=requirements)
 
@@ -34,7 +34,7 @@ def check(place: int, text: str, sentences: tuple[str, ...] = SENTENCES) -> Outc
 @pytest.mark.slow
 def test_each_requirement_of_a_file_with_many_propositions_is_proved() -> None:
     text = emitted(*MANY)
-    assert all(check(i, text, MANY).result is Result.PROVED for i in (0, 4, 8))
+    assert all(check(i, text, MANY).result is ClaimResult.PROVED for i in (0, 4, 8))
 
 
 WIDE = tuple(f"the sw shall always satisfy a{i} | b{i}" for i in range(40 if FULL else 33))
@@ -45,13 +45,13 @@ def test_a_requirement_of_a_file_is_proved_where_a_step_takes_a_mapping() -> Non
     text = emitted(*WIDE)
     step = "self._step(self._row(propositions))\n"
     last = len(WIDE) - 1
-    assert check(last, text, WIDE).result is Result.PROVED
+    assert check(last, text, WIDE).result is ClaimResult.PROVED
     for other in (
         f"self._step(self._row({{**propositions, 'a{last}': True}}))\n",
         "self._step(tuple(propositions.values()))\n",
         f"{step}        {step}",
     ):
-        assert check(last, broken(text, step, other), WIDE).result is Result.NOT_CHECKED
+        assert check(last, broken(text, step, other), WIDE).result is ClaimResult.NOT_CHECKED
 
 
 def test_a_slice_is_what_a_requirement_names_and_the_cells_that_it_steps() -> None:
@@ -73,15 +73,15 @@ def test_what_looks_at_another_proposition_is_not_taken_for_independent() -> Non
     text = broken(emitted(*SENTENCES), "            if p:\n", "            if p or s:\n")
     monitor = load("m", text)
     assert "s" in slice_of(text, "r1", monitor.PROPOSITIONS).propositions
-    assert check(0, text).result is not Result.PROVED
-    assert check(2, text).result is not Result.COUNTEREXAMPLE
+    assert check(0, text).result is not ClaimResult.PROVED
+    assert check(2, text).result is not ClaimResult.COUNTEREXAMPLE
 
 
 @pytest.mark.slow
 def test_a_wrong_requirement_is_refuted_by_a_trace_that_the_file_can_step() -> None:
     text = broken(emitted(*SENTENCES), ">= 3", ">= 4")
     outcome = check(0, text)
-    assert outcome.result is Result.COUNTEREXAMPLE
+    assert outcome.result is ClaimResult.COUNTEREXAMPLE
     assert outcome.trace is not None
     assert {*outcome.trace.names} >= {*load("m", text).PROPOSITIONS}
     assert all(len(row) == len(outcome.trace.names) for row in outcome.trace.rows)
@@ -106,7 +106,7 @@ def test_no_counterexample_has_comparisons_that_contradict_each_other() -> None:
         ("since(x_gt_3,", "since(x_lt_2,"),
     ):
         outcome = verified(requirement(CONTRADICTING), broken(text, old, new))
-        assert outcome.result is not Result.PROVED
+        assert outcome.result is not ClaimResult.PROVED
         if outcome.trace is not None:
             places = [outcome.trace.names.index(name) for name in ("(x < 2)", "(x > 3)")]
             assert not any(all(row[i] is True for i in places) for row in outcome.trace.rows)

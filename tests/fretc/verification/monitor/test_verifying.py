@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import pytest
 
 from compiler.formalization.letters import Valuation
-from compiler.logic.claims import Outcome, Result, Trace, refuted
+from compiler.logic.claims import ClaimOutcome, ClaimResult, ClaimTrace, refuted
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor.verifying import NotAMonitorError
 from monitors.kernel import Monitor
@@ -26,7 +26,7 @@ LAYOUT = "it is not laid out as fretc writes it"
 RUNTIME = "its runtime part is not the one of this version of fretc"
 
 
-def check(sentence: str, text: str | None = None, limit: int = 10**6) -> Outcome:
+def check(sentence: str, text: str | None = None, limit: int = 10**6) -> ClaimOutcome:
     return verified(requirement(sentence), emitted(sentence) if text is None else text, limit)
 
 
@@ -43,9 +43,9 @@ def edited(text: str, *edits: tuple[str, str]) -> str:
     return with_step(head + own)
 
 
-def reason(outcome: Outcome) -> str:
+def reason(outcome: ClaimOutcome) -> str:
     """Why it is not checked."""
-    assert outcome.result is Result.NOT_CHECKED, outcome
+    assert outcome.result is ClaimResult.NOT_CHECKED, outcome
     return outcome.detail
 
 
@@ -55,25 +55,25 @@ SIZES = re.compile(
 )
 
 
-def sizes(outcome: Outcome) -> tuple[int, ...]:
+def sizes(outcome: ClaimOutcome) -> tuple[int, ...]:
     """Of a proof: states, steps, and random ticks."""
-    assert outcome.result is Result.PROVED, outcome
+    assert outcome.result is ClaimResult.PROVED, outcome
     match = SIZES.match(outcome.detail)
     assert match is not None
     return tuple(map(int, match.groups()))
 
 
-def disagreement(outcome: Outcome) -> Trace:
+def disagreement(outcome: ClaimOutcome) -> ClaimTrace:
     """The trace at whose last tick the signals are wrong."""
-    assert outcome.result is Result.COUNTEREXAMPLE, outcome
+    assert outcome.result is ClaimResult.COUNTEREXAMPLE, outcome
     assert outcome.detail.endswith(" on a trace")
     assert outcome.trace is not None
     return outcome.trace
 
 
-def judged_wrongly(outcome: Outcome) -> bool:
+def judged_wrongly(outcome: ClaimOutcome) -> bool:
     """Whether a trace shows another judgement than that of the sentence."""
-    return outcome.result is Result.COUNTEREXAMPLE and "that shows it has" in outcome.detail
+    return outcome.result is ClaimResult.COUNTEREXAMPLE and "that shows it has" in outcome.detail
 
 
 # What is right --------------------------------------------------------------------------------
@@ -90,7 +90,7 @@ def test_every_template_is_proved(template: Template) -> None:
 def test_templates_are_proved_at_longer_bounds(n: int) -> None:
     counting = [template for template in templates((n,)) if template.timing in COUNTING]
     for template in random.Random(n).sample(counting, 24 if FULL else 4):
-        assert check(template.sentence).result is Result.PROVED, template
+        assert check(template.sentence).result is ClaimResult.PROVED, template
 
 
 @pytest.mark.slow
@@ -115,13 +115,13 @@ def test_each_requirement_of_one_text_is_proved() -> None:
     text = emitted(*sentences)
     for number, sentence in enumerate(sentences, 1):
         outcome = verified(requirement(sentence, f"R{number}"), text)
-        assert outcome.result is Result.PROVED, sentence
+        assert outcome.result is ClaimResult.PROVED, sentence
 
 
 def test_of_several_requirements_only_the_wrong_one_is_refuted() -> None:
     text = edited(emitted(WITHIN, FOR), ("since_1 = oldest_1 >= 3", "since_1 = oldest_1 >= 4"))
     assert judged_wrongly(verified(requirement(WITHIN, "R1"), text))
-    assert verified(requirement(FOR, "R2"), text).result is Result.PROVED
+    assert verified(requirement(FOR, "R2"), text).result is ClaimResult.PROVED
 
 
 NAMES = (
@@ -137,14 +137,14 @@ def test_names_do_not_confuse_it(names: tuple[str, str, str]) -> None:
     mode, name, answer = names
     response = f'!p & "{answer}"'
     sentence = f'in "{mode}" mode upon "{name}" the sw shall within 2 ticks satisfy {response}'
-    assert check(sentence).result is Result.PROVED
+    assert check(sentence).result is ClaimResult.PROVED
 
 
 @pytest.mark.slow
 @each("id", some(["tick", "doubt", "Monitor", "3", "a-b", "since_1", "self", "first"], 3))
 def test_ids_do_not_confuse_it(id: str) -> None:
     formalized = requirement(WITHIN, id)
-    assert verified(formalized, target.text(formalized)).result is Result.PROVED
+    assert verified(formalized, target.text(formalized)).result is ClaimResult.PROVED
 
 
 def test_a_proof_says_how_much_was_looked_at() -> None:
@@ -185,7 +185,7 @@ def test_a_wrong_step_is_refuted_by_a_shortest_trace(
     assert check(WITHIN, edited(emitted(WITHIN), *edits)) == refuted(
         f"the shortest trace that shows it has {len(word)} ticks; after it, {actual}, and should "
         f"be {expected}",
-        Trace(("p", "q"), word),
+        ClaimTrace(("p", "q"), word),
     )
 
 
@@ -259,7 +259,7 @@ def test_more_than_twelve_propositions_are_not_checked() -> None:
     def of(count: int) -> str:
         return f"the sw shall always satisfy {' | '.join(f'a{i}' for i in range(count))}"
 
-    assert check(of(12)).result is Result.PROVED
+    assert check(of(12)).result is ClaimResult.PROVED
     assert reason(check(of(13))) == "13 propositions, more than 12"
 
 
@@ -476,7 +476,7 @@ def test_a_window_is_stepped_and_nothing_else(edit: tuple[str, str]) -> None:
 
 
 def test_a_window_that_is_stepped_is_proved() -> None:
-    assert check(WINDOWED).result is Result.PROVED
+    assert check(WINDOWED).result is ClaimResult.PROVED
 
 
 def test_the_reason_shows_the_place() -> None:

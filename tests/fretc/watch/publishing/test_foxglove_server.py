@@ -12,7 +12,7 @@ from fretc.watch.publishing.choice import addresses, chosen
 from fretc.watch.publishing.foxglove_server import SCHEMA, FoxgloveServer
 from fretc.watch.publishing.publishing import Publisher, Publishing
 from fretc.watch.sources.log import Log
-from fretc.watch.sources.source import Arrival, Channel, Interrupted, Missed, Opened
+from fretc.watch.sources.source import Arrival, Channel, ConnectionLost, Missed, Opened
 from fretc.watch.watch import Watch
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.each import each
@@ -37,7 +37,7 @@ def published() -> Iterator[tuple[Watch, Publishing, str]]:
         publishing.end(watch)
 
 
-def take(watch: Watch, publishing: Publishing, *items: Arrival | Missed | Interrupted) -> None:
+def take(watch: Watch, publishing: Publishing, *items: Arrival | Missed | ConnectionLost) -> None:
     for item in items:
         list(watch.take(item))
         publishing.take(item, watch)
@@ -75,7 +75,7 @@ def test_a_client_sees_the_topics_as_they_came_and_the_state_of_each_requirement
         client.wait("all is well", lambda: comes("OK"))
         robot(1.0, 9.0)
         client.wait("it is violated", lambda: comes("ERROR"))
-        lost = Interrupted(START + next(at) * MS, Diagnostic(Code.ROBOT_NOT_REACHED, "gone"))
+        lost = ConnectionLost(START + next(at) * MS, Diagnostic(Code.ROBOT_NOT_REACHED, "gone"))
         take(watch, publishing, lost)
         client.wait("R3 is stale", lambda: state(client, "R3").get("level") == "STALE")
         assert state(client, "R3")["owed"] == "perhaps"

@@ -17,7 +17,7 @@ import pytest
 from fretc.logs.messages.ros2_types import definitions, latest
 from fretc.watch.sources.choice import chosen
 from fretc.watch.sources.dds import MOST_KINDS, Dds
-from fretc.watch.sources.dds_domain import Domain, Writer, join
+from fretc.watch.sources.dds_domain import DdsWriter, Domain, join
 from fretc.watch.sources.dds_types import (
     Offer,
     dds_topic,
@@ -109,7 +109,7 @@ def robot(here: int) -> Iterator[Domain]:
     found.close()
 
 
-def read(writer: Writer, readers: int = 1) -> Writer:
+def read(writer: DdsWriter, readers: int = 1) -> DdsWriter:
     until("somebody reads", lambda: writer.readers >= readers)
     return writer
 
@@ -261,7 +261,7 @@ def test_a_type_that_is_not_what_its_name_says_is_not_read(robot: Domain) -> Non
     offer = Offer(BOOL, reliable=True, described=True)
     types.__idl__.idl_transformed_typename = "std_msgs::msg::dds_::Bool_"
     topic: Any = Topic(robot._participant, "rt/stop", types)
-    writer = Writer(robot._participant, topic, offer)
+    writer = DdsWriter(robot._participant, topic, offer)
     with Listening("/stop") as listening:
         until("it is reported", lambda: listening.says(Code.PUBLISHER_NOT_READ))
         assert writer.readers == 0

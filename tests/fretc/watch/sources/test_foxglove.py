@@ -26,7 +26,14 @@ from fretc.watch.session import Session
 from fretc.watch.sources import foxglove
 from fretc.watch.sources.foxglove import Foxglove
 from fretc.watch.sources.foxglove_protocol import address
-from fretc.watch.sources.source import Arrival, Channel, Interrupted, Opened, Problem, Reconnected
+from fretc.watch.sources.source import (
+    Arrival,
+    Channel,
+    ConnectionLost,
+    Opened,
+    Problem,
+    Reconnected,
+)
 from fretc.watch.watch import Watch
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
@@ -101,7 +108,7 @@ def test_channels_and_messages_are_those_that_were_sent() -> None:
     assert {each.channel for each in arrivals if each.payload == b"2"} == {CHANNELS["cdr"]}
     times = [each.log_time for each in arrivals]
     assert times == sorted(times)
-    assert not found.of(Interrupted)
+    assert not found.of(ConnectionLost)
 
 
 def _send_until_it_comes(robot: Any, found: Listened, name: str, data: bytes, time: int) -> None:
@@ -125,12 +132,12 @@ def test_a_server_that_is_gone_is_sought_again() -> None:
             _send_until_it_comes(robot, found, "c", b"1", 1)
             last = found.of(Arrival)[-1].log_time
             robot.process.kill()
-            found.wait("it is interrupted", lambda: found.of(Interrupted))
+            found.wait("it is interrupted", lambda: found.of(ConnectionLost))
             with server(port) as other:
                 other.ask("advertise", **about)
                 found.wait("it is there again", lambda: found.of(Reconnected))
                 _send_until_it_comes(other, found, "c", b"2", 2)
-    lost, back = found.of(Interrupted)[0], found.of(Reconnected)[0]
+    lost, back = found.of(ConnectionLost)[0], found.of(Reconnected)[0]
     assert last < lost.since == back.since < back.until
     assert lost.problem.code is Code.ROBOT_NOT_REACHED
 
@@ -140,10 +147,10 @@ def test_a_server_that_answers_no_more_is_gone() -> None:
     with server() as robot, listened(robot.url) as found:
         found.wait("it is opened", lambda: found.of(Opened))
         robot.process.send_signal(signal.SIGSTOP)
-        found.wait("it is interrupted", lambda: found.of(Interrupted))
+        found.wait("it is interrupted", lambda: found.of(ConnectionLost))
         robot.process.send_signal(signal.SIGCONT)
         found.wait("it is there again", lambda: found.of(Reconnected))
-    assert "has not answered" in found.of(Interrupted)[0].problem.message
+    assert "has not answered" in found.of(ConnectionLost)[0].problem.message
 
 
 @pytest.mark.slow
@@ -264,8 +271,8 @@ def test_a_server_that_misbehaves_is_left_and_sought_again(
     with hostile(handler, WELL) as url, listened(url) as found:
         found.wait("it is there again", lambda: found.of(Arrival) and found.of(Reconnected))
     kinds = [type(item) for item in found.items if not isinstance(item, Arrival)]
-    assert kinds == [Opened, Interrupted, Reconnected]
-    (lost,), (back,) = found.of(Interrupted), found.of(Reconnected)
+    assert kinds == [Opened, ConnectionLost, Reconnected]
+    (lost,), (back,) = found.of(ConnectionLost), found.of(Reconnected)
     assert lost.since == back.since < back.until
     assert lost.problem.code is Code.ROBOT_NOT_REACHED
 
@@ -295,8 +302,8 @@ def test_nothing_of_a_stranger_reaches_the_terminal_as_it_is(
     for problem in found.of(Problem):
         lines.tell(DiagnosticEvent(problem.diagnostic), Session(plan))
     with hostile(closes) as url, listened(url) as found:
-        found.wait("it is reported", lambda: found.of(Interrupted))
-    for event in found.of(Interrupted):
+        found.wait("it is reported", lambda: found.of(ConnectionLost))
+    for event in found.of(ConnectionLost):
         lines.tell(event, Session(plan))
     output = capsys.readouterr()
     assert "out of order" in output.out

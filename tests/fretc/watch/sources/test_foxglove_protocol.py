@@ -11,9 +11,9 @@ from compiler.files.checked_json import SchemaError
 from fretc.watch.sources.foxglove_protocol import (
     LARGEST_SCHEMA,
     Advertisement,
+    ChannelWithdrawal,
     Data,
     Status,
-    Withdrawal,
     read,
 )
 from fretc.watch.sources.source import Channel
@@ -97,7 +97,7 @@ def test_a_definition_that_cannot_be_one_is_refused(about: dict[str, object]) ->
 
 
 def test_the_other_messages() -> None:
-    assert read('{"op": "unadvertise", "channelIds": [1, 2]}', ()) == Withdrawal((1, 2))
+    assert read('{"op": "unadvertise", "channelIds": [1, 2]}', ()) == ChannelWithdrawal((1, 2))
     assert read('{"op": "status", "level": 1, "message": "m"}', ()) == Status(True, "m")
     assert read('{"op": "status", "level": 0, "message": "m"}', ()) == Status(False, "m")
     assert read('{"op": "of a later version"}', ()) is None

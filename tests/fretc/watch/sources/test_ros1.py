@@ -12,7 +12,7 @@ from xmlrpc.client import ServerProxy
 import pytest
 
 from fretc.watch.sources.ros1 import Ros1
-from fretc.watch.sources.source import Interrupted, Opened, Problem, Reconnected
+from fretc.watch.sources.source import ConnectionLost, Opened, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code
 from monitors.guard import ERROR, OK
 from tests.command import Fretc
@@ -144,11 +144,11 @@ def test_a_master_that_is_silent_or_gone_is_sought_again(
     try:
         until("it is opened", lambda: has(Opened))
         master.send_signal(signal.SIGSTOP)
-        until("it is interrupted", lambda: has(Interrupted), 30)
+        until("it is interrupted", lambda: has(ConnectionLost), 30)
         master.send_signal(signal.SIGCONT)
         until("it is connected again", lambda: has(Reconnected), 30)
         master.terminate()
-        until("it is interrupted again", lambda: has(Interrupted, 2), 30)
+        until("it is interrupted again", lambda: has(ConnectionLost, 2), 30)
         master.wait(10)
         here.master()
         until("it is connected once more", lambda: has(Reconnected, 2), 30)
@@ -157,7 +157,7 @@ def test_a_master_that_is_silent_or_gone_is_sought_again(
         thread.join(10)
     assert not thread.is_alive()
     gaps = [item for item in found if isinstance(item, Reconnected)]
-    losses = [item for item in found if isinstance(item, Interrupted)]
+    losses = [item for item in found if isinstance(item, ConnectionLost)]
     for before, gap in zip(losses, gaps, strict=True):
         assert before.since == gap.since < gap.until
         assert before.problem.code == Code.ROBOT_NOT_REACHED
