@@ -134,7 +134,7 @@ DOORS = {
     "click": CLICK,
 }
 """Each library, and the modules that import it."""
-MOST = 12
+MOST = 16
 """Modules of a folder, beside its `__init__.py`."""
 
 
