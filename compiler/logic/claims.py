@@ -1,7 +1,8 @@
 """The proofs of `fretc verify`: one for each claim, whatever the engine.
 
-An engine answers a claim with an `ClaimOutcome`. The `Proof` adds the claim in words, the assumptions
-that the outcome holds under, the engine, and the SHA-256 of each text that was examined.
+An engine answers a claim with a `ClaimOutcome`. The `Proof` adds the claim in words, the
+assumptions that the outcome holds under, the engine, and the SHA-256 of each text that was
+examined.
 """
 
 from __future__ import annotations

@@ -26,6 +26,7 @@ from compiler.logic.formula import (
     rebuild,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
 _INSTALL = (
@@ -52,7 +53,7 @@ def unless_installed(need: str) -> Diagnostic | None:
     """
     if is_installed():
         return None
-    return Diagnostic(Code.MISSING_EXTRA, f"{need} Spot, which is not installed", None, _INSTALL)
+    return diagnostic("no_spot", need=need, help=_INSTALL)
 
 
 def same_language(left: str, right: str) -> bool:

@@ -4,17 +4,18 @@ The entry point is `instant`: for some requirements it has the policies of all s
 propositions read, and the truth values of these propositions. Printers turn both into functions of
 a language:
 
-- a message's field → `SamplePolicy` (elements that are no measurement, `valid`, least or greatest) → a
-  number of the sample, or unknown;
-- a sample counts until it is older than `SamplePolicy.signal.max_age`; then, and before the first one, it
-  is unknown;
+- a message's field → `SamplePolicy` (elements that are no measurement, `valid`, least or greatest)
+  → a number of the sample, or unknown;
+- a sample counts until it is older than `SamplePolicy.signal.max_age`; then, and before the first
+  one, it is unknown;
 - the numbers of all signals → `PropositionFunctions.truth` at an instant;
-- the truths of all instants of a tick → `PropositionFunctions.aggregate`, then `PropositionFunctions.on_unknown`.
+- the truths of all instants of a tick → `PropositionFunctions.aggregate`, then
+  `PropositionFunctions.on_unknown`.
 
 A value that depends on several instants is an input: `... for 200 ms` is `HeldFor`. A proposition
 that looks back by ticks (`pre`) is not a function of an instant, and is listed in
-`InstantFunctions.left_out`. A mean and a clearance are not exact in other languages: their signals are given
-as one number (`is_given`).
+`InstantFunctions.left_out`. A mean and a clearance are not exact in other languages: their signals
+are given as one number (`is_given`).
 """
 
 from __future__ import annotations

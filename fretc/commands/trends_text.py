@@ -222,8 +222,9 @@ def _rest(trends: Trends) -> Iterator[Line]:
     compared = f"{trends.compared.after} against {trends.compared.before}"
     yield (
         (
-            f"latencies and margins, {compared}: {len(trends.with_finding(ComparisonFinding.REGRESSED))} "
-            f"regressed, {chance} no worse than chance, {few} with too few runs to tell",
+            f"latencies and margins, {compared}: "
+            f"{len(trends.with_finding(ComparisonFinding.REGRESSED))} regressed, "
+            f"{chance} no worse than chance, {few} with too few runs to tell",
             None,
         ),
     )

@@ -33,7 +33,7 @@ from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.ajpf.runner import ERROR, HOLDS, SCHEMA, VIOLATED, verdict
 from compiler.targets.target import DEFAULT, TargetOptions
-from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.recursion import with_recursion_limit

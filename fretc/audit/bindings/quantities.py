@@ -84,8 +84,8 @@ QUANTITIES: Mapping[str, tuple[NumberField, ...]] = {
     ),
     "sensor_msgs/BatteryState": (
         NumberField("voltage", "voltage", "V"),
-        NumberField("current", "current", "A", note="negative while it discharges; NaN: not measured"),
-        NumberField("percentage", "percentage", note="from 0 to 1, or write 20 %; NaN: not measured"),
+        NumberField("current", "current", "A", note="below 0 while it discharges; NaN: unmeasured"),
+        NumberField("percentage", "percentage", note="from 0 to 1, or write 20 %; NaN: unmeasured"),
     ),
     "sensor_msgs/Imu": (
         *(NumberField(f"angular_velocity.{axis}", f"w{axis}", "rad/s") for axis in "xyz"),

@@ -54,7 +54,7 @@ class ActuationState:
 
     interceptor: State
     still: int
-    """Ends of cells since the wheels have had zero, up to `ActuationAssumptions.stands`; -1: they move."""
+    """Ends of cells since the wheels have had zero, up to `stands`; -1: they move."""
     queue: Queue
 
 

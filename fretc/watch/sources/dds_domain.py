@@ -72,12 +72,7 @@ def join() -> Domain | Diagnostic:
 
         definitions("std_msgs/msg/Header")
     except Exception as error:  # the package or its C library is missing
-        no_wheel = (
-            "Cyclone DDS has no wheel for Python 3.14 and none for Linux on ARM64: there use "
-            "`fretc watch foxglove` with a bridge"
-        )
-        help = f"{install_help('live')}; {no_wheel}"
-        return diagnostic("no_cyclone_dds", error=error, help=help)
+        return diagnostic("no_cyclone_dds", error=error, extra=install_help("live"))
     number = domain_id()
     return number if isinstance(number, Diagnostic) else _joined(number)
 

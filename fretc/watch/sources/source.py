@@ -107,9 +107,10 @@ class Source(Protocol):
     def arrivals(self, topics: Collection[str]) -> Iterator[Arrival | Event | Idle]:
         """All messages of the topics from now on, until `close`, or until the source has ended.
 
-        A source that cannot be had at all gives a `Problem` with an error, and ends; what breaks
-        off later is `ConnectionLost`, and sought again, ever less often. `Idle` comes at least every
-        tenth of a second while nothing else does, so that the caller can look at the clock.
+        A source that cannot be opened at all gives a `Problem` with an error, and ends. If it
+        breaks off later, it gives `ConnectionLost` and is opened again, ever less often. `Idle`
+        comes at least every tenth of a second while nothing else does, so that the caller can look
+        at the clock.
         A middleware runs in a thread of its own and puts what it receives in a `Mailbox`.
         """
 

@@ -56,7 +56,7 @@ def test_the_schema_has_each_field_of_each_view_and_demands_it(view: Any) -> Non
 
 
 def test_the_schema_has_no_more_than_the_views() -> None:
-    assert {*SCHEMA["$defs"], "Report"} == {view.__name__ for view in VIEWS}
+    assert {*SCHEMA["$defs"], "ReportView"} == {view.__name__ for view in VIEWS}
     assert SCHEMA["$id"] == SCHEMA["properties"]["schema"]["const"] == views.SCHEMA
 
 
