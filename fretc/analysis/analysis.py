@@ -95,7 +95,10 @@ def analyze(
     """
     found: list[Finding] = []
     for job in jobs(requirements, roles, assumptions, options):
-        found.extend(job.ask(found))
+        try:
+            found.extend(job.ask(found))
+        except MemoryError:
+            found.append(job.lost("there is not enough memory for its decision diagrams"))
     return assembled(requirements, roles, assumptions, options, found)
 
 

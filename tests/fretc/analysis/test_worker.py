@@ -11,11 +11,13 @@ import pytest
 
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.oxidd_engine import OxiddEngine
+from fretc.analysis import analysis
 from fretc.analysis.analysis import Finding, Job
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import OpenQuestion
 from fretc.analysis.worker import Interrupted, findings
 from tests.effort import FULL
+from tests.requirement_sets import ROLES, requirements
 
 
 def job(name: str, do: Callable[[], None] = lambda: None) -> Job:
@@ -133,3 +135,17 @@ def test_ctrl_c_keeps_what_is_known() -> None:
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     stopped = "lost: stopped by Ctrl-C"
     assert known == ["a", "0 before", "end", "b", "2 before", stopped, stopped]
+
+
+def test_a_question_without_enough_memory_stays_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+        yield OpenQuestion("first", f"{len(known)} before")
+        raise MemoryError
+
+    lost = Job("a", ask, lambda why: OpenQuestion("a", why))
+    monkeypatch.setattr(analysis, "jobs", lambda *_: [lost])
+    found = analysis.analyze(requirements("the sw shall always satisfy x"), ROLES)
+    assert found.open == (
+        OpenQuestion("first", "0 before"),
+        OpenQuestion("a", "there is not enough memory for its decision diagrams"),
+    )
