@@ -13,6 +13,7 @@ from compiler.situations.situations import Situation
 from compiler.situations.thresholds import ThresholdPosition
 from fretc.audit.evidence.schema import Health, Situations
 from fretc.audit.evidence.writer import RunResult, health
+from fretc.audit.measurements.intervals import interval_words
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, judge
 from fretc.audit.measurements.margins import Margin, margins, worst
 from fretc.audit.measurements.situations import Near, nowhere_known, situation_ticks
@@ -324,13 +325,13 @@ def _broken(evidence: RunResult) -> str:
     first = evidence.violations[0]
     trigger = f", triggered at {seconds(first.trigger.seconds)}" if first.trigger else ""
     return (
-        f"broken from {seconds(first.first.seconds)} to {seconds(first.last.seconds)}{trigger}"
+        f"{interval_words(first.first, first.last, evidence.clock)}{trigger}"
         f"{_more(len(evidence.violations))}"
     )
 
 
 def _more(count: int) -> str:
-    return f", and {_times(count - 1, 'more stretch', 'more stretches')}" if count > 1 else ""
+    return f", and at {_times(count - 1, 'other time')}" if count > 1 else ""
 
 
 def _unknown(evidence: RunResult, recording: Recording) -> str:

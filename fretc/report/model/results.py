@@ -30,6 +30,9 @@ class ViolationView:
 
     start: str
     end: str
+    """The end of the last violated tick; where the clock ticks by message, its beginning."""
+    lasts: str
+    """The duration; "" if the clock ticks by message."""
     ticks: str
     trigger: str
     deadline: str

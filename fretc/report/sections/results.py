@@ -16,6 +16,7 @@ from fretc.audit.evidence.verdicts import (
     UNFORMALIZED,
     severity,
 )
+from fretc.audit.measurements.intervals import end_s, interval_length
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, ProbabilityAudit, SingleAudit
 from fretc.report.model.causes import causes
@@ -225,10 +226,12 @@ def _violation(
     requirement: FormalizedRequirement | None,
 ) -> ViolationView:
     first, last, trigger = violation.first, violation.last, violation.trigger
+    end = end_s(last, result.clock)
     ticks = f"{first.tick}" if first.tick == last.tick else f"{first.tick} to {last.tick}"
     return ViolationView(
         start=phrases.seconds(first.seconds),
-        end=phrases.seconds(last.seconds),
+        end=phrases.seconds(last.seconds if end is None else end),
+        lasts="" if end is None else interval_length(first, end),
         ticks=ticks,
         trigger=_at(trigger) if trigger else "none",
         deadline=_at(violation.deadline) if violation.deadline else "none",

@@ -18,7 +18,7 @@ from fretc.audit.evidence.result_summaries import (
     RunFacts,
     audited_s,
 )
-from fretc.audit.evidence.schema import CheckedChunks, LogFinding, TopicRecord
+from fretc.audit.evidence.schema import CheckedChunks, Gap, LogFinding, TopicRecord
 from fretc.report.model import phrases
 from fretc.report.model.marks import sign_mark
 from fretc.report.model.views import Remark, RunSummary, TopicView
@@ -197,12 +197,16 @@ def _checked(checked: CheckedChunks | None, *, hashed: bool) -> str:
 
 
 def _gaps(facts: RunFacts) -> tuple[str, ...]:
-    start = facts.start_ns or 0
-    return tuple(
-        f"{phrases.seconds((gap.start_ns - start) / 1e9)} to "
-        f"{phrases.seconds((gap.end_ns - start) / 1e9)}"
-        for gap in facts.health.gaps
-    )
+    return tuple(_gap(gap, facts) for gap in facts.health.gaps)
+
+
+def _gap(gap: Gap, facts: RunFacts) -> str:
+    """`from 3 s to 4.2 s (1.2 s)`; data that is lost after the last message has no known end."""
+    start, end = ((ns - (facts.start_ns or 0)) / 1e9 for ns in (gap.start_ns, gap.end_ns))
+    if facts.end_ns is not None and gap.end_ns >= facts.end_ns:
+        return f"from {phrases.seconds(start)} to the end of the log"
+    length = phrases.duration(round(end - start, 9))
+    return f"from {phrases.seconds(start)} to {phrases.seconds(end)} ({length})"
 
 
 def _badness(finding: LogFinding) -> int:

@@ -93,7 +93,7 @@ def test_a_deadline_that_passes_is_a_violation_with_its_time_trigger_and_signals
     assert violation.trigger.seconds == 1.0
     assert violation.values == {"d": FAR, "v": MOVING}
     assert evidence.units == {"d": "m", "v": "m/s"}
-    assert evidence.reason == "broken from 3 s to 3 s, triggered at 1 s"
+    assert evidence.reason == "from 3 s to 4 s (1 s), triggered at 1 s"
 
 
 def test_a_demand_that_is_open_at_the_end_is_inconclusive() -> None:

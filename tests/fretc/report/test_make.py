@@ -471,7 +471,8 @@ def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) ->
     (view,) = content_of(known, tmp_path, bad)["requirements"][0]["results"]
     assert view["violations"][0] == {
         "start": "1.4 s",
-        "end": "2 s",
+        "end": "2.1 s",
+        "lasts": "700 ms",
         "ticks": "14 to 20",
         "trigger": "1.1 s (tick 11)",
         "deadline": "1.4 s (tick 14)",
@@ -561,7 +562,7 @@ def test_a_run_is_shown_with_its_health(tmp_path: Path) -> None:
         "checked": "4 of 9 chunks match their CRC; 2 of 9 chunks have a CRC that was not "
         "checked, because only their beginning was read; 3 of 9 chunks contain no bound topic and "
         "were not read; read by the index",
-        "gaps": ["1 s to 2 s"],
+        "gaps": ["from 1 s to 2 s (1 s)"],
         "findings": [
             {
                 "code": "F404",
