@@ -19,6 +19,8 @@ from fretc.audit.selection.choice import in_words
 from fretc.report.across.assembly import across
 from fretc.report.diagnostics import idle_waivers, stale_evidence
 from fretc.report.front.front import front
+from fretc.report.front.gravity import gravities
+from fretc.report.front.violations import gravest_first
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, Inputs, assessments
 from fretc.report.model.marks import verdict_mark
@@ -69,9 +71,8 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         section(each, inputs, runs_by_key, anchors, shared, joint, exercised.get(each.id))
         for each in assessed
     )
-    details = Details(
-        evidence, project, {assessment.anchor: assessment for assessment in assessed}, runs_by_key
-    )
+    assessed_as = {assessment.anchor: assessment for assessment in assessed}
+    details = Details(evidence, project, assessed_as, runs_by_key)
     longest = _longest_waits(assessed, sections, details)
     reservations = (
         *(line for view in sections for line in _reservations(view, longest)),
@@ -81,12 +82,21 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
     groups = reviews.change_groups(assessed, changes)
     changed = tuple(reviews.change_sentences(changes, groups))
     signature_list = signatures(inputs, assessed)
+    rows, hazards = matrix(project, assessed, sections), hazard_views(project)
+    grave = gravities(rows, hazards)
+    ordered = gravest_first(sections, grave)
     overall_result = overall(
-        project, assessed, sections, all_runs, reservations, withdrawn, signature_list, changed
+        project,
+        [assessed_as[view.anchor] for view in ordered],
+        ordered,
+        all_runs,
+        reservations,
+        withdrawn,
+        signature_list,
+        changed,
     )
     analysis = set_analysis(together, project, anchors) if together else None
     overall_result = in_overall(overall_result, analysis)
-    rows = matrix(project, assessed, sections)
     run_list = run_summaries(all_runs, project)
     all_changes = (*changes, *reviews.withdrawals(withdrawn))
     components = tuple(
@@ -98,6 +108,7 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         overall_result,
         sections,
         rows,
+        grave,
         assessed,
         all_runs,
         run_list,
@@ -128,7 +139,7 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         ),
         verification=phrases.place(inputs.verification.file) if inputs.verification else "",
         remarks=tuple(remark(diagnostic) for diagnostic in (*project.diagnostics, *checked)),
-        hazards=hazard_views(project),
+        hazards=hazards,
         matrix=rows,
         orphans=orphans(project, assessed, briefs),
         reviewed=reviews.summary(assessed, inputs.book),

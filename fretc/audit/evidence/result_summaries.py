@@ -198,6 +198,10 @@ class EvidenceSource(Protocol):
         """SHA-256 of the evidence file; of a store the SHA-256 of its manifest."""
 
     @property
+    def content_sha256(self) -> str:
+        """The same, without the register of a store: another audit of the same logs gives it."""
+
+    @property
     def fretc(self) -> str:
         """Version of the tool that audited."""
 

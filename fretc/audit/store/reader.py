@@ -17,7 +17,7 @@ import pyarrow as pa
 
 from compiler.files.checked_json import SchemaError
 from compiler.files.checked_json import plain as parsed
-from compiler.files.records import UNSET, UnsetType, decoded
+from compiler.files.records import UNSET, UnsetType, decoded, replace
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
 from fretc.audit.evidence.reader import EvidenceFile
@@ -41,6 +41,7 @@ from fretc.audit.store.manifest import (
     TableFile,
     place,
 )
+from fretc.audit.store.manifest import text as manifest_text
 from fretc.audit.store.register import Entry, entries, types
 from fretc.audit.store.tables import EVENTS, EXACT, RESULTS, RUNS, TABLES, TableName
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -97,6 +98,11 @@ class Store(HeadProperties):
     file: str
     sha256: str
     manifest: StoreManifest
+
+    @property
+    def content_sha256(self) -> str:
+        """SHA-256 of the manifest without the register, which has the times of the log files."""
+        return sha256(manifest_text(replace(self.manifest, register=UNSET)))
 
     @property
     def head(self) -> StoreManifest:

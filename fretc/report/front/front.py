@@ -16,6 +16,7 @@ from fretc.audit.evidence.result_summaries import audited_s
 from fretc.audit.evidence.verdicts import BROKEN, RETIRED
 from fretc.report.front import violations
 from fretc.report.front.causes import causes, line, link
+from fretc.report.front.gravity import Gravity
 from fretc.report.front.groups import run_groups
 from fretc.report.front.speech import capital, day, days, duration
 from fretc.report.model import phrases
@@ -37,6 +38,7 @@ def front(
     overall: Overall,
     sections: Sequence[RequirementView],
     rows: Sequence[HazardRequirement],
+    grave: Mapping[str, Gravity],
     assessed: Sequence[Assessment],
     runs: Sequence[AuditedFile],
     views: Sequence[RunSummary],
@@ -50,6 +52,7 @@ def front(
         overall: the overall result; its headline is used if no violation is current.
         sections: views of all requirements.
         rows: rows of the matrix.
+        grave: anchor of a requirement → its gravity.
         assessed: the assessment of each section, in the same order.
         runs: runs in the order of the evidence.
         views: views of the runs, in any order.
@@ -57,15 +60,15 @@ def front(
         notes: sentences that qualify the figures.
     """
     active = [view for view in sections if view.status != RETIRED]
-    red = [view for view in active if violations.is_red(view)]
+    red = violations.gravest_first([*filter(violations.is_red, active)], grave)
     groups = run_groups(runs)
     names = {run.anchor: run.name for group in groups for run in group.runs}
     is_current = bool(red) and not any(view.mark.suspect for view in red)
     return Front(
         title=title,
         facts=tuple(_facts(active, runs, assessed)),
-        headline=violations.headline(red, len(runs)) if is_current else overall.headline,
-        sentences=tuple(violations.sentences(red, groups)),
+        headline=violations.headline(red, len(runs), grave) if is_current else overall.headline,
+        sentences=tuple(violations.sentences(red, groups, grave)),
         figures=(
             _claimed(sections, active, rows),
             _shown(active),

@@ -178,7 +178,8 @@ def test_a_value_has_the_declared_unit_in_every_form(robot: Fretc, form: str) ->
     assert "charge = 0 %" in out
     assert "0.05" not in out
     if form == "junit":
-        assert ElementTree.fromstring(out)[0][0][0].text == "from 0 s to 0.6 s (600 ms): charge = 0 %"
+        words = ElementTree.fromstring(out)[0][0][0].text
+        assert words == "from 0 s to 0.6 s (600 ms): charge = 0 %"
 
 
 def test_what_is_not_judged_is_counted_apart(robot: Fretc) -> None:
