@@ -20,6 +20,7 @@ from fretc.audit.measurements.situations import Near, nowhere_known, situation_t
 from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
+from fretc.audit.measurements.unknown_inputs import unknown_inputs
 from fretc.audit.measurements.violations import DemandText, Moment, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
@@ -214,6 +215,9 @@ def _evidence(
         health=found,
         assumptions=_assumed(declarations, requirement),
         situations=_situations(requirement, columns, ticks, near, at),
+        unknown_inputs=unknown_inputs(columns, at, declarations, recording)
+        if judgement.verdict == kernel.NO_DATA
+        else (),
     )
     evidence = replace(evidence, reason=_reason(evidence, recording, declarations))
     if requirement.count is None:
@@ -356,7 +360,9 @@ def _of_whom(evidence: RunResult) -> str:
         for name, tally in evidence.propositions.items()
         if tally.unknown
     ]
-    return f": {', '.join(parts)}" if parts else ""
+    first = next(iter(evidence.unknown_inputs), None)
+    when = f"; first {first.in_words(evidence.clock)}" if first else ""
+    return f": {', '.join(parts)}{when}" if parts else ""
 
 
 def _latency(evidence: RunResult) -> str:

@@ -56,7 +56,8 @@ class ResultSummary:
     first_violation_ns: int | None
     first_violation_s: float | None
     unknown: int
-    """Number of intervals of ticks at which it is unknown whether a demand was broken."""
+    """Number of intervals of ticks at which it is unknown whether a demand was broken; if there is
+    none and no verdict, of those at which inputs were unknown."""
     unknown_ticks: int
     latency_median_s: float | None
     latency_max_s: float | None
@@ -322,7 +323,7 @@ def brief(result: Result) -> ResultSummary:
         violated_ticks=sum(v.last_tick - v.first_tick + 1 for v in violations),
         first_violation_ns=first.start_ns if first else None,
         first_violation_s=first.start_s if first else None,
-        unknown=len(result.unknown),
+        unknown=len(_undecided(result)),
         unknown_ticks=sum(last - first + 1 for first, last in result.unknown),
         latency_median_s=median(latencies) if latencies else None,
         latency_max_s=max(latencies, default=None),
@@ -395,7 +396,8 @@ def run_facts(results: Sequence[Result]) -> RunFacts:
 
 def stretches(result: Result) -> Stretches:
     """The intervals at which a result is violated, unknown or open."""
-    if not (result.violations or result.unknown or result.open):
+    undecided = _undecided(result)
+    if not (result.violations or undecided or result.open):
         return Stretches(_length(result), (), (), ())
     at = _seconds(result)
     return Stretches(
@@ -403,9 +405,15 @@ def stretches(result: Result) -> Stretches:
         violations=tuple(
             (v.start_s, max(v.start_s, at(v.last_tick + 1))) for v in result.violations
         ),
-        unknown=tuple((at(first), at(last + 1)) for first, last in result.unknown),
+        unknown=tuple((at(first), at(last + 1)) for first, last in undecided),
         open=tuple(moment.seconds for moment in result.open),
     )
+
+
+def _undecided(result: Result) -> Sequence[tuple[int, int]]:
+    """The intervals of ticks at which unknown values leave the verdict open."""
+    inputs = {(one.first_tick, one.last_tick) for one in result.unknown_inputs or ()}
+    return result.unknown or sorted(inputs)
 
 
 def _seconds(result: Result) -> Callable[[int], float]:
@@ -414,6 +422,8 @@ def _seconds(result: Result) -> Callable[[int], float]:
     moments += [v.last for v in result.violations]
     times = {0: 0.0} | {moment.tick: moment.seconds for moment in moments}
     times |= {state.tick: state.seconds for state in result.states}
+    times |= {one.first_tick: one.start_s for one in result.unknown_inputs or ()}
+    times |= {one.last_tick: one.end_s for one in result.unknown_inputs or ()}
     times |= {answer.tick: answer.seconds for answer in result.answers}
     known_ticks = sorted(times)
     rate = times[known_ticks[-1]] / known_ticks[-1] if known_ticks[-1] else _mean_tick(result)

@@ -79,7 +79,7 @@ def decoded(
         return _with_later(parquet.read(there, use_threads=False), types, wanted)
 
 
-LATER = frozenset({"situations"})
+LATER = frozenset({"situations", "unknown_inputs"})
 """Columns that the first stores do not have: they are read as unknown."""
 
 

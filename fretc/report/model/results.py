@@ -110,11 +110,16 @@ class ResultView(ResultHead):
 
     exercised: str
     latency: Latency | None
+    """The latency of the answers; None if there is none."""
+    unanswered: str
+    """The triggers without an answer in time, and how late it was; "" if there is none."""
     thresholds: tuple[ThresholdView, ...]
     violations: tuple[ViolationView, ...]
     violations_total: int
     open: Listing
     unknown: Listing
+    unknown_inputs: Listing
+    """When inputs were unknown, of a result without a verdict."""
     timelines: tuple[Timeline, ...]
 
 

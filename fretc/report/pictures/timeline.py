@@ -202,6 +202,14 @@ class _Events:
                 "unknown",
                 [TimeInterval(first * tick, (last + 1) * tick) for first, last in result.unknown],
             ),
+            (
+                "no input",
+                "unknown",
+                [
+                    TimeInterval(one.start_s, one.end_s + tick)
+                    for one in result.unknown_inputs or ()
+                ],
+            ),
             ("open at end", "open", _open(result, tick)),
         ]
 

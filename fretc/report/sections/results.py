@@ -104,6 +104,7 @@ def result_view(
         **{each.name: getattr(row, each.name) for each in fields(ResultHead)},
         exercised=_exercised(result),
         latency=_latency(result, assessment.requirement),
+        unanswered=_unanswered(result, assessment.requirement),
         thresholds=tuple(map(_threshold, result.thresholds)),
         violations=tuple(
             _violation(v, result, ages, requirement) for v in result.violations[:LISTED]
@@ -111,6 +112,7 @@ def result_view(
         violations_total=len(result.violations),
         open=_open(result),
         unknown=_unknown(result),
+        unknown_inputs=_unknown_inputs(result),
         timelines=timelines(result, tick, ages, requirement),
     )
 
@@ -178,6 +180,30 @@ def _latency(result: Result, requirement: FormalizedRequirement | None) -> Laten
         waits=_waits(result),
         median_s=round(median(result.latencies), 9),
     )
+
+
+def _unanswered(result: Result, requirement: FormalizedRequirement | None) -> str:
+    """`> 200 ms (4 unanswered); overdue up to 500 ms after the trigger`.
+
+    The longest latency counts answers only, which are in time: beside a violation it would read as
+    if the bound were kept.
+    """
+    count = len(result.triggers) - len(result.latencies) - len(result.open)
+    if requirement is None or count <= 0 or not syntax.deadline(requirement.sentence.timing):
+        return ""
+    allowed = seconds_allowed(requirement)
+    bound = (
+        span(requirement.ticks or 0, requirement.clock)
+        if allowed is None
+        else phrases.exact_duration(allowed)
+    )
+    overdue = [
+        round(end - violation.trigger.seconds, 9)
+        for violation in result.violations
+        if violation.trigger and (end := end_s(violation.last, result.clock)) is not None
+    ]
+    late = f"; overdue up to {phrases.duration(max(overdue))} after the trigger" if overdue else ""
+    return f"> {bound} ({phrases.whole(count)} unanswered){late}"
 
 
 def is_bounded(requirement: FormalizedRequirement | None) -> bool:
@@ -299,6 +325,12 @@ def _unknown(result: Result) -> Listing:
         for first, last in runs[:LISTED]
     )
     return Listing(tuple(lines), total)
+
+
+def _unknown_inputs(result: Result) -> Listing:
+    inputs = result.unknown_inputs or ()
+    lines = (one.in_words(result.clock) for one in inputs[:LISTED])
+    return Listing(tuple(lines), len(inputs))
 
 
 # Reasons ---------------------------------------------------------------------------------------

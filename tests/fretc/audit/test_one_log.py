@@ -116,7 +116,10 @@ def test_what_never_triggers_is_vacuous() -> None:
 def test_an_unknown_trigger_is_no_data() -> None:
     evidence = audited(EVENTUALLY, recorded([FAR, float("nan"), FAR], [MOVING, MOVING, STILL]))
     assert evidence.verdict == "no data"
-    assert evidence.reason == "unknown where it matters: `near` at 1 tick"
+    assert evidence.reason == (
+        "unknown where it matters: `near` at 1 tick; first `near` from 1 s to 2 s (1 s): `d` was "
+        "no measurement"
+    )
 
 
 def test_a_stale_response_is_no_data_and_never_a_pass() -> None:

@@ -710,3 +710,15 @@ def test_a_log_that_was_not_hashed_is_reported_as_such(tmp_path: Path) -> None:
     (run,) = content_of(known, tmp_path, {**audited, "hashes": hashes})["runs"]
     assert run["sha256"] == ""
     assert run["checked"].endswith("; not hashed")
+
+
+def test_a_violated_run_does_not_read_as_if_its_bound_were_kept(tmp_path: Path) -> None:
+    sentence = "when near the robot shall within 300 milliseconds satisfy stopped"
+    known = project(tmp_path, requirement("R1", sentence))
+    late = violation(14, 17, trigger=11)
+    runs = {"violations": [late], "latencies_s": [0.3, 0.1]}
+    (view,) = content_of(known, tmp_path, result(known, "violated", **runs))["requirements"]
+    (row,) = view["results"]
+    assert row["unanswered"] == "> 300 ms (1 unanswered); overdue up to 700 ms after the trigger"
+    held = content_of(known, tmp_path, result(known, "satisfied"))["requirements"][0]
+    assert held["results"][0]["unanswered"] == ""
