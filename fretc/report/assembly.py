@@ -114,6 +114,7 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         run_list,
         all_changes,
         [text for text in overall_result.sentences if text != trust(all_runs, project)],
+        evidence,
     )
     whole = ReportView(
         schema=SCHEMA,

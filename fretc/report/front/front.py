@@ -12,12 +12,13 @@ from math import fsum
 from compiler.files.build_id import __version__
 from compiler.files.dates import is_date
 from compiler.logic.claims import Layer
-from fretc.audit.evidence.result_summaries import audited_s
+from fretc.audit.evidence.result_summaries import EvidenceSource, audited_s
 from fretc.audit.evidence.verdicts import BROKEN, RETIRED
 from fretc.report.front import violations
 from fretc.report.front.causes import causes, line, link
 from fretc.report.front.gravity import Gravity
 from fretc.report.front.groups import run_groups
+from fretc.report.front.identity import identity
 from fretc.report.front.speech import capital, day, days, duration
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -44,6 +45,7 @@ def front(
     views: Sequence[RunSummary],
     changes: Sequence[RequirementChanges],
     notes: Sequence[str],
+    evidence: EvidenceSource | None,
 ) -> Front:
     """The view of the front page.
 
@@ -58,6 +60,7 @@ def front(
         views: views of the runs, in any order.
         changes: changes since the review.
         notes: sentences that qualify the figures.
+        evidence: None if no run was audited.
     """
     active = [view for view in sections if view.status != RETIRED]
     red = violations.gravest_first([*filter(violations.is_red, active)], grave)
@@ -67,6 +70,7 @@ def front(
     return Front(
         title=title,
         facts=tuple(_facts(active, runs, assessed)),
+        identity=identity(runs, groups, evidence),
         headline=violations.headline(red, len(runs), grave) if is_current else overall.headline,
         sentences=tuple(violations.sentences(red, groups, grave)),
         figures=(

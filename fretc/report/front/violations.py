@@ -9,6 +9,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from fretc.audit.evidence.verdicts import BROKEN
 from fretc.report.front.gravity import NO_HAZARD, Gravity
+from fretc.report.front.identity import interval
 from fretc.report.front.speech import capital, number
 from fretc.report.model import phrases
 from fretc.report.model.front import RunGroup
@@ -141,5 +142,9 @@ def _others(
         runs = phrases.times(len(undecided), "other run")
         yield f"undecided in {runs}: {phrases.some([names[run] for run in undecided], _RUNS)}"
     missing = len(names.keys() - words.keys())
+    audited = len(words.keys() & names.keys())
+    if broken and audited > 1:
+        share = interval(len(broken), len(undecided), audited)
+        yield f"95 % interval of the share of failing runs: {share}"
     if missing:
         yield f"not audited in {phrases.times(missing, 'run')}"
