@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from compiler.files.build_id import __version__
 from compiler.project.project import Project
@@ -20,7 +20,7 @@ from fretc.report.across.assembly import across
 from fretc.report.diagnostics import idle_waivers, stale_evidence
 from fretc.report.front.front import front
 from fretc.report.front.gravity import gravities
-from fretc.report.front.violations import gravest_first
+from fretc.report.front.violations import gravest_first, is_red
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, Inputs, assessments
 from fretc.report.model.marks import verdict_mark
@@ -42,7 +42,7 @@ from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.reproduction import commands, folder_of, manifest
 from fretc.report.sections.requirement import remark, section, situation_views
 from fretc.report.sections.results import is_bounded
-from fretc.report.sections.runs import AuditedFile, run_summaries, runs, trust
+from fretc.report.sections.runs import AuditedFile, damage, run_summaries, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.set_analysis.assembly import in_front, in_overall, set_analysis
 from fretc.traceability.acceptances import warnings
@@ -128,11 +128,9 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         runs=run_list,
         claims=_claims(assessed, len(all_runs), evidence.selection if evidence else None),
         counts=_counts(assessed),
-        not_shown=tuple(
-            NotShown(view.id, view.title, view.anchor, view.mark, view.reasons)
-            for view in worst_first(sections)
-            if view.reasons
-        ),
+        violated=tuple(_not_shown(filter(is_red, ordered))),
+        not_shown=tuple(_not_shown(view for view in worst_first(sections) if not is_red(view))),
+        damaged=tuple(damage(run_list, sections)),
         reservations=reservations,
         planned=tuple(plan for view in sections for plan in view.planned if view.status != RETIRED),
         proofs=proof_views(
@@ -166,6 +164,12 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         *idle_signatures(inputs.book, assessed),
     )
     return whole, details, diagnostics
+
+
+def _not_shown(views: Iterable[RequirementView]) -> Iterator[NotShown]:
+    for view in views:
+        if view.reasons:
+            yield NotShown(view.id, view.title, view.anchor, view.mark, view.reasons)
 
 
 def _checks(

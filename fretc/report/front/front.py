@@ -158,7 +158,7 @@ def _violated(active: Sequence[RequirementView], red: Sequence[RequirementView])
     ]
     lines += [line("violated in a run, but waived or open over all runs", waived)] if waived else []
     kind = signs.BAD.kind if red or refuted else ""
-    return Figure("violated", len(red), "violated", kind, "not-shown", tuple(lines))
+    return Figure("violated", len(red), "violated", kind, "violated", tuple(lines))
 
 
 def _not_shown(active: Sequence[RequirementView], runs: Sequence[RunSummary]) -> Figure:

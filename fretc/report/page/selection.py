@@ -267,7 +267,12 @@ def slimmed(report: ReportView, chosen: PageContent) -> ReportView:
     not_shown = tuple(
         replace(each, reasons=_few(each.reasons, "in its section")) for each in report.not_shown
     )
-    return replace(report, requirements=views, not_shown=not_shown, runs=chosen.runs)
+    violated = tuple(
+        replace(each, reasons=_few(each.reasons, "in its section")) for each in report.violated
+    )
+    return replace(
+        report, requirements=views, violated=violated, not_shown=not_shown, runs=chosen.runs
+    )
 
 
 def _slim(view: RequirementView, chosen: PageContent) -> RequirementView:

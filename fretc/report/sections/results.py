@@ -40,6 +40,7 @@ from fretish.bindings.amounts import margin as margin_text
 from fretish.bindings.declarations import Declarations
 from fretish.clock import Clock
 from fretish.meaning import span
+from monitors import kernel
 
 LISTED = 100
 """Maximum number of listed violations, open obligations and unknown intervals."""
@@ -348,15 +349,22 @@ def reasons(
         probability = assessment.probability
         lines.append((probability.mark.severity, _probability_reason(probability)))
     else:
-        audits = [audit for audit in assessment.audits if not audit.mark.shows]
+        unshown = [audit for audit in assessment.audits if not audit.mark.shows]
+        damaged = [audit for audit in unshown if _is_lost(audit)]
+        audits = unshown if len(damaged) == 1 else [a for a in unshown if not _is_lost(a)]
         left += len(audits)
         worst = sorted(audits, key=lambda audit: audit.mark.severity)[:_NAMED]
         lines += [(audit.mark.severity, _run_reason(audit, runs)) for audit in worst]
+        if len(damaged) > 1:
+            lines.append((damaged[0].mark.severity, _damaged_reason(damaged, runs)))
         if not assessment.audits and assessment.requirement is not None:
             why = "the audit did not cover it" if audited else "no run has been audited"
             lines.append((severity(NOT_EXERCISED), why))
     texts = [text for _, text in sorted(lines, key=lambda line: line[0])]
     few = (*texts[:_NAMED], f"and {phrases.times(left, 'more run')}") if left > 0 else tuple(texts)
+    held = sum(audit.mark.shows for audit in assessment.audits)
+    if 0 < held < len(assessment.audits) and assessment.probability is None:
+        few = (*few, f"it holds in {held} of {phrases.times(len(assessment.audits), 'run')}")
     return (*few, *since_review(assessment.standing))
 
 
@@ -374,6 +382,16 @@ def _run_reason(audit: SingleAudit, runs: Mapping[RunKey, AuditedFile]) -> str:
     result = audit.result
     label = runs[run_key(result)].name
     return f"{label}: {audit.verdict}, {result.reason}{_because(audit.suspicions)}"
+
+
+def _is_lost(audit: SingleAudit) -> bool:
+    """Whether the damage of the log leaves the verdict open."""
+    return audit.verdict == kernel.NO_DATA and not audit.result.intact
+
+
+def _damaged_reason(audits: Sequence[SingleAudit], runs: Mapping[RunKey, AuditedFile]) -> str:
+    names = phrases.some([runs[run_key(audit.result)].name for audit in audits], 4)
+    return f"no data from {len(audits)} damaged logs: {names}"
 
 
 def _because(suspicions: Sequence[str]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from dataclasses import replace as changed
 from functools import cached_property
@@ -21,10 +21,11 @@ from fretc.audit.evidence.result_summaries import (
 from fretc.audit.evidence.schema import CheckedChunks, Gap, LogFinding, TopicRecord
 from fretc.report.model import phrases
 from fretc.report.model.marks import sign_mark
-from fretc.report.model.views import Remark, RunSummary, TopicView
+from fretc.report.model.views import Remark, RequirementView, RunSummary, TopicView
 from fretc.traceability.acceptances import as_diagnostic
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Severity
+from monitors import kernel
 
 _NONE = "\N{EN DASH}"
 _INTACT = sign_mark("no damage found", signs.GOOD)
@@ -117,6 +118,29 @@ def file_names(paths: Sequence[Sequence[str]]) -> list[str]:
 def _short(name: str) -> str:
     half = _LONGEST // 2
     return name if len(name) <= _LONGEST else f"{name[:half]}…{name[1 - half :]}"
+
+
+def damage(runs: Sequence[RunSummary], sections: Sequence[RequirementView]) -> Iterator[str]:
+    """`log-cut-6: the log breaks off after 128.28 s: 15 requirements have no verdict from it`.
+
+    Args:
+        runs: the views of all runs.
+        sections: the views of all requirements.
+    """
+    lost = Counter(
+        result.run
+        for view in sections
+        for result in view.results
+        if result.mark.word == kernel.NO_DATA
+    )
+    for run in runs:
+        if run.intact:
+            continue
+        errors = [finding for finding in run.findings if finding.severity != "note"]
+        what = errors[0].message if errors else "the log is damaged"
+        count = phrases.times(lost[run.anchor], "requirement")
+        verb = "has" if lost[run.anchor] == 1 else "have"
+        yield f"{run.label}: {what}: {count} {verb} no verdict from it. Record it again."
 
 
 # Views -----------------------------------------------------------------------------------------

@@ -115,6 +115,7 @@ def test_the_worst_run_decides_and_every_reason_is_reported(tmp_path: Path) -> N
     assert content["not_shown"][0]["reasons"] == [
         "c: inconclusive, reason of R1",
         "b: vacuous, reason of R1",
+        "it holds in 1 of 3 runs",
     ]
     assert [(c["mark"]["word"], c["requirements"], c["results"]) for c in content["counts"]] == [
         ("violated", 0, 0),

@@ -144,6 +144,7 @@ def test_a_verdict_is_a_word_and_a_sign_not_only_a_colour(html: str) -> None:
 def test_the_parts_stand_in_their_order(html: str) -> None:
     assert re.findall(r"<h2>(.*?)</h2>", html) == [
         "The matrix",
+        "Violated requirements",
         "Requirements that are not shown, and why",
         "What changed since the review",
         "Across runs",
