@@ -360,8 +360,10 @@ def _of_whom(evidence: RunResult) -> str:
         for name, tally in evidence.propositions.items()
         if tally.unknown
     ]
-    first = next(iter(evidence.unknown_inputs), None)
-    when = f"; first {first.in_words(evidence.clock)}" if first else ""
+    longest = max(
+        evidence.unknown_inputs, key=lambda one: one.last_tick - one.first_tick, default=None
+    )
+    when = f"; the longest: {longest.in_words(evidence.clock)}" if longest else ""
     return f": {', '.join(parts)}{when}" if parts else ""
 
 

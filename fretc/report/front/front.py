@@ -174,19 +174,23 @@ def _changed(active: Sequence[RequirementView], changes: Sequence[RequirementCha
     if active and len(unreviewed) == len(active) and not changes:
         nothing = FigureLine("no requirement is reviewed", (), 0)
         return Figure("changed", None, words, "", "changes", (nothing,))
+    roots = [change for change in changes if change.is_root]
     lines = [
         FigureLine(f"{change.requirement}: {'; '.join(change.lines[:2]) or 'verdicts'}", (), 0)
-        for change in changes[:_CHANGES]
+        for change in roots[:_CHANGES]
     ]
-    more = len(changes) - _CHANGES
+    more = len(roots) - _CHANGES
     lines += [FigureLine(f"and {phrases.times(more, 'more requirement')}", (), 0)] * (more > 0)
+    others = {change.anchor for change in changes if not change.is_root}
+    stale = [link(view) for view in active if view.anchor in others]
+    lines += [line("not changed, only need `fretc analyze`", stale)] if stale else []
     verdicts = [(then, now) for change in changes for _, then, now in change.verdicts]
     worse = sum(now in BROKEN and then not in BROKEN for then, now in verdicts)
     became = f"{phrases.times(worse, 'verdict')} became violated"
     lines += [FigureLine(became, (), 0)] * (worse > 0)
     lines += [line("not reviewed", unreviewed)] if unreviewed else []
     kind = signs.OPEN.kind if changes else ""
-    return Figure("changed", len(changes), words, kind, "changes", tuple(lines))
+    return Figure("changed", len(roots), words, kind, "changes", tuple(lines))
 
 
 # Trust -----------------------------------------------------------------------------------------

@@ -163,8 +163,8 @@ class Assessment:
 
     @cached_property
     def reviewed_audits(self) -> tuple[SingleAudit, ...]:
-        """The audits, suspect if the requirement has changed since its review."""
-        review = since_review(self.standing)
+        """The audits, suspect if what they depend on has changed since the review."""
+        review = () if self.standing.needs_only_analysis else since_review(self.standing)
         return tuple(audit.since(review) for audit in self.audits) if review else self.audits
 
     @property

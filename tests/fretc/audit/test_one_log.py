@@ -117,8 +117,8 @@ def test_an_unknown_trigger_is_no_data() -> None:
     evidence = audited(EVENTUALLY, recorded([FAR, float("nan"), FAR], [MOVING, MOVING, STILL]))
     assert evidence.verdict == "no data"
     assert evidence.reason == (
-        "unknown where it matters: `near` at 1 tick; first `near` from 1 s to 2 s (1 s): `d` was "
-        "no measurement"
+        "unknown where it matters: `near` at 1 tick; the longest: `near` from 1 s to 2 s (1 s): "
+        "`d` was no measurement"
     )
 
 

@@ -717,9 +717,26 @@ def test_a_violated_run_does_not_read_as_if_its_bound_were_kept(tmp_path: Path) 
     sentence = "when near the robot shall within 300 milliseconds satisfy stopped"
     known = project(tmp_path, requirement("R1", sentence))
     late = violation(14, 17, trigger=11)
-    runs = {"violations": [late], "latencies_s": [0.3, 0.1]}
+    runs: dict[str, Any] = {"violations": [late], "latencies_s": [0.3, 0.1]}
     (view,) = content_of(known, tmp_path, result(known, "violated", **runs))["requirements"]
     (row,) = view["results"]
     assert row["unanswered"] == "> 300 ms (1 unanswered); overdue up to 700 ms after the trigger"
     held = content_of(known, tmp_path, result(known, "satisfied"))["requirements"][0]
     assert held["results"][0]["unanswered"] == ""
+
+
+def test_damaged_logs_are_named_once_with_what_they_leave_open(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    hurt = {"intact": False, "findings": []}
+    runs = [result(known, "satisfied", run="a.mcap")]
+    runs += [result(known, "no data", run=f"{name}.mcap", health=hurt) for name in "bc"]
+    content = content_of(known, tmp_path, *runs)
+    assert content["violated"] == []
+    assert content["not_shown"][0]["reasons"] == [
+        "no data from 2 damaged logs: b and c",
+        "it holds in 1 of 3 runs",
+    ]
+    assert content["damaged"] == [
+        f"{name}: the log is damaged: 1 requirement has no verdict from it. Record it again."
+        for name in "bc"
+    ]

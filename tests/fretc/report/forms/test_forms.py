@@ -188,7 +188,7 @@ def test_markdown_is_one_screen_and_what_it_leaves_out_is_counted_and_never_wors
         for n, (word, suspect) in enumerate(marks)
     ]
     flip = (("a.mcap", "satisfied", "violated"),)
-    change = RequirementChanges("R0", "", "", "", "", (), (long,) * 9, (long,), (), "", flip)
+    change = RequirementChanges("R0", "", "", "", "", (), (long,) * 9, (long,), (), "", flip, True)
     remark = Remark("F203", "warning", long, accepted=long or "meant")
     text = markdown(
         replace(
