@@ -78,7 +78,7 @@ def _id(view: RequirementView) -> str:
 def _gravest_first(
     views: Sequence[RequirementView], report: ReportView
 ) -> Sequence[RequirementView]:
-    return gravest_first(views, gravities(report.matrix, report.hazards))
+    return worst_first(gravest_first(views, gravities(report.matrix, report.hazards)))
 
 
 def _list(

@@ -94,12 +94,15 @@ def test_each_verdict_has_its_overall_result(
     assert overall["sentences"] == [sentence, *limit, "No damage was found in the run."]
     assert words(content["requirements"]) == [verdict]
     assert words(content["requirements"][0]["results"]) == [verdict]
-    assert [line["requirement"] for line in content["not_shown"]] == (
-        [] if verdict == "satisfied" else ["R1"]
-    )
+    listed = {name: [line["requirement"] for line in content[name]] for name in PARTS}
+    assert listed["violated"] == (["R1"] if verdict == "violated" else [])
+    assert listed["not_shown"] == ([] if verdict in ("satisfied", "violated") else ["R1"])
     assert report.diagnostics == ()
     validate("report.schema.json", content)
     assert f"</span>{verdict}</span>" in as_html(report)
+
+
+PARTS = ("violated", "not_shown")
 
 
 def test_the_worst_run_decides_and_every_reason_is_reported(tmp_path: Path) -> None:
