@@ -65,7 +65,7 @@ def schema() -> dict[str, Any]:
         AnalysisDocument,
         SCHEMA,
         "Which requirements were analyzed, and what was found, as `fretc analyze` writes it",
-        "Nothing but `seconds` depends on when or where it was made.",
+        "Nothing in it depends on when or where it was made.",
     )
 
 
@@ -76,9 +76,15 @@ def document(
     *,
     as_fret: bool,
 ) -> AnalysisDocument:
-    """The evidence of an analysis of these requirements."""
+    """The evidence of an analysis of these requirements, without its times."""
+    untimed = tuple(records.replace(each, seconds=records.UNSET) for each in analysis.components)
     return AnalysisDocument(
-        SCHEMA, __version__, as_fret, members(requirements), members(assumptions), analysis
+        SCHEMA,
+        __version__,
+        as_fret,
+        members(requirements),
+        members(assumptions),
+        records.replace(analysis, components=untimed),
     )
 
 

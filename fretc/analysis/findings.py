@@ -10,7 +10,7 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import Annotated, Any, Final, Literal
 
-from compiler.files.records import Count, Name, Record, about, json_schema
+from compiler.files.records import UNSET, Count, Name, Record, UnsetType, about, json_schema
 from fretc.analysis.arena.alphabet import Tick
 from fretish.bindings.declarations import Role
 
@@ -32,7 +32,10 @@ class Component(Record, frozen=True):
     outputs: Annotated[tuple[Name, ...], about("the outputs that the requirements are about")]
     verdict: RealizabilityVerdict
     why: Annotated[str, about("the method that decided it, or why it was not decided")]
-    seconds: Annotated[float, about("CPU seconds")]
+    seconds: Annotated[
+        float | UnsetType,
+        about("CPU seconds; absent in the evidence file, which depends on the requirements alone"),
+    ] = UNSET
 
 
 class Conflict(Record, frozen=True):

@@ -13,12 +13,14 @@ from compiler.situations.situations import Situation
 from compiler.situations.thresholds import ThresholdPosition
 from fretc.audit.evidence.schema import Health, Situations
 from fretc.audit.evidence.writer import RunResult, health
+from fretc.audit.measurements.intervals import interval_words
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, judge
 from fretc.audit.measurements.margins import Margin, margins, worst
 from fretc.audit.measurements.situations import Near, nowhere_known, situation_ticks
 from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
+from fretc.audit.measurements.unknown_inputs import unknown_inputs
 from fretc.audit.measurements.violations import DemandText, Moment, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
@@ -213,6 +215,9 @@ def _evidence(
         health=found,
         assumptions=_assumed(declarations, requirement),
         situations=_situations(requirement, columns, ticks, near, at),
+        unknown_inputs=unknown_inputs(columns, at, declarations, recording)
+        if judgement.verdict == kernel.NO_DATA
+        else (),
     )
     evidence = replace(evidence, reason=_reason(evidence, recording, declarations))
     if requirement.count is None:
@@ -324,13 +329,13 @@ def _broken(evidence: RunResult) -> str:
     first = evidence.violations[0]
     trigger = f", triggered at {seconds(first.trigger.seconds)}" if first.trigger else ""
     return (
-        f"broken from {seconds(first.first.seconds)} to {seconds(first.last.seconds)}{trigger}"
+        f"{interval_words(first.first, first.last, evidence.clock)}{trigger}"
         f"{_more(len(evidence.violations))}"
     )
 
 
 def _more(count: int) -> str:
-    return f", and {_times(count - 1, 'more stretch', 'more stretches')}" if count > 1 else ""
+    return f", and at {_times(count - 1, 'other time')}" if count > 1 else ""
 
 
 def _unknown(evidence: RunResult, recording: Recording) -> str:
@@ -355,7 +360,11 @@ def _of_whom(evidence: RunResult) -> str:
         for name, tally in evidence.propositions.items()
         if tally.unknown
     ]
-    return f": {', '.join(parts)}" if parts else ""
+    longest = max(
+        evidence.unknown_inputs, key=lambda one: one.last_tick - one.first_tick, default=None
+    )
+    when = f"; the longest: {longest.in_words(evidence.clock)}" if longest else ""
+    return f": {', '.join(parts)}{when}" if parts else ""
 
 
 def _latency(evidence: RunResult) -> str:

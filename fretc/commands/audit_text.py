@@ -16,6 +16,7 @@ from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Result, ThresholdRecord, Violation
 from fretc.audit.evidence.verdicts import SHOWN, VERDICTS
 from fretc.audit.measurements.confidence_intervals import REFUTED
+from fretc.audit.measurements.intervals import end_ns
 from fretc.audit.outputs.totals import (
     COUNTED,
     ResultCount,
@@ -31,7 +32,7 @@ from fretc.coverage.coverage import of_all_runs
 from fretc.coverage.text_output import in_counts
 from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE
 from fretc.terminal.screen import Screen, padded, titled, width
-from fretish.bindings.amounts import count_of, exact, instant, seconds, value
+from fretish.bindings.amounts import count_of, duration, exact, instant, seconds, value
 from fretish.diagnostics.rendering import visible
 from fretish.documents import named
 
@@ -201,11 +202,12 @@ def _violation(result: Result, violation: Violation) -> Iterator[str]:
         violation: one of its violations.
     """
     first, start = violation.start_ns, result.start_ns or 0
-    end = f", until {seconds((violation.end_ns - start) / 1e9)}"
+    end = end_ns(violation.last, result.clock) or violation.end_ns
+    until = f", until {seconds((end - start) / 1e9)} ({duration((end - first) / 1e9)})"
     many = len(result.violations)
     yield (
         f"at {_time(first)}, {seconds((first - start) / 1e9)} into the log"
-        f"{end if violation.end_ns > first else ''}"
+        f"{until if end > first else ''}"
         f"{f'; the longest of {many:,} stretches' if many > 1 else ''}"
     )
     known = f"; {values(result, violation)}" if violation.values else ""

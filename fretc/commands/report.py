@@ -177,6 +177,9 @@ def report(
         ajpf=ajpf_results,
         signers=signers,
         analysis=analysis,
+        requirements=requirements,
+        hazards=hazards,
+        play=play,
     )
     print_project_diagnostics([*project.diagnostics, *outcome.diagnostics], requirements)
     if outcome.report is None or outcome.details is None:

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from compiler.files.build_id import __version__
 from compiler.project.project import Project
@@ -19,6 +19,8 @@ from fretc.audit.selection.choice import in_words
 from fretc.report.across.assembly import across
 from fretc.report.diagnostics import idle_waivers, stale_evidence
 from fretc.report.front.front import front
+from fretc.report.front.gravity import gravities
+from fretc.report.front.violations import gravest_first, is_red
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, Inputs, assessments
 from fretc.report.model.marks import verdict_mark
@@ -40,7 +42,7 @@ from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.reproduction import commands, folder_of, manifest
 from fretc.report.sections.requirement import remark, section, situation_views
 from fretc.report.sections.results import is_bounded
-from fretc.report.sections.runs import AuditedFile, run_summaries, runs, trust
+from fretc.report.sections.runs import AuditedFile, damage, run_summaries, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.set_analysis.assembly import in_front, in_overall, set_analysis
 from fretc.traceability.acceptances import warnings
@@ -69,9 +71,8 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         section(each, inputs, runs_by_key, anchors, shared, joint, exercised.get(each.id))
         for each in assessed
     )
-    details = Details(
-        evidence, project, {assessment.anchor: assessment for assessment in assessed}, runs_by_key
-    )
+    assessed_as = {assessment.anchor: assessment for assessment in assessed}
+    details = Details(evidence, project, assessed_as, runs_by_key)
     longest = _longest_waits(assessed, sections, details)
     reservations = (
         *(line for view in sections for line in _reservations(view, longest)),
@@ -81,12 +82,21 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
     groups = reviews.change_groups(assessed, changes)
     changed = tuple(reviews.change_sentences(changes, groups))
     signature_list = signatures(inputs, assessed)
+    rows, hazards = matrix(project, assessed, sections), hazard_views(project)
+    grave = gravities(rows, hazards)
+    ordered = gravest_first(sections, grave)
     overall_result = overall(
-        project, assessed, sections, all_runs, reservations, withdrawn, signature_list, changed
+        project,
+        [assessed_as[view.anchor] for view in ordered],
+        ordered,
+        all_runs,
+        reservations,
+        withdrawn,
+        signature_list,
+        changed,
     )
     analysis = set_analysis(together, project, anchors) if together else None
     overall_result = in_overall(overall_result, analysis)
-    rows = matrix(project, assessed, sections)
     run_list = run_summaries(all_runs, project)
     all_changes = (*changes, *reviews.withdrawals(withdrawn))
     components = tuple(
@@ -98,11 +108,13 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         overall_result,
         sections,
         rows,
+        grave,
         assessed,
         all_runs,
         run_list,
         all_changes,
         [text for text in overall_result.sentences if text != trust(all_runs, project)],
+        evidence,
     )
     whole = ReportView(
         schema=SCHEMA,
@@ -116,11 +128,9 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         runs=run_list,
         claims=_claims(assessed, len(all_runs), evidence.selection if evidence else None),
         counts=_counts(assessed),
-        not_shown=tuple(
-            NotShown(view.id, view.title, view.anchor, view.mark, view.reasons)
-            for view in worst_first(sections)
-            if view.reasons
-        ),
+        violated=tuple(_not_shown(filter(is_red, ordered))),
+        not_shown=tuple(_not_shown(view for view in worst_first(sections) if not is_red(view))),
+        damaged=tuple(damage(run_list, sections)),
         reservations=reservations,
         planned=tuple(plan for view in sections for plan in view.planned if view.status != RETIRED),
         proofs=proof_views(
@@ -128,7 +138,7 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         ),
         verification=phrases.place(inputs.verification.file) if inputs.verification else "",
         remarks=tuple(remark(diagnostic) for diagnostic in (*project.diagnostics, *checked)),
-        hazards=hazard_views(project),
+        hazards=hazards,
         matrix=rows,
         orphans=orphans(project, assessed, briefs),
         reviewed=reviews.summary(assessed, inputs.book),
@@ -154,6 +164,12 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         *idle_signatures(inputs.book, assessed),
     )
     return whole, details, diagnostics
+
+
+def _not_shown(views: Iterable[RequirementView]) -> Iterator[NotShown]:
+    for view in views:
+        if view.reasons:
+            yield NotShown(view.id, view.title, view.anchor, view.mark, view.reasons)
 
 
 def _checks(

@@ -17,7 +17,7 @@ from fretc.audit.store.anywhere import source
 from fretc.audit.store.container import StoreError
 from fretc.report.assembly import report
 from fretc.report.forms.json_text import json_pieces
-from fretc.report.model.assessments import Inputs
+from fretc.report.model.assessments import Inputs, NamedFiles
 from fretc.report.model.views import ReportView
 from fretc.report.page.html import html
 from fretc.report.sections.details import Details
@@ -70,6 +70,9 @@ def make(
     ajpf: Sequence[str] = (),
     signers: str | None = None,
     analysis: str | None = None,
+    requirements: str | None = None,
+    hazards: str | None = None,
+    play: bool = False,
 ) -> ReportBuild:
     """Read the files and make the report.
 
@@ -82,6 +85,10 @@ def make(
         ajpf: paths of results that the `run.py` of bundles wrote.
         signers: path of a list of signers; None: no signature is valid.
         analysis: path of a file that `fretc analyze` wrote; None: there is no analysis.
+        requirements: the folder or file of the project, as its user named it, for the command that
+            the report prints; None: the folder of the first file.
+        hazards: path of the hazards of the project, if its user named one, for that command.
+        play: whether the page will include the page of `fretc play`, for that command.
     """
     audits = source(evidence)
     if isinstance(audits, Diagnostic) and audits.is_error:
@@ -114,6 +121,7 @@ def make(
         merged(proofs.proofs if proofs else (), proofs_of_ajpf),
         signatures,
         together,
+        NamedFiles(requirements, hazards, lock, waivers, signers, tuple(ajpf), play),
     )
     try:
         full_report, details, report_diagnostics = report(inputs)

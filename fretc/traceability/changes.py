@@ -55,6 +55,11 @@ class ReviewChange:
     """Whether a whole table was added or removed, so that an absent text has no default."""
 
     @property
+    def is_of_analysis(self) -> bool:
+        """Whether only the analysis is out of date, because another requirement has changed."""
+        return self.is_of_evidence and self.node.kind == MEMBER
+
+    @property
     def text(self) -> str:
         """`speed: vx <= 0.40 m/s → 0.35 m/s`: only the differing word, if there is only one."""
         if self.is_of_evidence:

@@ -386,6 +386,15 @@ class ReviewedRequirement:
         return any(suspect.link.target.kind == REVIEW for suspect in self.suspects)
 
     @property
+    def needs_only_analysis(self) -> bool:
+        """Whether nothing of the requirement has changed, but the analysis is out of date.
+
+        No run's verdict depends on the analysis.
+        """
+        own = not all(change.is_of_analysis for change in self.changes)
+        return bool(self.changes) and not own and not self.has_other_texts
+
+    @property
     def causes(self) -> tuple[ChainItem, ...]:
         """The changes that make links suspect, without duplicates."""
         return tuple(dict.fromkeys(cause for suspect in self.suspects for cause in suspect.causes))

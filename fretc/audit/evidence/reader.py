@@ -51,6 +51,11 @@ class EvidenceFile(HeadProperties):
     document: EvidenceDocument
 
     @property
+    def content_sha256(self) -> str:
+        """SHA-256 of the file: nothing in it depends on when or where it was made."""
+        return self.sha256
+
+    @property
     def head(self) -> EvidenceDocument:
         """The facts of the audit as a whole."""
         return self.document

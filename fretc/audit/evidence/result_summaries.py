@@ -69,7 +69,8 @@ class ResultSummary:
     first_violation_ns: int | None
     first_violation_s: float | None
     unknown: int
-    """Number of intervals of ticks at which it is unknown whether a demand was broken."""
+    """Number of intervals of ticks at which it is unknown whether a demand was broken; if there is
+    none and no verdict, of those at which inputs were unknown."""
     unknown_ticks: int
     latency_median_s: float | None
     latency_max_s: float | None
@@ -191,6 +192,10 @@ class EvidenceSource(Protocol):
         """SHA-256 of the evidence file; of a store the SHA-256 of its manifest."""
 
     @property
+    def content_sha256(self) -> str:
+        """The same, without the register of a store: another audit of the same logs gives it."""
+
+    @property
     def fretc(self) -> str:
         """Version of the tool that audited."""
 
@@ -305,6 +310,11 @@ class _Violation(PartialRecord, frozen=True):
     start_s: Seconds
 
 
+class _Interval(PartialRecord, frozen=True):
+    first_tick: Count
+    last_tick: Count
+
+
 _NO_HEALTH = Health(False, None, None, (), (), {})
 
 
@@ -333,6 +343,7 @@ class CountedResult(PartialRecord, frozen=True, kw_only=True):
     fingerprints: Hashes = record_field(name="hashes")
     assumptions: tuple[str, ...]
     outcomes: Outcomes | UnsetType = record_field(name="trials", default=UNSET)
+    unknown_inputs: tuple[_Interval, ...] | UnsetType = UNSET
 
     def __post_init__(self) -> None:
         """Raise ValueError if a time has more than 64 bits."""
@@ -367,7 +378,7 @@ def brief(result: Result | CountedResult) -> ResultSummary:
         violated_ticks=sum(v.last_tick - v.first_tick + 1 for v in violations),
         first_violation_ns=first.start_ns if first else None,
         first_violation_s=first.start_s if first else None,
-        unknown=len(result.unknown),
+        unknown=len(undecided_ticks(result)),
         unknown_ticks=sum(last - first + 1 for first, last in result.unknown),
         latency_median_s=median(latencies) if latencies else None,
         latency_max_s=max(latencies, default=None),
@@ -376,6 +387,12 @@ def brief(result: Result | CountedResult) -> ResultSummary:
         judgement=judgement(result),
         trials=result.trials,
     )
+
+
+def undecided_ticks(result: Result | CountedResult) -> Sequence[tuple[int, int]]:
+    """The intervals of ticks at which unknown values leave the verdict open."""
+    inputs = {(one.first_tick, one.last_tick) for one in result.unknown_inputs or ()}
+    return result.unknown or sorted(inputs)
 
 
 def judgement(result: Result | CountedResult) -> str:

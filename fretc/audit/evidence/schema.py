@@ -42,6 +42,8 @@ from fretc.audit.evidence.samples import (
 )
 from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.measurements.trials import Trials
+from fretc.audit.measurements.unknown_inputs import MOST as MOST_UNKNOWN
+from fretc.audit.measurements.unknown_inputs import UnknownInput
 from fretc.audit.measurements.violations import Moment as Moment
 
 SCHEMA: Final = "fretc-evidence-1"
@@ -467,6 +469,15 @@ class Result(Record, frozen=True, kw_only=True):
         about(
             "the situations of the requirement; absent: not measured, as in evidence of earlier "
             "versions, or because the log could not be read"
+        ),
+    ] = UNSET
+    unknown_inputs: Annotated[
+        Annotated[tuple[UnknownInput, ...], Meta(min_length=1, max_length=MOST_UNKNOWN)]
+        | UnsetType,
+        about(
+            "the first 100 intervals at which propositions of the requirement were unknown, if "
+            "the verdict is `no data`; absent: there are none, or the evidence is of an earlier "
+            "version"
         ),
     ] = UNSET
     labels: Annotated[

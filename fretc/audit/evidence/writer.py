@@ -36,6 +36,7 @@ from fretc.audit.evidence.schema import (
 from fretc.audit.measurements.margins import CROSSED, Margin
 from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.measurements.trials import Trials
+from fretc.audit.measurements.unknown_inputs import UnknownInput
 from fretc.audit.measurements.violations import Moment, SampleWindow
 from fretc.audit.measurements.violations import ViolationInterval as Broken
 from fretc.audit.phases.by_shift import PhaseInterval, Phases
@@ -87,6 +88,8 @@ class RunResult:
     assumptions: tuple[str, ...]
     trials: Trials | None = None
     """The outcomes of its triggers, for a requirement with a probability."""
+    unknown_inputs: tuple[UnknownInput, ...] = ()
+    """When propositions were unknown, of a result without a verdict."""
     situations: Situations | None = None
     """The situations that the run showed; None: not measured."""
     phases: Phases | None = None
@@ -172,6 +175,7 @@ def as_record(evidence: RunResult) -> Result:
         assumptions=evidence.assumptions,
         outcomes=_known(evidence.trials, _outcomes),
         phases=_known(evidence.phases, phase_verdicts),
+        unknown_inputs=evidence.unknown_inputs or UNSET,
         situations=_known(evidence.situations, lambda situations: situations),
     )
 

@@ -28,6 +28,7 @@ from compiler.formalization.record import wording
 from fretc.audit.evidence.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
 from fretc.audit.evidence.schema import Result
 from fretc.audit.log_paths import ANNOTATIONS
+from fretc.audit.measurements.intervals import end_ns
 from fretc.audit.measurements.states import OPEN, UNKNOWN
 from fretc.audit.outputs.violated_values import values
 from fretish.bindings.amounts import duration, seconds
@@ -151,7 +152,11 @@ def _events(result: Result, requirements: Mapping[str, FormalizedRequirement]) -
         at_first = f": {values(result, violation)}" if violation.values else ""
         since = f", triggered at {seconds(cause.seconds)}" if cause else ""
         yield event(violation.start_ns, _ERROR, f"{id}: violated from here on{since}{at_first}")
-        yield event(violation.end_ns, _ERROR, f"{id}: violated up to here")
+        end = end_ns(violation.last, result.clock)
+        if end is None:
+            yield event(violation.end_ns, _ERROR, f"{id}: violated up to this message")
+        else:
+            yield event(end, _ERROR, f"{id}: violated up to here")
     verdict = f"{id}: {result.verdict}: {result.reason}"
     assert result.end_ns is not None, "there is a sidecar of what could be read only"
     yield event(result.end_ns, _LEVELS.get(result.verdict, _WARNING), verdict)

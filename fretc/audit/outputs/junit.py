@@ -14,9 +14,9 @@ from fretc.audit.evidence import verdicts
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import audited_s
 from fretc.audit.evidence.schema import Result
+from fretc.audit.measurements.intervals import interval_words
 from fretc.audit.outputs.totals import runs
 from fretc.audit.outputs.violated_values import values
-from fretish.bindings.amounts import seconds
 from fretish.documents import RequirementEntry
 
 _NOT_XML = re.compile("[^\t\n\r\u0020-~\u00a0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -88,7 +88,7 @@ def junit(
 def _lines(case: Result) -> Iterator[str]:
     """A line for each interval of violation, with the values of its signals."""
     for broken in case.violations:
-        stretch = f"{seconds(broken.start_s)} to {seconds(broken.end_s)}"
+        stretch = interval_words(broken.first, broken.last, case.clock)
         yield f"{stretch}: {values(case, broken)}" if broken.values else stretch
 
 

@@ -20,8 +20,8 @@ from itertools import pairwise
 from fretc.audit.measurements.judgement import Judgement, judge
 from fretc.audit.phases.sliding import PropositionByPhase, PropositionsByPhase, sliding
 from fretc.logs.signals.samples import Recording
+from fretish.bindings.amounts import duration
 from fretish.bindings.declarations import Declarations
-from fretish.clock import in_words
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Verdict
 
@@ -107,7 +107,7 @@ class Phases:
             f"{'not computed' if verdict is None else verdict} at {_share(length, self.period)}"
             for verdict, length in self.verdicts.items()
         ]
-        far = in_words(self.nearest)
+        far = duration(self.nearest / 1e9)
         near = f"the nearest change is {far} away" if self.exact else f"no change within {far}"
         return f"by phase of the ticks {', '.join(shares)}, {near}"
 

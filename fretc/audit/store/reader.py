@@ -166,6 +166,11 @@ class Store(HeadProperties):
                     found = strict(each.thresholds, list[ThresholdRecord])
                 yield index, found
 
+    @property
+    def content_sha256(self) -> str:
+        """The SHA-256 of the records, which do not depend on the register."""
+        return self.sha256
+
     def situations(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Situations | UnsetType]]:

@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from fretc.audit.evidence.result_summaries import audited_s
+from fretc.audit.evidence.result_summaries import audited_s, undecided_ticks
 from fretc.audit.evidence.schema import Result
 
 Span = tuple[float, float]
@@ -31,7 +31,8 @@ class Stretches:
 
 def stretches(result: Result) -> Stretches:
     """The intervals at which a result is violated, unknown or open."""
-    if not (result.violations or result.unknown or result.open):
+    undecided = undecided_ticks(result)
+    if not (result.violations or undecided or result.open):
         return Stretches(_length(result), (), (), ())
     at = _seconds(result)
     return Stretches(
@@ -39,7 +40,7 @@ def stretches(result: Result) -> Stretches:
         violations=tuple(
             (v.start_s, max(v.start_s, at(v.last_tick + 1))) for v in result.violations
         ),
-        unknown=tuple((at(first), at(last + 1)) for first, last in result.unknown),
+        unknown=tuple((at(first), at(last + 1)) for first, last in undecided),
         open=tuple(moment.seconds for moment in result.open),
     )
 
@@ -50,6 +51,8 @@ def _seconds(result: Result) -> Callable[[int], float]:
     moments += [v.last for v in result.violations]
     times = {0: 0.0} | {moment.tick: moment.seconds for moment in moments}
     times |= {state.tick: state.seconds for state in result.states}
+    times |= {one.first_tick: one.start_s for one in result.unknown_inputs or ()}
+    times |= {one.last_tick: one.end_s for one in result.unknown_inputs or ()}
     times |= {answer.tick: answer.seconds for answer in result.answers}
     known_ticks = sorted(times)
     rate = times[known_ticks[-1]] / known_ticks[-1] if known_ticks[-1] else _mean_tick(result)

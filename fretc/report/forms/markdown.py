@@ -15,6 +15,8 @@ from itertools import chain
 from typing import TypeVar
 
 from fretc.audit.evidence.verdicts import BROKEN, RETIRED, SUSPECT
+from fretc.report.front.gravity import gravities
+from fretc.report.front.violations import gravest_first
 from fretc.report.model import phrases
 from fretc.report.model.changes import follows
 from fretc.report.model.marks import Mark
@@ -47,8 +49,8 @@ def _lines(report: ReportView, details: Details) -> Iterator[str]:
         [f"## {report.overall.mark.glyph} {_plain(report.overall.headline)}"],
         _figures(report, len(claimed), len(violated), len(not_shown)),
         [" ".join(_plain(sentence) for sentence in report.overall.sentences)],
-        _list("Violated", violated, claim, _VIOLATED),
-        _list("Not shown", not_shown, claim, _NOT_SHOWN),
+        _list("Violated", _gravest_first(violated, report), claim, _VIOLATED, _id),
+        _list("Not shown", not_shown, claim, _NOT_SHOWN, _id),
         _list("Changed since the review", _changes(report), str, _CHANGED),
         _accepted(report),
         _signatures(report),
@@ -69,14 +71,31 @@ def _figures(report: ReportView, claimed: int, violated: int, not_shown: int) ->
     yield f"| {claimed} | {shown} | {violated} | {not_shown} | {changed} |"
 
 
-def _list(heading: str, things: Sequence[T], line: Callable[[T], str], most: int) -> Iterator[str]:
-    """A heading with the total, the first items, and the number of omitted ones."""
+def _id(view: RequirementView) -> str:
+    return _plain(view.id)
+
+
+def _gravest_first(
+    views: Sequence[RequirementView], report: ReportView
+) -> Sequence[RequirementView]:
+    return worst_first(gravest_first(views, gravities(report.matrix, report.hazards)))
+
+
+def _list(
+    heading: str,
+    things: Sequence[T],
+    line: Callable[[T], str],
+    most: int,
+    name: Callable[[T], str] | None = None,
+) -> Iterator[str]:
+    """A heading with the total, the first items, and the number and names of the others."""
     if not things:
         return
     yield f"### {heading}: {len(things)}"
     yield from (f"- {line(thing)}" for thing in things[:most])
     if len(things) > most:
-        yield f"- … and {len(things) - most} more"
+        names = f": {', '.join(map(name, things[most:]))}" if name else ""
+        yield f"- … and {len(things) - most} more{names}"
 
 
 # What is violated, and what is not shown -------------------------------------------------------

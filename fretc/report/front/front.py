@@ -12,11 +12,13 @@ from math import fsum
 from compiler.files.build_id import __version__
 from compiler.files.dates import is_date
 from compiler.logic.claims import Layer
-from fretc.audit.evidence.result_summaries import audited_s
+from fretc.audit.evidence.result_summaries import EvidenceSource, audited_s
 from fretc.audit.evidence.verdicts import BROKEN, RETIRED
 from fretc.report.front import violations
 from fretc.report.front.causes import causes, line, link
+from fretc.report.front.gravity import Gravity
 from fretc.report.front.groups import run_groups
+from fretc.report.front.identity import identity
 from fretc.report.front.speech import capital, day, days, duration
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -37,11 +39,13 @@ def front(
     overall: Overall,
     sections: Sequence[RequirementView],
     rows: Sequence[HazardRequirement],
+    grave: Mapping[str, Gravity],
     assessed: Sequence[Assessment],
     runs: Sequence[AuditedFile],
     views: Sequence[RunSummary],
     changes: Sequence[RequirementChanges],
     notes: Sequence[str],
+    evidence: EvidenceSource | None,
 ) -> Front:
     """The view of the front page.
 
@@ -50,22 +54,25 @@ def front(
         overall: the overall result; its headline is used if no violation is current.
         sections: views of all requirements.
         rows: rows of the matrix.
+        grave: anchor of a requirement → its gravity.
         assessed: the assessment of each section, in the same order.
         runs: runs in the order of the evidence.
         views: views of the runs, in any order.
         changes: changes since the review.
         notes: sentences that qualify the figures.
+        evidence: None if no run was audited.
     """
     active = [view for view in sections if view.status != RETIRED]
-    red = [view for view in active if violations.is_red(view)]
+    red = violations.gravest_first([*filter(violations.is_red, active)], grave)
     groups = run_groups(runs)
     names = {run.anchor: run.name for group in groups for run in group.runs}
     is_current = bool(red) and not any(view.mark.suspect for view in red)
     return Front(
         title=title,
         facts=tuple(_facts(active, runs, assessed)),
-        headline=violations.headline(red, len(runs)) if is_current else overall.headline,
-        sentences=tuple(violations.sentences(red, groups)),
+        identity=identity(runs, groups, evidence),
+        headline=violations.headline(red, len(runs), grave) if is_current else overall.headline,
+        sentences=tuple(violations.sentences(red, groups, grave)),
         figures=(
             _claimed(sections, active, rows),
             _shown(active),
@@ -151,7 +158,7 @@ def _violated(active: Sequence[RequirementView], red: Sequence[RequirementView])
     ]
     lines += [line("violated in a run, but waived or open over all runs", waived)] if waived else []
     kind = signs.BAD.kind if red or refuted else ""
-    return Figure("violated", len(red), "violated", kind, "not-shown", tuple(lines))
+    return Figure("violated", len(red), "violated", kind, "violated", tuple(lines))
 
 
 def _not_shown(active: Sequence[RequirementView], runs: Sequence[RunSummary]) -> Figure:
@@ -167,19 +174,23 @@ def _changed(active: Sequence[RequirementView], changes: Sequence[RequirementCha
     if active and len(unreviewed) == len(active) and not changes:
         nothing = FigureLine("no requirement is reviewed", (), 0)
         return Figure("changed", None, words, "", "changes", (nothing,))
+    roots = [change for change in changes if change.is_root]
     lines = [
         FigureLine(f"{change.requirement}: {'; '.join(change.lines[:2]) or 'verdicts'}", (), 0)
-        for change in changes[:_CHANGES]
+        for change in roots[:_CHANGES]
     ]
-    more = len(changes) - _CHANGES
+    more = len(roots) - _CHANGES
     lines += [FigureLine(f"and {phrases.times(more, 'more requirement')}", (), 0)] * (more > 0)
+    others = {change.anchor for change in changes if not change.is_root}
+    stale = [link(view) for view in active if view.anchor in others]
+    lines += [line("not changed, only need `fretc analyze`", stale)] if stale else []
     verdicts = [(then, now) for change in changes for _, then, now in change.verdicts]
     worse = sum(now in BROKEN and then not in BROKEN for then, now in verdicts)
     became = f"{phrases.times(worse, 'verdict')} became violated"
     lines += [FigureLine(became, (), 0)] * (worse > 0)
     lines += [line("not reviewed", unreviewed)] if unreviewed else []
     kind = signs.OPEN.kind if changes else ""
-    return Figure("changed", len(changes), words, kind, "changes", tuple(lines))
+    return Figure("changed", len(roots), words, kind, "changes", tuple(lines))
 
 
 # Trust -----------------------------------------------------------------------------------------

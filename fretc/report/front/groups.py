@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from fretc.report.model.front import ColumnRun, RunGroup
 from fretc.report.sections.runs import AuditedFile, alike, file_names, inner_paths
 
+SCENARIO = "scenario"
+"""The label by which runs are grouped."""
 _NUMBERED = re.compile(r"([^\W\d](?:\D*[^\W\d_])?)[-_ .]?\d+")
 """`safety-off-2`: a name with a number at its end; dates do not match."""
 
@@ -46,7 +48,7 @@ def _groups(
 
 def _scenario(run: AuditedFile) -> str:
     labels = run.facts.labels
-    return labels.get("scenario", "")
+    return labels.get(SCENARIO, "")
 
 
 def _shared(names: Sequence[str]) -> str:

@@ -1,20 +1,27 @@
-"""The headline: violated requirements, and the runs or groups in which they fail."""
+"""The headline and the violated requirements: under which hazard, and in which runs.
+
+The order is that of danger: the most severe hazard first, then the most runs.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from fretc.audit.evidence.verdicts import BROKEN
+from fretc.report.front.gravity import NO_HAZARD, Gravity
+from fretc.report.front.identity import interval
 from fretc.report.front.speech import capital, number
 from fretc.report.model import phrases
 from fretc.report.model.front import RunGroup
 from fretc.report.model.views import RequirementView
+from fretish.reading.natural_order import natural
 from monitors import kernel
 
 _NAMED = 2
 """Up to this number the headline names the requirements; otherwise it counts them."""
-_SENTENCES, _GROUPS = 4, 3
-"""Maximum sentences about violations, and maximum groups that a sentence names."""
+_GROUPS, _RUNS = 6, 4
+"""Maximum groups, and maximum single runs, that a sentence names."""
+_OPEN = (kernel.NO_DATA, kernel.INCONCLUSIVE)
 
 
 def is_red(view: RequirementView) -> bool:
@@ -27,12 +34,32 @@ def broken_runs(view: RequirementView) -> frozenset[str]:
     return frozenset(result.run for result in view.results if result.mark.word in BROKEN)
 
 
-def headline(views: Sequence[RequirementView], runs: int) -> str:
-    """The number of violated requirements: `Five requirements are violated, in six of 16 runs`.
+def gravest_first(
+    views: Sequence[RequirementView], gravity: Mapping[str, Gravity]
+) -> list[RequirementView]:
+    """The views by severity of the hazard, then by number of violating runs, then by id.
 
     Args:
-        views: violated requirements, at least one.
+        views: views of requirements.
+        gravity: anchor of a requirement → its gravity.
+    """
+    return sorted(
+        views,
+        key=lambda view: (
+            gravity.get(view.anchor, NO_HAZARD).rank,
+            -len(broken_runs(view)),
+            natural(view.id),
+        ),
+    )
+
+
+def headline(views: Sequence[RequirementView], runs: int, gravity: Mapping[str, Gravity]) -> str:
+    """`Five requirements are violated, in six of 16 runs; the most severe: No contact (R14)`.
+
+    Args:
+        views: violated requirements, at least one, the gravest first.
         runs: the number of all runs.
+        gravity: anchor of a requirement → its gravity.
     """
     count = len(views)
     who = (
@@ -43,7 +70,11 @@ def headline(views: Sequence[RequirementView], runs: int) -> str:
     words = " or ".join(dict.fromkeys(view.mark.word for view in views))
     broken = len(frozenset[str]().union(*map(broken_runs, views)))
     where = _where(broken, runs, several=count > 1) if broken else ""
-    return capital(f"{who} {'is' if count == 1 else 'are'} {words}{where}.")
+    worst = gravity.get(views[0].anchor, NO_HAZARD)
+    first = f"; the most severe: {views[0].name}, {worst.text}" if count > _NAMED else ""
+    return capital(
+        f"{who} {'is' if count == 1 else 'are'} {words}{where}{first if worst.severity else ''}."
+    )
 
 
 def _where(broken: int, runs: int, *, several: bool) -> str:
@@ -51,59 +82,69 @@ def _where(broken: int, runs: int, *, several: bool) -> str:
     if broken < runs:
         return f", in {number(broken)} of {number(runs)} runs"
     if runs == 1:
-        return ", in the one run"
+        return ", in the only run"
     return f": none of {number(runs)} runs keeps {'all of them' if several else 'it'}"
 
 
-def sentences(views: Sequence[RequirementView], groups: Sequence[RunGroup]) -> Iterator[str]:
-    """Sentences that say where requirements fail; those that fail in the same runs share one."""
-    same: dict[frozenset[str], list[RequirementView]] = {}
+def sentences(
+    views: Sequence[RequirementView],
+    groups: Sequence[RunGroup],
+    gravity: Mapping[str, Gravity],
+) -> Iterator[str]:
+    """A sentence for each violated requirement: its hazard, its runs, and the undecided runs.
+
+    Args:
+        views: violated requirements, the gravest first.
+        groups: all runs.
+        gravity: anchor of a requirement → its gravity.
+    """
     for view in views:
-        if broken := broken_runs(view):
-            same.setdefault(broken, []).append(view)
-    ordered = sorted(same.items(), key=lambda item: -len(item[1]))
-    for broken, those in ordered[:_SENTENCES]:
-        verb = "fails" if len(those) == 1 else "fail"
-        unknown = _unknown(those, broken, groups)
-        names = phrases.some([view.name for view in those], 4)
-        yield f"{names} {verb} {where(broken, groups)}{unknown}."
-    rest = sum(len(those) for _, those in ordered[_SENTENCES:])
-    if rest:
-        verb = "fails" if rest == 1 else "fail"
-        yield f"{capital(phrases.times(rest, 'more requirement'))} {verb} in other runs."
+        hazard = gravity.get(view.anchor, NO_HAZARD).text
+        name = f"{view.name} [{hazard}]" if hazard else view.name
+        broken = broken_runs(view)
+        what = f"fails {where(broken, groups)}" if broken else f"is {view.mark.text} over all runs"
+        yield "; ".join([f"{name} {what}", *_others(view, broken, groups)]) + "."
 
 
-def where(broken: frozenset[str], groups: Sequence[RunGroup]) -> str:
-    """`only in safety-off (2 of 2 runs)` if few groups are affected; otherwise the runs."""
+def where(broken: Collection[str], groups: Sequence[RunGroup]) -> str:
+    """`only in safety-off (2 of 2 runs)` if whole groups are free of it; otherwise the runs."""
+    total = sum(len(group.runs) for group in groups)
+    if len(broken) == total:
+        return "in every run" if total > 1 else "in the only run"
+    hit = [group for group in groups if any(run.anchor in broken for run in group.runs)]
+    if len(hit) < len(groups) and all(group.name for group in hit) and len(hit) <= _GROUPS:
+        return f"only in {phrases.joined([_part(group, broken) for group in hit])}"
     runs = [run for group in groups for run in group.runs]
-    if len(broken) == len(runs):
-        return "in every run" if len(runs) > 1 else "in the one run"
-    counts = [(group, sum(run.anchor in broken for run in group.runs)) for group in groups]
-    hit = [(group, count) for group, count in counts if count]
-    if all(group.name for group in groups) and len(hit) < len(groups) and len(hit) <= _GROUPS:
-        parts = [
-            f"{group.name} ({count} of {phrases.times(len(group.runs), 'run')})"
-            for group, count in hit
-        ]
-        return f"only in {phrases.joined(parts)}"
-    count = f"in {len(broken)} of {phrases.times(len(runs), 'run')}"
+    count = f"in {len(broken)} of {phrases.times(total, 'run')}"
     others = [run.name for run in runs if run.anchor not in broken]
-    if len(others) <= _GROUPS and len(others) < len(broken):
+    if len(others) < min(_RUNS, len(broken)):
         return f"{count}, all but {phrases.joined(others)}"
-    return f"{count}: {phrases.some([run.name for run in runs if run.anchor in broken], 4)}"
+    return f"{count}: {phrases.some([run.name for run in runs if run.anchor in broken], _RUNS)}"
 
 
-def _unknown(
-    views: Sequence[RequirementView], broken: frozenset[str], groups: Sequence[RunGroup]
-) -> str:
-    """The number of other runs in which the verdict is unknown, in words."""
-    runs = {run.anchor for group in groups for run in group.runs} - broken
-    unknown = set[str]()
-    for view in views:
-        decided = {r.run for r in view.results if r.mark.word != kernel.NO_DATA}
-        unknown |= runs - decided
-    return (
-        f"; the verdict is not known in {phrases.times(len(unknown), 'other run')}"
-        if unknown
-        else ""
-    )
+def _part(group: RunGroup, broken: Collection[str]) -> str:
+    count = sum(run.anchor in broken for run in group.runs)
+    return f"{group.name} ({count} of {phrases.times(len(group.runs), 'run')})"
+
+
+def _others(
+    view: RequirementView, broken: Collection[str], groups: Sequence[RunGroup]
+) -> Iterator[str]:
+    """The other runs in which this requirement is not decided, and those without a verdict."""
+    if view.probability is not None:
+        return
+    names = {run.anchor: run.name for group in groups for run in group.runs}
+    words: dict[str, set[str]] = {}
+    for result in view.results:
+        words.setdefault(result.run, set()).add(result.mark.word)
+    undecided = [run for run in names if run not in broken and words.get(run, set()) & {*_OPEN}]
+    if undecided:
+        runs = phrases.times(len(undecided), "other run")
+        yield f"undecided in {runs}: {phrases.some([names[run] for run in undecided], _RUNS)}"
+    missing = len(names.keys() - words.keys())
+    audited = len(words.keys() & names.keys())
+    if broken and audited > 1:
+        share = interval(len(broken), len(undecided), audited)
+        yield f"95 % interval of the share of failing runs: {share}"
+    if missing:
+        yield f"not audited in {phrases.times(missing, 'run')}"

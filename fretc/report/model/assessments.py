@@ -50,6 +50,22 @@ COVERAGE = (
 
 
 @dataclass(frozen=True, slots=True)
+class NamedFiles:
+    """The options of `fretc report` that the other inputs do not tell, for the printed command."""
+
+    requirements: str | None = None
+    """The folder or the file of the requirements, as named; None: the folder of the first file."""
+    hazards: str | None = None
+    """The hazards, if they were named."""
+    lock: str | None = None
+    waivers: str | None = None
+    signers: str | None = None
+    ajpf: tuple[str, ...] = ()
+    play: bool = False
+    """Whether the page includes the page of `fretc play`."""
+
+
+@dataclass(frozen=True, slots=True)
 class Inputs:
     """What a report is made from: a project, and the files about it."""
 
@@ -71,6 +87,7 @@ class Inputs:
     """The checked signatures."""
     together: AnalyzedSet | None
     """The file of `fretc analyze`; None if there is none."""
+    named: NamedFiles = NamedFiles()
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,8 +163,8 @@ class Assessment:
 
     @cached_property
     def reviewed_audits(self) -> tuple[SingleAudit, ...]:
-        """The audits, suspect if the requirement has changed since its review."""
-        review = since_review(self.standing)
+        """The audits, suspect if what they depend on has changed since the review."""
+        review = () if self.standing.needs_only_analysis else since_review(self.standing)
         return tuple(audit.since(review) for audit in self.audits) if review else self.audits
 
     @property

@@ -20,6 +20,7 @@ import numpy as np
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import atom, variable
 from fretc.audit.evidence.schema import Result, Violation
+from fretc.audit.measurements.intervals import end_s, interval_words
 from fretc.logs.signals.measures import ExpressionError, Measure, NameValues, term
 from fretc.report.model import phrases
 from fretish import expressions as e
@@ -49,7 +50,7 @@ class Cause:
 # The sentence ----------------------------------------------------------------------------------
 
 
-def falsity(violation: Violation, requirement: FormalizedRequirement | None) -> str:
+def falsity(violation: Violation, result: Result, requirement: FormalizedRequirement | None) -> str:
     """`` `stopped` was false from 3.2 s to 4.1 s, but had to be true by 3.4 s``.
 
     Empty if the timing or scope of the sentence does not determine the response at that tick.
@@ -57,7 +58,7 @@ def falsity(violation: Violation, requirement: FormalizedRequirement | None) -> 
     if requirement is None or _is_indirect(requirement):
         return ""
     missing = expression(requirement.written.response)
-    first, last = violation.first.seconds, violation.last.seconds
+    when = interval_words(violation.first, violation.last, result.clock)
     match requirement.sentence.timing:
         case s.Within():
             horizon = requirement.ticks or 0
@@ -66,12 +67,15 @@ def falsity(violation: Violation, requirement: FormalizedRequirement | None) -> 
                 return ""
             if trigger.tick < violation.first_tick - horizon:
                 return ""
-            when, due = _when(trigger.seconds, last), phrases.seconds(deadline.seconds)
+            since, due = phrases.seconds(trigger.seconds), phrases.seconds(deadline.seconds)
+            end = end_s(violation.last, result.clock)
+            until = violation.last.seconds if end is None else end
+            when = f"from {since} to {phrases.seconds(until)}"
             return f"`{missing}` was false {when}, but had to be true by {due}"
         case s.Always() | s.For() | s.Immediately():
-            return f"`{missing}` was false {_when(first, last)}, but had to be true"
+            return f"`{missing}` was false {when}, but had to be true"
         case s.Never():
-            return f"`{missing}` was true {_when(first, last)}, but had to be false"
+            return f"`{missing}` was true {when}, but had to be false"
         case s.Next() | s.Finally() | s.Eventually() | s.After() | s.Until() | s.Before():
             return ""
         case _:
@@ -83,12 +87,6 @@ def _is_indirect(requirement: FormalizedRequirement) -> bool:
     sentence = requirement.sentence
     negated = sentence.scope is not None and sentence.scope.kind.negates
     return negated or sentence.probability is not None
-
-
-def _when(first: float, last: float) -> str:
-    if first == last:
-        return f"at {phrases.seconds(first)}"
-    return f"from {phrases.seconds(first)} to {phrases.seconds(last)}"
 
 
 # The propositions ------------------------------------------------------------------------------

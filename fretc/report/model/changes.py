@@ -30,6 +30,8 @@ class ChangeGroup:
     requirements: tuple[tuple[str, str], ...]
     links: int
     """Number of links that the change makes suspect."""
+    is_root: bool
+    """False: it is a consequence of another change, and only the analysis is out of date."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +54,8 @@ class RequirementChanges:
     suspicion: str
     """Number of suspect links with the causes; "" if there are none."""
     verdicts: tuple[tuple[str, str, str], ...]
+    is_root: bool
+    """False: only the analysis is out of date, because another requirement has changed."""
 
 
 def follows(change: RequirementChanges) -> tuple[str, ...]:

@@ -55,11 +55,21 @@ class RunGroup:
 
 
 @dataclass(frozen=True, slots=True)
+class IdentityRow:
+    """A row of the head that an assessor signs."""
+
+    name: str
+    lines: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Front:
     """The first screen."""
 
     title: str
     facts: tuple[str, ...]
+    identity: tuple[IdentityRow, ...]
+    """Date, labels, hash of the evidence, exposure and confidence."""
     headline: str
     sentences: tuple[str, ...]
     figures: tuple[Figure, ...]

@@ -30,6 +30,9 @@ class ViolationView:
 
     start: str
     end: str
+    """The end of the last violated tick; where the clock ticks by message, its beginning."""
+    lasts: str
+    """The duration; "" if the clock ticks by message."""
     ticks: str
     trigger: str
     deadline: str
@@ -107,11 +110,16 @@ class ResultView(ResultHead):
 
     exercised: str
     latency: Latency | None
+    """The latency of the answers; None if there is none."""
+    unanswered: str
+    """The triggers without an answer in time, and how late it was; "" if there is none."""
     thresholds: tuple[ThresholdView, ...]
     violations: tuple[ViolationView, ...]
     violations_total: int
     open: Listing
     unknown: Listing
+    unknown_inputs: Listing
+    """When inputs were unknown, of a result without a verdict."""
     timelines: tuple[Timeline, ...]
 
 

@@ -404,7 +404,10 @@ class ReportView:
     """Runs with errors first; `--json` has each with its topics, as a `RunView`."""
     claims: str
     counts: tuple[MarkCount, ...]
+    violated: tuple[NotShown, ...]
     not_shown: tuple[NotShown, ...]
+    damaged: tuple[str, ...]
+    """A sentence for each damaged run: what is wrong, and how many requirements it leaves open."""
     reservations: tuple[str, ...]
     planned: tuple[Planned, ...]
     proofs: tuple[ProofView, ...]

@@ -77,6 +77,7 @@ def html(
         across=visible_texts(_across(report, choice, _links(choice))),
         changes=visible_texts({change.anchor: change for change in page.changes if change.anchor}),
         consequences=_consequences(page.changes),
+        stale=[change for change in page.changes if not change.is_root],
         most=_MOST_CHANGES,
         most_runs=_MOST_RUNS,
         inset=inset,
@@ -94,7 +95,7 @@ def _consequences(changes: Sequence[RequirementChanges]) -> list[dict[str, Any]]
             "follows": visible_texts(follows(change)),
         }
         for change in changes
-        if follows(change)
+        if change.is_root and follows(change)
     ]
     return sorted(found, key=lambda each: -int(each["new_violations"]))
 

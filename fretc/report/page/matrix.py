@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from fretc.audit.evidence.verdicts import BROKEN
+from fretc.audit.evidence.verdicts import BROKEN, RETIRED
 from fretc.report.model import phrases
 from fretc.report.model.front import ColumnRun, RunGroup
 from fretc.report.model.marks import Mark
@@ -75,6 +75,9 @@ class HazardRows:
     hazard: str
     title: str
     mark: Mark
+    """The worst mark of its requirements."""
+    standing: str
+    """What the runs show of the requirements: a hazard itself has no verdict."""
     lines: tuple[MatrixRow, ...]
     tallies: tuple[CellTally, ...]
     unsatisfied: tuple[Unsatisfied, ...]
@@ -175,7 +178,32 @@ def _blocks(lines: Sequence[MatrixRow]) -> Iterator[HazardRows]:
     for hazard, below in groupby(lines, key=lambda line: line.row.hazard):
         those = tuple(below)
         title, worst = those[0].row.hazard_title, _worst(those)
-        yield HazardRows(hazard, title, worst, those, (), (), "")
+        yield HazardRows(hazard, title, worst, standing(those), those, (), (), "")
+
+
+def standing(lines: Sequence[MatrixRow]) -> str:
+    """`1 of 3 requirements is violated, 1 is not shown`.
+
+    Args:
+        lines: the requirements of a hazard, at least one.
+    """
+    marks = [line.row.mark for line in lines if line.row.mark.word != RETIRED]
+    if not marks:
+        return "no requirement in force"
+    total = phrases.times(len(marks), "requirement")
+    if all(mark.shows for mark in marks):
+        holds = "the only requirement holds" if len(marks) == 1 else f"all {total} hold"
+        return f"{holds} in these runs"
+    broken = sum(mark.word in BROKEN for mark in marks)
+    shown = sum(mark.shows for mark in marks)
+    counts = ((broken, "violated"), (len(marks) - broken - shown, "not shown"))
+    (first, what), *rest = ((count, word) for count, word in counts if count)
+    text = f"{first} of {total} {_is(first)} {what}"
+    return ", ".join([text, *(f"{count} {_is(count)} {word}" for count, word in rest)])
+
+
+def _is(count: int) -> str:
+    return "is" if count == 1 else "are"
 
 
 def _worst(lines: Sequence[MatrixRow]) -> Mark:
@@ -212,6 +240,7 @@ def _small(lines: Sequence[MatrixRow], groups: Sequence[RunGroup]) -> Iterator[H
                 block.hazard,
                 title,
                 _worst(part),
+                standing(part),
                 (),
                 tuple(_tallies(part, first, groups)),
                 tuple(kept),

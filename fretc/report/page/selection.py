@@ -227,6 +227,9 @@ def _row(result: ResultRow, has_details: bool) -> RunRow:
     longest = result.latency_max_s
     why = f"; {SUSPECT}, because {'; '.join(result.suspicions)}" if result.suspicions else ""
     longest_text = "\N{EN DASH}" if longest is None else phrases.duration(longest)
+    missing = result.triggers - result.answers - result.open
+    if longest is not None and result.violations_total and missing > 0:
+        longest_text = f"> {longest_text} ({phrases.whole(missing)} unanswered)"
     return RunRow(result, longest_text, f"{result.reason}{why}", has_details)
 
 
@@ -264,7 +267,12 @@ def slimmed(report: ReportView, chosen: PageContent) -> ReportView:
     not_shown = tuple(
         replace(each, reasons=_few(each.reasons, "in its section")) for each in report.not_shown
     )
-    return replace(report, requirements=views, not_shown=not_shown, runs=chosen.runs)
+    violated = tuple(
+        replace(each, reasons=_few(each.reasons, "in its section")) for each in report.violated
+    )
+    return replace(
+        report, requirements=views, violated=violated, not_shown=not_shown, runs=chosen.runs
+    )
 
 
 def _slim(view: RequirementView, chosen: PageContent) -> RequirementView:

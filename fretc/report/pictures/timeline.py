@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.evidence.schema import Moment, Result, Violation
+from fretc.audit.measurements.intervals import interval_words
 from fretc.report.model.causes import causes, falsity, in_words
 from fretc.report.model.phrases import duration, joined, seconds, times, value
 from fretc.report.model.pictures import Lane, NamedInstant, Panel, SpanMark, Timeline, WordLane
@@ -112,7 +113,7 @@ def cause(
 
     If the evidence leaves that open, the values of the signals at that tick.
     """
-    what = falsity(violation, requirement) or _missing(violation)
+    what = falsity(violation, result, requirement) or _missing(violation, result)
     at = seconds(violation.first.seconds)
     found = causes(violation, result, requirement)
     if found:
@@ -123,14 +124,14 @@ def cause(
     return f"{what}; at {at} {joined(values)}." if values else f"{what}."
 
 
-def _missing(violation: Violation) -> str:
-    start, end = violation.first.seconds, violation.last.seconds
-    when = f"at {seconds(start)}" if start == end else f"from {seconds(start)} to {seconds(end)}"
+def _missing(violation: Violation, result: Result) -> str:
     missing = violation.missing or "the response"
     if violation.deadline is not None:
         what = f"`{missing}` was not true by {seconds(violation.deadline.seconds)}"
     else:
-        what = f"`{missing}` was false {when}"
+        what = (
+            f"`{missing}` was false {interval_words(violation.first, violation.last, result.clock)}"
+        )
     if violation.trigger is not None:
         what += f", triggered at {seconds(violation.trigger.seconds)}"
     return what
@@ -200,6 +201,14 @@ class _Events:
                 "unknown",
                 "unknown",
                 [TimeInterval(first * tick, (last + 1) * tick) for first, last in result.unknown],
+            ),
+            (
+                "no input",
+                "unknown",
+                [
+                    TimeInterval(one.start_s, one.end_s + tick)
+                    for one in result.unknown_inputs or ()
+                ],
             ),
             ("open at end", "open", _open(result, tick)),
         ]

@@ -16,6 +16,7 @@ from fretc.audit.evidence.verdicts import (
     UNFORMALIZED,
     severity,
 )
+from fretc.audit.measurements.intervals import end_s, interval_length
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, ProbabilityAudit, SingleAudit
 from fretc.report.model.causes import causes
@@ -39,6 +40,7 @@ from fretish.bindings.amounts import margin as margin_text
 from fretish.bindings.declarations import Declarations
 from fretish.clock import Clock
 from fretish.meaning import span
+from monitors import kernel
 
 LISTED = 100
 """Maximum number of listed violations, open obligations and unknown intervals."""
@@ -103,6 +105,7 @@ def result_view(
         **{each.name: getattr(row, each.name) for each in fields(ResultHead)},
         exercised=_exercised(result),
         latency=_latency(result, assessment.requirement),
+        unanswered=_unanswered(result, assessment.requirement),
         thresholds=tuple(map(_threshold, result.thresholds)),
         violations=tuple(
             _violation(v, result, ages, requirement) for v in result.violations[:LISTED]
@@ -110,6 +113,7 @@ def result_view(
         violations_total=len(result.violations),
         open=_open(result),
         unknown=_unknown(result),
+        unknown_inputs=_unknown_inputs(result),
         timelines=timelines(result, tick, ages, requirement),
     )
 
@@ -179,6 +183,30 @@ def _latency(result: Result, requirement: FormalizedRequirement | None) -> Laten
     )
 
 
+def _unanswered(result: Result, requirement: FormalizedRequirement | None) -> str:
+    """`> 200 ms (4 unanswered); overdue up to 500 ms after the trigger`.
+
+    The longest latency counts answers only, which are in time: beside a violation it would read as
+    if the bound were kept.
+    """
+    count = len(result.triggers) - len(result.latencies) - len(result.open)
+    if requirement is None or count <= 0 or not syntax.deadline(requirement.sentence.timing):
+        return ""
+    allowed = seconds_allowed(requirement)
+    bound = (
+        span(requirement.ticks or 0, requirement.clock)
+        if allowed is None
+        else phrases.exact_duration(allowed)
+    )
+    overdue = [
+        round(end - violation.trigger.seconds, 9)
+        for violation in result.violations
+        if violation.trigger and (end := end_s(violation.last, result.clock)) is not None
+    ]
+    late = f"; overdue up to {phrases.duration(max(overdue))} after the trigger" if overdue else ""
+    return f"> {bound} ({phrases.whole(count)} unanswered){late}"
+
+
 def is_bounded(requirement: FormalizedRequirement | None) -> bool:
     """Whether the sentence limits the time of the response; True if unknown."""
     return requirement is None or not syntax.is_eventual(requirement.sentence.timing)
@@ -225,10 +253,12 @@ def _violation(
     requirement: FormalizedRequirement | None,
 ) -> ViolationView:
     first, last, trigger = violation.first, violation.last, violation.trigger
+    end = end_s(last, result.clock)
     ticks = f"{first.tick}" if first.tick == last.tick else f"{first.tick} to {last.tick}"
     return ViolationView(
         start=phrases.seconds(first.seconds),
-        end=phrases.seconds(last.seconds),
+        end=phrases.seconds(last.seconds if end is None else end),
+        lasts="" if end is None else interval_length(first, end),
         ticks=ticks,
         trigger=_at(trigger) if trigger else "none",
         deadline=_at(violation.deadline) if violation.deadline else "none",
@@ -298,6 +328,12 @@ def _unknown(result: Result) -> Listing:
     return Listing(tuple(lines), total)
 
 
+def _unknown_inputs(result: Result) -> Listing:
+    inputs = result.unknown_inputs or ()
+    lines = (one.in_words(result.clock) for one in inputs[:LISTED])
+    return Listing(tuple(lines), len(inputs))
+
+
 # Reasons ---------------------------------------------------------------------------------------
 
 
@@ -313,15 +349,22 @@ def reasons(
         probability = assessment.probability
         lines.append((probability.mark.severity, _probability_reason(probability)))
     else:
-        audits = [audit for audit in assessment.audits if not audit.mark.shows]
+        unshown = [audit for audit in assessment.audits if not audit.mark.shows]
+        damaged = [audit for audit in unshown if _is_lost(audit)]
+        audits = unshown if len(damaged) == 1 else [a for a in unshown if not _is_lost(a)]
         left += len(audits)
         worst = sorted(audits, key=lambda audit: audit.mark.severity)[:_NAMED]
         lines += [(audit.mark.severity, _run_reason(audit, runs)) for audit in worst]
+        if len(damaged) > 1:
+            lines.append((damaged[0].mark.severity, _damaged_reason(damaged, runs)))
         if not assessment.audits and assessment.requirement is not None:
             why = "the audit did not cover it" if audited else "no run has been audited"
             lines.append((severity(NOT_EXERCISED), why))
     texts = [text for _, text in sorted(lines, key=lambda line: line[0])]
     few = (*texts[:_NAMED], f"and {phrases.times(left, 'more run')}") if left > 0 else tuple(texts)
+    held = sum(audit.mark.shows for audit in assessment.audits)
+    if 0 < held < len(assessment.audits) and assessment.probability is None:
+        few = (*few, f"it holds in {held} of {phrases.times(len(assessment.audits), 'run')}")
     return (*few, *since_review(assessment.standing))
 
 
@@ -339,6 +382,16 @@ def _run_reason(audit: SingleAudit, runs: Mapping[RunKey, AuditedFile]) -> str:
     result = audit.result
     label = runs[run_key(result)].name
     return f"{label}: {audit.verdict}, {result.reason}{_because(audit.suspicions)}"
+
+
+def _is_lost(audit: SingleAudit) -> bool:
+    """Whether the damage of the log leaves the verdict open."""
+    return audit.verdict == kernel.NO_DATA and not audit.result.intact
+
+
+def _damaged_reason(audits: Sequence[SingleAudit], runs: Mapping[RunKey, AuditedFile]) -> str:
+    names = phrases.some([runs[run_key(audit.result)].name for audit in audits], 4)
+    return f"no data from {len(audits)} damaged logs: {names}"
 
 
 def _because(suspicions: Sequence[str]) -> str:

@@ -81,10 +81,14 @@ def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
 
 
 def changes(assessments: Sequence[Assessment], project: Project) -> tuple[RequirementChanges, ...]:
-    """The changes of each requirement since its review; one without changes is left out."""
+    """The changes of each requirement since its review, those with causes of their own first.
+
+    A requirement without changes is left out.
+    """
     reviewed = [assessment for assessment in assessments if assessment.standing.review]
     pairs = [(assessment, difference(assessment.standing, project)) for assessment in reviewed]
-    return tuple(_change(each, change) for each, change in pairs if change.state != "same")
+    found = [_change(each, change) for each, change in pairs if change.state != "same"]
+    return tuple(sorted(found, key=lambda change: not change.is_root))
 
 
 def change_groups(
@@ -92,25 +96,30 @@ def change_groups(
 ) -> tuple[ChangeGroup, ...]:
     """The distinct changes, each with all requirements that it affects.
 
-    The change whose requirements have the most new violations comes first.
+    Causes come before their consequences, those with the most new violations first.
     """
     violations = {change.anchor: new_violations(change) for change in changes}
     touched: dict[ChangeText, list[tuple[str, str]]] = {}
     links: Counter[ChangeText] = Counter()
     judged: set[ChangeText] = set()
+    roots: set[ChangeText] = set()
     for assessment in assessments:
         for change in assessment.standing.changes:
             text = _text(change)
             touched.setdefault(text, []).append((assessment.id, assessment.anchor))
+            if not change.is_of_analysis:
+                roots.add(text)
             if change.node.kind in KINDS:
                 judged.add(text)
             links[text] += sum(map(change.makes_suspect, assessment.standing.suspects))
-    groups = [ChangeGroup(text, tuple(of), links[text]) for text, of in touched.items()]
+    groups = [
+        ChangeGroup(text, tuple(of), links[text], text in roots) for text, of in touched.items()
+    ]
 
-    def worst_first(group: ChangeGroup) -> tuple[float, int]:
+    def worst_first(group: ChangeGroup) -> tuple[bool, float, int]:
         anchors = [anchor for _, anchor in group.requirements] if group.change in judged else []
         new = sum(violations.get(anchor, 0) for anchor in anchors)
-        return -new / len(group.requirements), -group.links
+        return not group.is_root, -new / len(group.requirements), -group.links
 
     return tuple(sorted(groups, key=worst_first))
 
@@ -119,12 +128,13 @@ def change_sentences(
     changes: Sequence[RequirementChanges], groups: Sequence[ChangeGroup]
 ) -> Iterator[str]:
     """Sentences about changes since the review, changed verdicts, and contradictions."""
-    for group in groups[:_SENTENCES]:
+    roots = [group for group in groups if group.is_root]
+    for group in roots[:_SENTENCES]:
         named = phrases.some([id for id, _ in group.requirements])
         only = only_change(group, changes)
         more = follows(only) if only else ()
         yield f"Changed since the review: {'; '.join([f'{named}: {group.change.text}', *more])}."
-    left = len(groups) - _SENTENCES
+    left = len(roots) - _SENTENCES
     if left > 0:
         yield f"{phrases.times(left, 'more change')} since the review."
     grouped = sum(new_violations(change) for change in changes)
@@ -153,6 +163,7 @@ def withdrawals(withdrawn: Sequence[WithdrawnRequirement]) -> tuple[RequirementC
             verdicts=tuple(
                 (run, then, "none") for run, then in sorted(withdrawal.review.verdicts.items())
             ),
+            is_root=True,
         )
         for withdrawal in withdrawn
         if not withdrawal.retired
@@ -174,6 +185,7 @@ def _change(assessment: Assessment, difference: ReviewDifference) -> Requirement
         consequences=difference.consequences,
         suspicion=difference.suspicion,
         verdicts=tuple((run, b or "none", now or "none") for run, b, now in difference.verdicts),
+        is_root=not assessment.standing.needs_only_analysis,
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from dataclasses import replace as changed
 from functools import cached_property
@@ -18,13 +18,14 @@ from fretc.audit.evidence.result_summaries import (
     RunFacts,
     audited_s,
 )
-from fretc.audit.evidence.schema import CheckedChunks, LogFinding, TopicRecord
+from fretc.audit.evidence.schema import CheckedChunks, Gap, LogFinding, TopicRecord
 from fretc.report.model import phrases
 from fretc.report.model.marks import sign_mark
-from fretc.report.model.views import Remark, RunSummary, TopicView
+from fretc.report.model.views import Remark, RequirementView, RunSummary, TopicView
 from fretc.traceability.acceptances import as_diagnostic
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Severity
+from monitors import kernel
 
 _NONE = "\N{EN DASH}"
 _INTACT = sign_mark("no damage found", signs.GOOD)
@@ -119,6 +120,29 @@ def _short(name: str) -> str:
     return name if len(name) <= _LONGEST else f"{name[:half]}…{name[1 - half :]}"
 
 
+def damage(runs: Sequence[RunSummary], sections: Sequence[RequirementView]) -> Iterator[str]:
+    """`log-cut-6: the log breaks off after 128.28 s: 15 requirements have no verdict from it`.
+
+    Args:
+        runs: the views of all runs.
+        sections: the views of all requirements.
+    """
+    lost = Counter(
+        result.run
+        for view in sections
+        for result in view.results
+        if result.mark.word == kernel.NO_DATA
+    )
+    for run in runs:
+        if run.intact:
+            continue
+        errors = [finding for finding in run.findings if finding.severity != "note"]
+        what = errors[0].message if errors else "the log is damaged"
+        count = phrases.times(lost[run.anchor], "requirement")
+        verb = "has" if lost[run.anchor] == 1 else "have"
+        yield f"{run.label}: {what}: {count} {verb} no verdict from it. Record it again."
+
+
 # Views -----------------------------------------------------------------------------------------
 
 
@@ -197,12 +221,16 @@ def _checked(checked: CheckedChunks | None, *, hashed: bool) -> str:
 
 
 def _gaps(facts: RunFacts) -> tuple[str, ...]:
-    start = facts.start_ns or 0
-    return tuple(
-        f"{phrases.seconds((gap.start_ns - start) / 1e9)} to "
-        f"{phrases.seconds((gap.end_ns - start) / 1e9)}"
-        for gap in facts.health.gaps
-    )
+    return tuple(_gap(gap, facts) for gap in facts.health.gaps)
+
+
+def _gap(gap: Gap, facts: RunFacts) -> str:
+    """`from 3 s to 4.2 s (1.2 s)`; data that is lost after the last message has no known end."""
+    start, end = ((ns - (facts.start_ns or 0)) / 1e9 for ns in (gap.start_ns, gap.end_ns))
+    if facts.end_ns is not None and gap.end_ns >= facts.end_ns:
+        return f"from {phrases.seconds(start)} to the end of the log"
+    length = phrases.duration(round(end - start, 9))
+    return f"from {phrases.seconds(start)} to {phrases.seconds(end)} ({length})"
 
 
 def _badness(finding: LogFinding) -> int:

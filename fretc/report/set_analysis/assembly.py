@@ -26,6 +26,7 @@ from fretc.report.model.sets import (
 from fretc.report.model.views import Overall
 from fretish.bindings.declarations import Role
 from fretish.diagnostics import status_symbols as signs
+from fretish.reading.natural_order import natural
 
 _WORDS: Mapping[RealizabilityVerdict, str] = {
     RealizabilityVerdict.REALIZABLE: REALIZABLE,
@@ -111,11 +112,14 @@ def _headline(analysis: Analysis) -> str:
                 f"Whether all requirements can be satisfied together is not known: {analysis.why}."
             )
         case RealizabilityVerdict.UNREALIZABLE if analysis.conflicts:
-            ids = analysis.conflicts[0].requirements
+            ids = sorted(analysis.conflicts[0].requirements, key=natural)
             what = "can be kept by no system" if len(ids) == 1 else "cannot be satisfied together"
             more = len(analysis.conflicts) - 1
             rest = f"; there {'is' if more == 1 else 'are'} {phrases.times(more, 'more conflict')}"
-            return f"{phrases.joined(ids)} {what}{rest if more else ''}."
+            return (
+                f"{phrases.joined(ids)} {what}{rest if more else ''}. This follows from the "
+                f"sentences, not from the runs."
+            )
         case RealizabilityVerdict.UNREALIZABLE:
             return f"No system can keep all requirements: they {analysis.why}."
 

@@ -84,7 +84,7 @@ def test_a_bound_makes_the_slow_answer_a_violation(fretc: Fretc) -> None:
     change("requirements/r1.fret", "shall eventually", "shall within 300 milliseconds")
     run = fretc("audit", "run.mcap")
     assert run.status == 1
-    assert "  ✘ Stop when an obstacle is within 5 cm (R1)  violated      broken from " in run.out
+    assert "  ✘ Stop when an obstacle is within 5 cm (R1)  violated      from " in run.out
     (result,) = evidence()["results"]
     first = result["violations"][0]
     assert first["trigger"] is not None

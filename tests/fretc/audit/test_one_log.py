@@ -93,7 +93,7 @@ def test_a_deadline_that_passes_is_a_violation_with_its_time_trigger_and_signals
     assert violation.trigger.seconds == 1.0
     assert violation.values == {"d": FAR, "v": MOVING}
     assert evidence.units == {"d": "m", "v": "m/s"}
-    assert evidence.reason == "broken from 3 s to 3 s, triggered at 1 s"
+    assert evidence.reason == "from 3 s to 4 s (1 s), triggered at 1 s"
 
 
 def test_a_demand_that_is_open_at_the_end_is_inconclusive() -> None:
@@ -116,7 +116,10 @@ def test_what_never_triggers_is_vacuous() -> None:
 def test_an_unknown_trigger_is_no_data() -> None:
     evidence = audited(EVENTUALLY, recorded([FAR, float("nan"), FAR], [MOVING, MOVING, STILL]))
     assert evidence.verdict == "no data"
-    assert evidence.reason == "unknown where it matters: `near` at 1 tick"
+    assert evidence.reason == (
+        "unknown where it matters: `near` at 1 tick; the longest: `near` from 1 s to 2 s (1 s): "
+        "`d` was no measurement"
+    )
 
 
 def test_a_stale_response_is_no_data_and_never_a_pass() -> None:

@@ -146,7 +146,7 @@ def test_the_worst_is_named_with_title_value_limit_times_and_commands(robot: Fre
     assert listed.startswith("run.mcap\n  ✘ Enough is left (R1)  violated")
     assert worst == (
         "worst: Enough is left (R1) violated in run.mcap\n"
-        "  at 1000 s by the clock of the log, 0 s into the log, until 0.5 s\n"
+        "  at 1000 s by the clock of the log, 0 s into the log, until 0.6 s (600 ms)\n"
         "  demanded: charged; charge = 0 %\n"
         "  limit: charge > 5 % (charged); from 0 % to 11 % in this run\n"
         "  more: fretc report --evidence 'e v.json'\n"
@@ -178,7 +178,8 @@ def test_a_value_has_the_declared_unit_in_every_form(robot: Fretc, form: str) ->
     assert "charge = 0 %" in out
     assert "0.05" not in out
     if form == "junit":
-        assert ElementTree.fromstring(out)[0][0][0].text == "0 s to 0.5 s: charge = 0 %"
+        words = ElementTree.fromstring(out)[0][0][0].text
+        assert words == "from 0 s to 0.6 s (600 ms): charge = 0 %"
 
 
 def test_what_is_not_judged_is_counted_apart(robot: Fretc) -> None:

@@ -157,3 +157,20 @@ def test_a_file_that_is_no_analysis_is_told(locked: Fretc) -> None:
         run = locked(*command)
         assert run.status == 2
         assert "F503 `build/analysis.json` is not what `fretc analyze` writes" in run.err
+
+
+@pytest.mark.slow
+def test_the_changed_requirement_is_named_and_not_those_that_are_analyzed_with_it(
+    locked: Fretc,
+) -> None:
+    project(R2="upon stop the line shall for 4 ticks satisfy !run")
+    locked("report", "-o", "build/report.json", "--format", "json")
+    content = json.loads(Path("build/report.json").read_text())
+    (changed,) = [figure for figure in content["front"]["figures"] if figure["name"] == "changed"]
+    assert changed["count"] == 1
+    assert changed["lines"][0]["text"].startswith("R2: sentence: ")
+    assert [link["name"] for link in changed["lines"][1]["names"]] == ["R1"]
+    assert [(one["requirement"], one["is_root"]) for one in content["changes"]] == [
+        ("R2", True),
+        ("R1", False),
+    ]

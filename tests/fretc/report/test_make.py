@@ -94,12 +94,15 @@ def test_each_verdict_has_its_overall_result(
     assert overall["sentences"] == [sentence, *limit, "No damage was found in the run."]
     assert words(content["requirements"]) == [verdict]
     assert words(content["requirements"][0]["results"]) == [verdict]
-    assert [line["requirement"] for line in content["not_shown"]] == (
-        [] if verdict == "satisfied" else ["R1"]
-    )
+    listed = {name: [line["requirement"] for line in content[name]] for name in PARTS}
+    assert listed["violated"] == (["R1"] if verdict == "violated" else [])
+    assert listed["not_shown"] == ([] if verdict in ("satisfied", "violated") else ["R1"])
     assert report.diagnostics == ()
     validate("report.schema.json", content)
     assert f"</span>{verdict}</span>" in as_html(report)
+
+
+PARTS = ("violated", "not_shown")
 
 
 def test_the_worst_run_decides_and_every_reason_is_reported(tmp_path: Path) -> None:
@@ -115,6 +118,7 @@ def test_the_worst_run_decides_and_every_reason_is_reported(tmp_path: Path) -> N
     assert content["not_shown"][0]["reasons"] == [
         "c: inconclusive, reason of R1",
         "b: vacuous, reason of R1",
+        "it holds in 1 of 3 runs",
     ]
     assert [(c["mark"]["word"], c["requirements"], c["results"]) for c in content["counts"]] == [
         ("violated", 0, 0),
@@ -484,7 +488,8 @@ def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) ->
     (view,) = content_of(known, tmp_path, bad)["requirements"][0]["results"]
     assert view["violations"][0] == {
         "start": "1.4 s",
-        "end": "2 s",
+        "end": "2.1 s",
+        "lasts": "700 ms",
         "ticks": "14 to 20",
         "trigger": "1.1 s (tick 11)",
         "deadline": "1.4 s (tick 14)",
@@ -574,7 +579,7 @@ def test_a_run_is_shown_with_its_health(tmp_path: Path) -> None:
         "checked": "4 of 9 chunks match their CRC; 2 of 9 chunks have a CRC that was not "
         "checked, because only their beginning was read; 3 of 9 chunks contain no bound topic and "
         "were not read; read by the index",
-        "gaps": ["1 s to 2 s"],
+        "gaps": ["from 1 s to 2 s (1 s)"],
         "findings": [
             {
                 "code": "F404",
@@ -722,3 +727,32 @@ def test_a_log_that_was_not_hashed_is_reported_as_such(tmp_path: Path) -> None:
     (run,) = content_of(known, tmp_path, {**audited, "hashes": hashes})["runs"]
     assert run["sha256"] == ""
     assert run["checked"].endswith("; not hashed")
+
+
+def test_a_violated_run_does_not_read_as_if_its_bound_were_kept(tmp_path: Path) -> None:
+    sentence = "when near the robot shall within 300 milliseconds satisfy stopped"
+    known = project(tmp_path, requirement("R1", sentence))
+    late = violation(14, 17, trigger=11)
+    runs: dict[str, Any] = {"violations": [late], "latencies_s": [0.3, 0.1]}
+    (view,) = content_of(known, tmp_path, result(known, "violated", **runs))["requirements"]
+    (row,) = view["results"]
+    assert row["unanswered"] == "> 300 ms (1 unanswered); overdue up to 700 ms after the trigger"
+    held = content_of(known, tmp_path, result(known, "satisfied"))["requirements"][0]
+    assert held["results"][0]["unanswered"] == ""
+
+
+def test_damaged_logs_are_named_once_with_what_they_leave_open(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    hurt = {"intact": False, "findings": []}
+    runs = [result(known, "satisfied", run="a.mcap")]
+    runs += [result(known, "no data", run=f"{name}.mcap", health=hurt) for name in "bc"]
+    content = content_of(known, tmp_path, *runs)
+    assert content["violated"] == []
+    assert content["not_shown"][0]["reasons"] == [
+        "no data from 2 damaged logs: b and c",
+        "it holds in 1 of 3 runs",
+    ]
+    assert content["damaged"] == [
+        f"{name}: the log is damaged: 1 requirement has no verdict from it. Record it again."
+        for name in "bc"
+    ]

@@ -58,7 +58,7 @@ def test_the_trigger_is_the_oldest_whose_deadline_has_passed() -> None:
     (violation,) = evidence.violations
     assert violation.first.tick == 3
     assert violation.trigger == Moment(1, S, 1.0)
-    assert evidence.reason == "broken from 3 s to 5 s, triggered at 1 s"
+    assert evidence.reason == "from 3 s to 6 s (3 s), triggered at 1 s"
 
 
 def test_one_that_was_answered_is_not_to_blame() -> None:

@@ -84,7 +84,7 @@ def test_what_happened_is_told_in_order_of_time() -> None:
     assert events == [
         (102, 2, "R1: triggered, waiting for the response"),
         (105, 4, "R1: violated from here on, triggered at 2 s: x = 5 km/h"),
-        (105, 4, "R1: violated up to here"),
+        (106, 4, "R1: violated up to here"),
         (120, 4, "R1: violated: broken"),
     ]
     _, first = messages[VERDICTS][0]

@@ -54,7 +54,7 @@ def test_the_elements_are_those_of_the_schema_that_jenkins_has() -> None:
 def test_a_violation_is_told_with_its_time_and_its_values() -> None:
     broken = {"start_s": 1.5, "end_s": 2.0, "values": {"x": 0.25, "y": None}}
     root = ElementTree.fromstring(junit([result("violated", violations=[broken])]))
-    assert root[0][0][0].text == "1.5 s to 2 s: x = 0.25 m/s, y = unknown"
+    assert root[0][0][0].text == "at the message at 1.5 s: x = 0.25 m/s, y = unknown"
 
 
 def test_values_are_in_the_units_that_the_bindings_declare() -> None:
@@ -64,7 +64,9 @@ def test_values_are_in_the_units_that_the_bindings_declare() -> None:
     near = [{"signal": "abs(y)", "bound": 2.0000001}]
     case = result("violated", violations=[broken], thresholds=near)
     text = junit(without_samples([case], bound))
-    assert ElementTree.fromstring(text)[0][0][0].text == "1.5 s to 2 s: x = 5 km/h, y = 2"
+    assert (
+        ElementTree.fromstring(text)[0][0][0].text == "at the message at 1.5 s: x = 5 km/h, y = 2"
+    )
 
 
 @given(st.text())

@@ -188,7 +188,7 @@ def test_markdown_is_one_screen_and_what_it_leaves_out_is_counted_and_never_wors
         for n, (word, suspect) in enumerate(marks)
     ]
     flip = (("a.mcap", "satisfied", "violated"),)
-    change = RequirementChanges("R0", "", "", "", "", (), (long,) * 9, (long,), (), "", flip)
+    change = RequirementChanges("R0", "", "", "", "", (), (long,) * 9, (long,), (), "", flip, True)
     remark = Remark("F203", "warning", long, accepted=long or "meant")
     text = markdown(
         replace(
@@ -220,7 +220,10 @@ def test_markdown_is_one_screen_and_what_it_leaves_out_is_counted_and_never_wors
             mark.word for mark in expected
         ]
         left = len(some) - most
-        assert entries[most:] == ([f"- … and {left} more"] if left > 0 else [])
+        assert len(entries[most:]) == (left > 0)
+        named = [name for entry in entries[most:] for name in entry.split(": ")[1].split(", ")]
+        assert entries[most:] == ([f"- … and {left} more: {', '.join(named)}"] if left > 0 else [])
+        assert len({*named}) == max(0, left)
     numbers = figures(text)
     assert (numbers["violated"], numbers["not shown"]) == (len(red), len(gaps))
     assert numbers["claimed"] == numbers["shown"] + len(red) + len(gaps)

@@ -201,7 +201,7 @@ def test_each_object_has_what_is_known_of_it(text: str) -> None:
         "Coverage": "exercised, fail",
         "Verdict": "violated",
         "Currency": "current",
-        "Reasons": "b: violated, reason of R2",
+        "Reasons": "b: violated, reason of R2\nit holds in 1 of 2 runs",
         "Runs": "violated in 1 run; satisfied in 1 run\n"
         "logs/b.mcap: violated: reason of R2\n"
         "logs/a.mcap: satisfied: reason of R2",

@@ -128,27 +128,31 @@ RUNS = ("walk-1", "walk-2", "stop-1", "stop-2")
         (
             {"R1": "vvss", "R2": "vvss"},
             "Title of R1 (R1) and Title of R2 (R2) are violated, in two of four runs.",
-            ["Title of R1 (R1) and Title of R2 (R2) fail only in walk (2 of 2 runs)."],
+            [
+                "Title of R1 (R1) [HAZ-1, catastrophic] fails only in walk (2 of 2 runs).",
+                "Title of R2 (R2) [HAZ-1, catastrophic] fails only in walk (2 of 2 runs).",
+            ],
         ),
         (
             {"R1": "vsss", "R2": "ssss"},
             "Title of R1 (R1) is violated, in one of four runs.",
-            ["Title of R1 (R1) fails only in walk (1 of 2 runs)."],
+            ["Title of R1 (R1) [HAZ-1, catastrophic] fails only in walk (1 of 2 runs)."],
         ),
         (
             {"R1": "vsnn"},
             "Title of R1 (R1) is violated, in one of four runs.",
             [
-                "Title of R1 (R1) fails only in walk (1 of 2 runs); the verdict is not known in 2 "
-                "other runs."
+                "Title of R1 (R1) [HAZ-1, catastrophic] fails only in walk (1 of 2 runs); "
+                "undecided in 2 other runs: stop-1 and stop-2."
             ],
         ),
         (
             {"R1": "vvvv", "R2": "vsvs", "R5": "vvvs"},
-            "Three requirements are violated: none of four runs keeps all of them.",
+            "Three requirements are violated: none of four runs keeps all of them; the most "
+            "severe: Title of R1 (R1), HAZ-1, catastrophic.",
             [
-                "Title of R1 (R1) fails in every run.",
-                "Title of R2 (R2) fails in 2 of 4 runs: walk-1 and stop-1.",
+                "Title of R1 (R1) [HAZ-1, catastrophic] fails in every run.",
+                "Title of R2 (R2) [HAZ-1, catastrophic] fails in 2 of 4 runs: walk-1 and stop-1.",
                 "Title of R5 (R5) fails in 3 of 4 runs, all but stop-2.",
             ],
         ),

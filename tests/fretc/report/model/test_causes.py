@@ -192,7 +192,7 @@ def test_the_words_agree_with_what_the_monitor_saw(
             for cause in causes(violation, result, formalized):
                 seen = truths.columns[cause.proposition].at(violation.first_tick)
                 assert seen is cause.value, (formalized.id, cause)
-            if falsity(violation, formalized):
+            if falsity(violation, result, formalized):
                 timing = formalized.sentence.timing
                 trigger = violation.trigger if isinstance(timing, s.Within) else None
                 first = trigger or violation.first
@@ -207,7 +207,7 @@ def said(known: Project, id: str, of: dict[str, list[tuple[int, float]]]) -> tup
         one for one in judged(known, recording(known, of)) if one[0].id == id
     )
     first = result.violations[0]
-    return falsity(first, formalized), in_words(causes(first, result, formalized))
+    return falsity(first, result, formalized), in_words(causes(first, result, formalized))
 
 
 def every(step: int, value: float) -> list[tuple[int, float]]:
@@ -221,7 +221,7 @@ def test_a_bound_and_what_was_measured(known: Project) -> None:
         "mode": every(100, 0.0),
     }
     assert said(known, "R1", of) == (
-        "`slow` was false from 0.8 s to 1.1 s, but had to be true",
+        "`slow` was false from 0.8 s to 1.2 s (400 ms), but had to be true",
         '`v` was 0.52 m/s, at most 0.5 m/s is allowed; `mode` was "drive", `docking` is required',
     )
 
@@ -229,7 +229,7 @@ def test_a_bound_and_what_was_measured(known: Project) -> None:
 def test_an_answer_that_comes_too_late(known: Project) -> None:
     of = {"d": [(0, 1.0), *((t, 0.2) for t in range(500, 2000, 100))], "v": every(100, 7.0)}
     words, why = said(known, "R4", {**of, "mode": every(100, 0.0), "flag": every(100, 0.0)})
-    assert words == "`still` was false from 0.5 s to 2 s, but had to be true by 0.8 s"
+    assert words == "`still` was false from 0.5 s to 2.1 s, but had to be true by 0.8 s"
     assert why == "`abs(v)` was 0.07 m/s, less than 0.01 m/s is allowed"
 
 

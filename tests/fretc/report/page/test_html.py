@@ -144,6 +144,7 @@ def test_a_verdict_is_a_word_and_a_sign_not_only_a_colour(html: str) -> None:
 def test_the_parts_stand_in_their_order(html: str) -> None:
     assert re.findall(r"<h2>(.*?)</h2>", html) == [
         "The matrix",
+        "Violated requirements",
         "Requirements that are not shown, and why",
         "What changed since the review",
         "Across runs",
@@ -175,7 +176,7 @@ def test_a_requirement_that_no_run_can_violate_says_so_beside_its_verdict(tmp_pa
 
 def test_a_violation_has_its_picture_and_its_values(html: str) -> None:
     text = Page(html).text
-    late = "stopped was false from 1.1 s to 2 s, but had to be true by 1.4 s"
+    late = "stopped was false from 1.1 s to 2.1 s, but had to be true by 1.4 s"
     cause = f"{late}; at 1.4 s clearance was unknown"
     old = "0.0318 m is 400 ms old, and valid for 300 ms"
     assert f"Violation 1. {cause}: {old} and vx was unknown." in text

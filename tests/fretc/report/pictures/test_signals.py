@@ -136,6 +136,6 @@ def test_the_cause_says_what_did_not_come_and_what_the_signals_were() -> None:
         "`stopped` was not true by 12.3 s, triggered at 11 s; at 12.3 s clearance was 0.032 m."
     )
     endless = replace(broken(), deadline=None, trigger=None, values={})
-    assert cause(endless, RESULT, {}) == "`stopped` was false from 12.3 s to 12.5 s."
+    assert cause(endless, RESULT, {}) == "`stopped` was false from 12.3 s to 12.6 s (300 ms)."
     far = replace(broken(clearance=SignalSamples((9.0,), (inf,))), values={"clearance": None})
     assert cause(far, RESULT, {}).endswith("at 12.3 s clearance was +inf.")
