@@ -29,7 +29,7 @@ class State(NamedTuple):
     requirement: str
     verdict: str
     """The verdict if the run ended now."""
-    owed: Truth
+    obligation_pending: Truth
     """Whether an obligation is open; None: unknown."""
     triggered_ns: int | None
     """The last tick that has certainly triggered the requirement."""
@@ -92,7 +92,7 @@ class Guard:
         self._counts = dict.fromkeys(setting.topics, 0)
         self._unreadable: dict[str, str] = {}
         """Topic whose last message could not be read -> the reason."""
-        self._owed: tuple[Truth, ...] = (None,) * len(self._ids)
+        self._obligation_pending: tuple[Truth, ...] = (None,) * len(self._ids)
         self._violated: set[str] = set()
         """The requirements that were violated in earlier runs."""
         self._now = 0
@@ -129,7 +129,7 @@ class Guard:
                 standings = monitor.standings()
                 self._violated |= {s.requirement for s in standings if s.verdict == "violated"}
             self._now = now
-            self._owed = self._judging.owed()
+            self._obligation_pending = self._judging.obligation_pending()
 
     # Output
 
@@ -140,8 +140,8 @@ class Guard:
 
     def stop(self, steady: float) -> bool:
         """Whether the robot must stop now."""
-        owed = any(self._owed[i] is not False for i in self._deciding)
-        return owed or any(self.fault(topic, steady) for topic in self._needed)
+        pending = any(self._obligation_pending[i] is not False for i in self._deciding)
+        return pending or any(self.fault(topic, steady) for topic in self._needed)
 
     def fault(self, topic: str, steady: float) -> str:
         """The reason why a topic is unreliable; empty if it is reliable."""
@@ -155,20 +155,20 @@ class Guard:
         return ""
 
     def states(self) -> tuple[State, ...]:
-        """The status of each requirement; `owed` includes the messages since the last tick."""
+        """The status of each requirement; `obligation_pending` counts messages since the tick."""
         monitor = self._judging.monitor
-        read = zip(monitor.standings(), self._owed, monitor.must.marks(), strict=True)
+        read = zip(monitor.standings(), self._obligation_pending, monitor.must.marks(), strict=True)
         return tuple(
             State(
                 standing.requirement,
                 str(standing.verdict),
-                owed,
+                pending,
                 self._time(mark.last if mark.last >= 0 else None),
                 self._time(standing.open),
                 self._time(standing.deadline),
                 self._time(standing.first_violation),
             )
-            for standing, owed, mark in read
+            for standing, pending, mark in read
         )
 
     def news(self) -> list[dict[str, Any]]:
@@ -224,10 +224,12 @@ def status_of(state: State, fault: str, *, violated: bool = False) -> Status:
         level, message = ERROR, "violated"
     elif fault:
         level, message = STALE, fault
-    elif state.owed is not False:
+    elif state.obligation_pending is not False:
         level, message = (
             WARN,
-            "an obligation is open" if state.owed else "unknown whether an obligation is open",
+            "an obligation is open"
+            if state.obligation_pending
+            else "unknown whether an obligation is open",
         )
     else:
         level, message = OK, "no obligation is open"

@@ -187,7 +187,7 @@ KEPT = 1000
 class Judging:
     """A monitor that is stepped by arriving messages.
 
-    The robot must stop unless `owed` is False.
+    The robot must stop unless `obligation_pending` is False.
     """
 
     def __init__(self, monitor: Callable[[], Any], setting: Setting) -> None:
@@ -257,7 +257,7 @@ class Judging:
             self.ledger.advance(time, row)
             self._ahead = None
 
-    def owed(self) -> tuple[Truth, ...]:
+    def obligation_pending(self) -> tuple[Truth, ...]:
         """For each requirement, whether an obligation is open now; None: unknown.
 
         Messages since the last tick count as if there were a tick now.
@@ -267,5 +267,5 @@ class Judging:
         if not rows:
             return (None,) * len(self.monitor.REQUIREMENTS)
         if self._ahead is None or self._ahead[0] != rows:  # Most messages change nothing.
-            self._ahead = rows, self.monitor.owed_after(rows)
+            self._ahead = rows, self.monitor.obligation_pending_after(rows)
         return self._ahead[1]

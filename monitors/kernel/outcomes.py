@@ -169,20 +169,31 @@ def _outcome(
     requirement: Requirement, ticks: int, must: Signals[int], may: Signals[int], end: Verdict
 ) -> Outcome:
     last = ticks - 1
-    violated, perhaps = must.breach | must.doom, may.breach | may.doom
+    violated, perhaps = (
+        must.violation | must.violation_inevitable,
+        may.violation | may.violation_inevitable,
+    )
     unknown = perhaps ^ violated
     verdict = NO_DATA
     finite: Truth = None
     if ticks:
-        owed = truth(_at(must.owed, last), _at(may.owed, last))
+        pending = truth(_at(must.obligation_pending, last), _at(may.obligation_pending, last))
         triggered = truth(must.trigger != 0, may.trigger != 0)
-        verdict = at_end(truth(violated != 0, perhaps != 0), owed, triggered)
-        broken = truth(must.breach != 0, may.breach != 0)
-        finite = finite_verdict(broken, truth(_at(must.fails, last), _at(may.fails, last)))
+        verdict = at_end(truth(violated != 0, perhaps != 0), pending, triggered)
+        broken = truth(must.violation != 0, may.violation != 0)
+        finite = finite_verdict(
+            broken, truth(_at(must.violated_if_ended, last), _at(may.violated_if_ended, last))
+        )
     if end == VIOLATED and verdict == INCONCLUSIVE:
         verdict, violated = VIOLATED, 1 << last
     demands = _Demands(
-        ticks, requirement.horizon, must.trigger, must.answer, may.answer, must.owed, may.owed
+        ticks,
+        requirement.deadline_ticks,
+        must.trigger,
+        must.answer,
+        may.answer,
+        must.obligation_pending,
+        may.obligation_pending,
     )
     return Outcome(
         requirement=requirement.id,
@@ -212,12 +223,12 @@ class _Demands:
     """
 
     ticks: int
-    horizon: int | None
+    deadline_ticks: int | None
     triggers: int
     must_answer: int
     may_answer: int
-    must_owed: int
-    may_owed: int
+    must_pending: int
+    may_pending: int
 
     @cached_property
     def answered(self) -> int:
@@ -233,7 +244,7 @@ class _Demands:
     @cached_property
     def uncertain(self) -> int:
         """The met or open obligations that were possibly not pending until then."""
-        waits = self.must_owed ^ self.must_owed & self.may_answer
+        waits = self.must_pending ^ self.must_pending & self.may_answer
         first = _last_run(waits, self.ticks)
         certain = until(waits, self.must_answer, self._most) & self.answered
         return self.answered ^ certain | self.open ^ self.open >> first << first
@@ -241,12 +252,12 @@ class _Demands:
     @property
     def _waits(self) -> int:
         """The ticks at which an obligation may be open, and no response is certain."""
-        return self.may_owed ^ self.may_owed & self.must_answer
+        return self.may_pending ^ self.may_pending & self.must_answer
 
     @property
     def _most(self) -> int:
         """How many ticks an obligation can be pending within the trace."""
-        return self.ticks if self.horizon is None else min(self.horizon, self.ticks)
+        return self.ticks if self.deadline_ticks is None else min(self.deadline_ticks, self.ticks)
 
     def answers(self) -> Iterator[tuple[int, int]]:
         """Trigger and response, which is the first one from the trigger on."""
@@ -259,7 +270,7 @@ class _Demands:
     def deadlines(self) -> Iterator[tuple[int, int | None]]:
         """Trigger and deadline of each open obligation."""
         for trigger in ticks_of(self.open):
-            yield trigger, None if self.horizon is None else trigger + self.horizon
+            yield trigger, None if self.deadline_ticks is None else trigger + self.deadline_ticks
 
 
 def _last_run(column: int, ticks: int) -> int:

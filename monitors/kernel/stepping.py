@@ -10,6 +10,7 @@ Introduction to Metamathematics, 1952, section 64 (strong three-valued logic).
 import hashlib
 import itertools
 import json
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, ClassVar, NamedTuple, Protocol, TypeVar
@@ -36,7 +37,7 @@ class Marks(NamedTuple):
 
     broken: int
     """The first tick at which an obligation was violated."""
-    doomed: int
+    violation_inevitable: int
     """The first tick at which open obligations became impossible to meet."""
     last: int
     """The last trigger."""
@@ -46,7 +47,7 @@ class Marks(NamedTuple):
     @property
     def violated(self) -> int:
         """The tick at which the violation is certain; -1: not violated."""
-        ticks = [tick for tick in (self.broken, self.doomed) if tick >= 0]
+        ticks = [tick for tick in (self.broken, self.violation_inevitable) if tick >= 0]
         return min(ticks, default=-1)
 
 
@@ -221,9 +222,20 @@ class Standing(NamedTuple):
     new one replaces it (`for`, `next`)."""
     deadline: int | None
     """The last tick at which this obligation can be decided; None if it has no deadline."""
-    owed: Truth
+    obligation_pending: Truth
     """Whether an obligation begins at this tick or is open after it. The robot must stop unless it
     is False. None before the first tick, and if it depends on an unknown value."""
+
+    @property
+    def owed(self) -> Truth:
+        """The former name of `obligation_pending`; deprecated."""
+        _renamed("owed", "obligation_pending")
+        return self.obligation_pending
+
+
+def _renamed(old: str, new: str) -> None:
+    """Warn the caller of a name that the next version does not have any more."""
+    warnings.warn(f"`{old}` is now `{new}`", DeprecationWarning, stacklevel=3)
 
 
 _PIECE, _FEW, _SOON = 4096, 64, 64
@@ -312,18 +324,25 @@ class Monitor:
         """
         return self._after(rows, self.standings)
 
-    def owed_after(self, rows: Iterable[Row | Mapping[str, Truth]]) -> tuple[Truth, ...]:
-        """The `owed` of each of `standings_after(rows)`, but cheaper.
+    def obligation_pending_after(
+        self, rows: Iterable[Row | Mapping[str, Truth]]
+    ) -> tuple[Truth, ...]:
+        """The `obligation_pending` of each of `standings_after(rows)`, but cheaper.
 
         Raises:
             KeyError, TypeError, ValueError: as `advance` does.
         """
-        return self._after(rows, self._owed)
+        return self._after(rows, self._obligation_pending)
 
-    def _owed(self) -> tuple[Truth, ...]:
+    def owed_after(self, rows: Iterable[Row | Mapping[str, Truth]]) -> tuple[Truth, ...]:
+        """The former name of `obligation_pending_after`; deprecated."""
+        _renamed("owed_after", "obligation_pending_after")
+        return self.obligation_pending_after(rows)
+
+    def _obligation_pending(self) -> tuple[Truth, ...]:
         if self.tick < 0:
             return (None,) * len(self.REQUIREMENTS)
-        return tuple(map(_owed, self.must.signals(), self.may.signals()))
+        return tuple(map(_obligation_pending, self.must.signals(), self.may.signals()))
 
     def _after(self, rows: Iterable[Row | Mapping[str, Truth]], read: Callable[[], A]) -> A:
         kept = dict(vars(self))
@@ -498,28 +517,35 @@ def _standing(
     violated = truth(must.violated >= 0, may.violated >= 0)
     opened = must.open if must.open >= 0 else None
     deadline = None
-    if opened is not None and requirement.horizon is not None:
-        deadline = opened + requirement.horizon
+    if opened is not None and requirement.deadline_ticks is not None:
+        deadline = opened + requirement.deadline_ticks
     return Standing(
         requirement.id,
-        at_end(violated, truth(certain.owed, possible.owed), truth(must.last >= 0, may.last >= 0)),
-        finite_verdict(broken, truth(certain.fails, possible.fails)),
+        at_end(
+            violated,
+            truth(certain.obligation_pending, possible.obligation_pending),
+            truth(must.last >= 0, may.last >= 0),
+        ),
+        finite_verdict(broken, truth(certain.violated_if_ended, possible.violated_if_ended)),
         must.violated if must.violated >= 0 else None,
         opened,
         deadline,
-        _owed(certain, possible),
+        _obligation_pending(certain, possible),
     )
 
 
-def _owed(certain: Signals[bool], possible: Signals[bool]) -> Truth:
-    return truth(certain.trigger or certain.owed, possible.trigger or possible.owed)
+def _obligation_pending(certain: Signals[bool], possible: Signals[bool]) -> Truth:
+    return truth(
+        certain.trigger or certain.obligation_pending,
+        possible.trigger or possible.obligation_pending,
+    )
 
 
-def finite_verdict(broken: Truth, fails: Truth) -> Truth:
+def finite_verdict(broken: Truth, violated_if_ended: Truth) -> Truth:
     """FRET's verdict on the finite trace: not violated, and it may end here."""
-    if broken or fails:
+    if broken or violated_if_ended:
         return False
-    return True if broken is False and fails is False else None
+    return True if broken is False and violated_if_ended is False else None
 
 
 def literals_of(

@@ -48,15 +48,15 @@ T = TypeVar("T")
 class _Signals(NamedTuple):
     trigger: Any
     """An obligation begins at this tick."""
-    breach: Any
+    violation: Any
     """An obligation is violated at this tick, for every continuation."""
-    doom: Any
+    violation_inevitable: Any
     """No infinite continuation meets the open obligations, though none is violated yet."""
-    owed: Any
+    obligation_pending: Any
     """An obligation is open after this tick (if none was violated before)."""
-    fails: Any
+    violated_if_ended: Any
     """The trace would violate the requirement if it ended here, though nothing is violated yet."""
-    settled: Any
+    satisfied_forever: Any
     """No continuation can violate the requirement."""
     answer: Any
     """The response to a pending obligation is true at this tick."""
@@ -78,7 +78,7 @@ class Requirement(NamedTuple):
     sentence: str
     fingerprint: str
     """SHA-256 of the canonical sentence."""
-    horizon: int | None
+    deadline_ticks: int | None
     """Ticks from a trigger to its deadline; None if there is no deadline."""
 
 
@@ -87,12 +87,12 @@ def truth(must: bool, may: bool) -> Truth:
     return must if must == may else None
 
 
-def at_end(broken: Truth, owed: Truth, triggered: Truth) -> Verdict:
+def at_end(broken: Truth, pending: Truth, triggered: Truth) -> Verdict:
     """The verdict on a trace that ends at this tick."""
     if broken is not False:
         return VIOLATED if broken else NO_DATA
-    if owed is not False:
-        return INCONCLUSIVE if owed else NO_DATA
+    if pending is not False:
+        return INCONCLUSIVE if pending else NO_DATA
     if triggered is not False:
         return SATISFIED if triggered else NO_DATA
     return VACUOUS

@@ -1,5 +1,5 @@
 """A node's core: the robot stands unless everything is known, readable and recent, and nothing is
-owed."""
+pending."""
 
 from __future__ import annotations
 
@@ -202,8 +202,8 @@ def test_it_stops_unless_owed_is_false_and_all_is_there(
                 broken.discard(kind)
                 heard[kind] = run.steady
         silent = len(heard) < 2 or run.steady - heard["x"] > 0.5
-        owed = any(each is not False for each in judging.owed())
-        assert run.stop == bool(silent or broken or owed)
+        pending = any(each is not False for each in judging.obligation_pending())
+        assert run.stop == bool(silent or broken or pending)
 
 
 def test_parameters_are_checked(emitted: Any) -> None:

@@ -266,7 +266,7 @@ def _parameters(
     yield Parameter(
         "stop_for",
         _deciding(requirements, options),
-        "the requirements that stop the robot while owed",
+        "the requirements that stop the robot while an obligation of them is pending",
     )
 
 

@@ -60,11 +60,11 @@ def falsity(violation: Violation, requirement: FormalizedRequirement | None) -> 
     first, last = violation.first.seconds, violation.last.seconds
     match requirement.sentence.timing:
         case s.Within():
-            horizon = requirement.ticks or 0
+            deadline_ticks = requirement.ticks or 0
             trigger, deadline = violation.trigger, violation.deadline
             if trigger is None or deadline is None or deadline.tick > violation.first_tick:
                 return ""
-            if trigger.tick < violation.first_tick - horizon:
+            if trigger.tick < violation.first_tick - deadline_ticks:
                 return ""
             when, due = _when(trigger.seconds, last), phrases.seconds(deadline.seconds)
             return f"`{missing}` was false {when}, but had to be true by {due}"

@@ -326,8 +326,8 @@ def _check_step(
 def _verdict(prefix: str, tick: RowBehaviour) -> str:
     """The end of a step with an inlined tick."""
     text = f"if {_violated('rail', prefix, tick)}:\n    return VIOLATED\n"
-    if prefix in tick.settled:
-        text += f"if rail.{prefix}_signals[{_SETTLED}]:\n    return SATISFIED\n"
+    if prefix in tick.satisfied_forever:
+        text += f"if rail.{prefix}_signals[{_SATISFIED_FOREVER}]:\n    return SATISFIED\n"
     return f"{text}return PENDING"
 
 
@@ -336,22 +336,26 @@ def _check_verdicts(node: ast.stmt, prefixes: Sequence[str], tick: RowBehaviour)
     values = []
     for prefix in prefixes:
         rest = "PENDING"
-        if prefix in tick.settled:
-            settled = f"must.{prefix}_signals[{_SETTLED}]"
+        if prefix in tick.satisfied_forever:
+            forever = f"must.{prefix}_signals[{_SATISFIED_FOREVER}]"
             possible = _violated("may", prefix, tick)
-            rest = f"SATISFIED if {settled} and not ({possible}) else PENDING"
+            rest = f"SATISFIED if {forever} and not ({possible}) else PENDING"
         values.append(f"VIOLATED if {_violated('must', prefix, tick)} else {rest}")
-    rails = "must = self.must\n" + "may = self.may\n" * bool(tick.settled)
+    rails = "must = self.must\n" + "may = self.may\n" * bool(tick.satisfied_forever)
     text = f"{rails}return ({', '.join(values)},)"
     require(reads(body_of(node, "verdicts", "self"), text), node)
 
 
-_SETTLED = SIGNALS.index("settled")
+_SATISFIED_FOREVER = SIGNALS.index("satisfied_forever")
 
 
 def _violated(rail: str, prefix: str, tick: RowBehaviour) -> str:
-    doomed = f" or {rail}.{prefix}_doomed >= 0" if prefix in tick.doomed else ""
-    return f"{rail}.{prefix}_broken >= 0{doomed}"
+    inevitable = (
+        f" or {rail}.{prefix}_violation_inevitable >= 0"
+        if prefix in tick.violation_inevitable
+        else ""
+    )
+    return f"{rail}.{prefix}_broken >= 0{inevitable}"
 
 
 def _is_text(node: ast.Assign, name: str) -> bool:

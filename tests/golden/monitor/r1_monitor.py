@@ -22,6 +22,7 @@ import itertools
 import json
 import os
 import re
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -50,10 +51,10 @@ class R1Rail:
     __slots__ = (
         "doubt",
         "r1_broken",
-        "r1_doomed",
         "r1_last",
         "r1_open",
         "r1_signals",
+        "r1_violation_inevitable",
         "since_1",
         "tick",
     )
@@ -68,7 +69,7 @@ class R1Rail:
         self.since_1 = False
         # ticks of R1: the first violation, the last trigger, the trigger of the open demand
         self.r1_broken = -1
-        self.r1_doomed = -1
+        self.r1_violation_inevitable = -1
         self.r1_last = -1
         self.r1_open = -1
         self.r1_signals: tuple[bool, ...] = (False,) * 7
@@ -123,14 +124,14 @@ class R1Rail:
     def marks(self) -> tuple[Marks, ...]:
         """The remembered ticks, for each requirement."""
         return (
-            Marks(self.r1_broken, self.r1_doomed, self.r1_last, self.r1_open),
+            Marks(self.r1_broken, self.r1_violation_inevitable, self.r1_last, self.r1_open),
         )
 
 
 class R1Monitor(Monitor):
     """Step it with the propositions of each tick; a verdict comes back."""
 
-    PROGRAM = "e438fb62aee9c4c602ec9f8e96e7a1b8808d1818b36e92b1859921f626778315"
+    PROGRAM = "8ed98b58e347cab79c0d2da4d4f14b930bba172930f536eeac67f56cc9fd9551"
     REQUIREMENTS = (
         Requirement(
             "R1",
@@ -202,11 +203,11 @@ class R1Monitor(Monitor):
         return (
             Signals(
                 trigger=too_close,
-                breach=0,
-                doom=0,
-                owed=since_1,
-                fails=since_1,
-                settled=0,
+                violation=0,
+                violation_inevitable=0,
+                obligation_pending=since_1,
+                violated_if_ended=since_1,
+                satisfied_forever=0,
                 answer=stopped,
             ),
         )

@@ -258,7 +258,7 @@ def test_the_package_in_cpp_says_the_same(
     assert told[len(expected) :] == rows
 
 
-STATE = ("verdict", "owed", "triggered_ns", "violated_ns")
+STATE = ("verdict", "obligation_pending", "triggered_ns", "violated_ns")
 
 
 def _states(guard: Any) -> list[tuple[Any, ...]]:

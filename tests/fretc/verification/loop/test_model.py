@@ -56,7 +56,7 @@ class Simulation:
         stopped = self._stands()
         self.monitor.step(near=near, stopped=stopped)
         (signals,) = self.monitor.must.signals()
-        request = bool(signals.trigger or signals.owed)
+        request = bool(signals.trigger or signals.obligation_pending)
         self._send(request)
         end = self.now + self.channel.cells * PERIOD
         commands = sorted(

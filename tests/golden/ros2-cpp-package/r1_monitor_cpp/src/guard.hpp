@@ -42,7 +42,7 @@ public:
   : setting_(&setting), judging_(setting), timeout_(source_timeout), deciding_(deciding),
     heard_(setting.topics.size()), counts_(setting.topics.size(), 0)
   {
-    owed_.fill(FRETC_UNKNOWN);
+    pending_.fill(FRETC_UNKNOWN);
     for (const std::size_t place : deciding) {
       const auto & own = Machine::reads()[place];
       needed_.insert(own.begin(), own.end());
@@ -77,7 +77,7 @@ public:
   {
     return std::any_of(
       deciding_.begin(), deciding_.end(),
-      [this](std::size_t i) {return owed_[i] != FRETC_FALSE;}) ||
+      [this](std::size_t i) {return pending_[i] != FRETC_FALSE;}) ||
            std::any_of(
       needed_.begin(), needed_.end(),
       [this, steady](std::size_t topic) {return !fault(topic, steady).empty();});
@@ -142,7 +142,7 @@ private:
       }
     }
     now_ = now;
-    owed_ = judging_.owed();
+    pending_ = judging_.obligation_pending();
   }
 
   // Why a topic cannot be relied on, in words; empty: nothing is wrong.
@@ -174,8 +174,8 @@ private:
   std::string state(std::size_t i) const
   {
     const auto & monitors = judging_.monitors;
-    return ", \"verdict\": \"" + monitors.verdict(i) + "\", \"owed\": " +
-           (owed_[i] == FRETC_UNKNOWN ? "null" : owed_[i] == FRETC_TRUE ? "true" : "false") +
+    return ", \"verdict\": \"" + monitors.verdict(i) + "\", \"obligation_pending\": " +
+           (pending_[i] == FRETC_UNKNOWN ? "null" : pending_[i] == FRETC_TRUE ? "true" : "false") +
            ", \"triggered_ns\": " + nanoseconds(monitors.triggered(i)) +
            ", \"violated_ns\": " + nanoseconds(monitors.violated(i));
   }
@@ -183,7 +183,7 @@ private:
   Status status(std::size_t i, double steady) const
   {
     const std::string verdict = judging_.monitors.verdict(i);
-    Status found{OK, Machine::ids()[i], "nothing is owed", { {"verdict", verdict} }};
+    Status found{OK, Machine::ids()[i], "no obligation is open", { {"verdict", verdict} }};
     std::string wrong;
     for (const std::size_t topic : Machine::reads()[i]) {
       wrong = wrong.empty() ? fault(topic, steady) : wrong;
@@ -194,9 +194,10 @@ private:
     } else if (!wrong.empty()) {
       found.level = STALE;
       found.message = wrong;
-    } else if (owed_[i] != FRETC_FALSE) {
+    } else if (pending_[i] != FRETC_FALSE) {
       found.level = WARN;
-      found.message = owed_[i] == FRETC_TRUE ? "a demand is open" : "unknown what is owed";
+      found.message = pending_[i] == FRETC_TRUE ? "an obligation is open" :
+        "unknown whether an obligation is open";
     }
     return found;
   }
@@ -208,7 +209,7 @@ private:
   std::set<std::size_t> needed_, aging_, violated_;
   std::vector<std::optional<double>> heard_;
   std::vector<std::size_t> counts_;
-  std::array<Truth, Machine::COUNT> owed_;
+  std::array<Truth, Machine::COUNT> pending_;
   std::array<std::string, Machine::COUNT> states_;
   Time now_ = 0;
 };

@@ -101,7 +101,7 @@ public:
     declare_parameter(
       "stop_for", std::vector<std::string>{"R1"},
       described(
-        "the requirements that stop the robot while owed"));
+        "the requirements that stop the robot while an obligation of them is pending"));
     const auto fixed = described("of the bindings, from which setting.hpp was made");
     const auto & ids = fretc::Machine::ids();
     declare_parameter("requirements", std::vector<std::string>(ids.begin(), ids.end()), fixed, true);

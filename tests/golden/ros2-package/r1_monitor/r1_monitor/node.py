@@ -53,7 +53,7 @@ PARAMETERS = (
     (
         "stop_for",
         ["R1"],
-        "the requirements that stop the robot while owed",
+        "the requirements that stop the robot while an obligation of them is pending",
     ),
 )
 """What can be set when the node starts: name, default, description, and its least and most."""
