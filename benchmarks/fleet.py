@@ -24,7 +24,7 @@ from fretc.audit.evidence.schema import Result
 from fretc.audit.into_store import StoredAudit, StoreWriter
 from fretc.audit.many_logs import Engine, audit_log, local_executor
 from fretc.audit.outputs.summary import summarize
-from fretc.audit.outputs.table import parquet, read, rows
+from fretc.audit.outputs.table import parquet, read, row_of
 from fretc.audit.plan import Plan, planned
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -88,7 +88,7 @@ def table(results: Sequence[Result], path: Path) -> None:
         for run in range(RUNS)
         for number in (1, 2, 3)
     ]
-    path.write_bytes(parquet(rows(many, "benchmark")))
+    path.write_bytes(parquet(row_of(one, "benchmark") for one in many))
     start = time.perf_counter()
     known = read([str(path)])
     assert not isinstance(known, Diagnostic), known.message

@@ -27,11 +27,8 @@ from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import BINDINGS as BOUND
 from fretc.audit.evidence.basis import of_all
 from fretc.audit.evidence.schema import SCHEMA, EvidenceDocument, Result
-from fretc.audit.store.manifest import SCHEMA as STORES
-from fretc.audit.store.manifest import Part, StoreManifest
-from fretc.audit.store.parts import parts as parts_of
-from fretc.audit.store.tables import to_tables
-from fretc.audit.store.writer import write_manifest, write_part
+from fretc.audit.store.container import packed
+from fretc.audit.store.writer import StoreFile, complete, publish
 from fretc.report.make import make
 
 BINDINGS = """\
@@ -254,15 +251,13 @@ def written(folder: Path, requirements: int, runs: int, share: float, form: str)
                 file.write(("," if number else "") + json.dumps(run)[1:-1])
             file.write("]}")
         return
-    parts = []
-    for some in parts_of([f"runs/{run:04}.mcap" for run in range(runs)]):
-        of_part = [each for _ in some for each in decoded(next(of_runs), list[Result])]
-        part = write_part(folder / STORE, to_tables(of_part, __version__))
-        assert isinstance(part, Part), part
-        parts.append(part)
+    (folder / STORE).mkdir()
+    file = StoreFile(folder / STORE / "unfinished-1.sqlite")
+    for place, run in enumerate(of_runs):
+        file.put(*packed(place, decoded(run, list[Result])))
     document = decoded({**head(known), "results": []}, EvidenceDocument)
-    fields = (document.fretc, document.bindings, document.requirements, None, tuple(parts))
-    assert isinstance(write_manifest(folder / STORE, StoreManifest(STORES, *fields)), str)
+    complete(file.path, document, file.close())
+    publish(file.path)
 
 
 def report(folder: Path, requirements: int, form: str) -> tuple[float, float, float, float]:

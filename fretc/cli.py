@@ -163,9 +163,9 @@ Python's default of 700 the collector takes a tenth of the start-up time."""
 
 
 def _prepare() -> None:
-    """Make streams and signals safe: closed pipes and SIGTERM keep exit status and files intact.
+    """Make streams and signals safe: a closed pipe or SIGTERM spoils neither exit status nor files.
 
-    Nothing in the current folder is executed by accident.
+    Python imports nothing from the current folder.
     """
     isolate_imports()
     gc.set_threshold(_GARBAGE)

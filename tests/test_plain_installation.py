@@ -116,7 +116,7 @@ def test_no_answer_depends_on_an_extra(plain: list[Done], tmp_path: Path) -> Non
         assert untimed(before) == untimed(after), before["words"]
 
 
-TIMED = re.compile(r"(^| )analysis\.json$|/register/|/reuse\.json$|/manifest\.json$")
+TIMED = re.compile(r"(^| )analysis\.json$|/evidence\.sqlite$")
 """Files that hold when, or in what time, they were made: a store knows logs by their times."""
 
 

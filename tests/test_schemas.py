@@ -10,14 +10,13 @@ from compiler.files.templating import template_root, to_json
 from compiler.logic import claims
 from fretc.analysis import evidence, findings
 from fretc.audit.evidence import schema
-from fretc.audit.store import manifest
 from fretc.coverage import mutation_record, record
 from fretc.testing import suite
 from fretc.testing.conformance import findings as conformance
 from fretc.watch import json_lines
 
 SCHEMAS = {"evidence": schema.schema(), "verification": claims.schema()}
-SCHEMAS |= {"store": manifest.schema(), "analysis": findings.schema()}
+SCHEMAS |= {"analysis": findings.schema()}
 SCHEMAS |= {"analyzed-set": evidence.schema(), "tests": suite.schema()}
 SCHEMAS |= {"coverage": record.schema(), "mutation": mutation_record.schema()}
 

@@ -12,6 +12,7 @@ import msgspec
 import msgspec.inspect
 from msgspec import UNSET as UNSET
 from msgspec import Meta as Meta
+from msgspec import Raw as Raw
 from msgspec import UnsetType as UnsetType
 from msgspec import field as field
 from msgspec.structs import replace as replace
@@ -70,6 +71,28 @@ def decoded(value: object, kind: type[R]) -> R:
         raise SchemaError(_in_words(str(error))) from None
     except UnicodeEncodeError:
         raise SchemaError("a text has a lone surrogate, which is half of a character") from None
+
+
+def decoded_json(data: bytes | Raw, kind: type[R]) -> R:
+    """A JSON text as a record, of which keys that the record does not have may be skipped.
+
+    The text is not checked as strictly as by `checked_json`: of a key that appears twice the last
+    one counts, and an integer of a type without bounds may have any size.
+
+    Raises:
+        SchemaError: the text does not fit the record.
+    """
+    try:
+        return msgspec.json.decode(data, type=kind)
+    except (msgspec.MsgspecError, UnicodeError) as error:
+        raise SchemaError(_in_words(str(error))) from None
+    except RecursionError:
+        raise SchemaError("it is nested too deeply") from None
+
+
+def json_bytes(record: object) -> bytes:
+    """The shortest JSON text of a record: equal values give equal bytes."""
+    return msgspec.json.encode(record)
 
 
 def read(path: str, kind: type[R], command: str, again: str) -> tuple[Source, R] | Diagnostic:

@@ -13,7 +13,6 @@ import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import chain
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -21,29 +20,17 @@ import tomli_w
 
 from compiler.files.artifact import Artifact
 from compiler.files.checked_json import parsed
-from compiler.project.lustre import fretish, lustre
-from fretish import expressions as e
-from fretish.bindings.declarations import Role
-from fretish.bindings.definitions import find_cycle
+from compiler.project.fret_variables import OWN, glossary, text_of, variables_of
 from fretish.diagnostics.diagnostic import Diagnostic, Severity, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
-from fretish.parser import parse, parse_value
-from fretish.printer import expression
+from fretish.parser import parse
 from fretish.reading.limits import with_budget
 
 STATUSES = {"completed": "approved", "deprecated": "retired"}
 """FRET's status → the status of fretc; every other status becomes a draft."""
 
-OWN = "fretc"
-"""The key in a record of `--emit fret-json` for title and text, which FRET has no fields for."""
 _FRET_FIELDS = ("project", "comments", "status", "_id", "reqid")
-_VARIABLE_FIELDS = frozenset(
-    "_id project component_name variable_name dataType idType description reqs".split()
-)
-_IGNORED_FIELDS = frozenset({"modeldoc", "_rev", OWN})
-KEPT = "variable"
-"""The table `[[fret.variable]]`: variables of FRET that are not imported."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +90,8 @@ def _from_json(source: Source) -> ImportResult:
     diagnostics: list[Diagnostic] = []
     entries = list(_requirements(requirements, source, diagnostics))
     kept: list[Mapping[str, Any]] = []
-    declared = _variables(variables, source, diagnostics, kept)
-    files = [*_documents(entries), *_glossary(declared, kept)]
+    declared = variables_of(variables, source, diagnostics, kept)
+    files = [*_documents(entries), *glossary(declared, kept)]
     return ImportResult(tuple(files), tuple(diagnostics), len(entries), len(declared))
 
 
@@ -140,13 +127,13 @@ def _requirements(
     ids: dict[tuple[str, str], str] = {}
     entries: list[tuple[str, str, Mapping[str, Any]]] = []
     for number, record in enumerate(records, 1):
-        reqid, fulltext = _text(record.get("reqid")), _text(record.get("fulltext")).strip()
+        reqid, fulltext = text_of(record.get("reqid")), text_of(record.get("fulltext")).strip()
         if not fulltext:
             diagnostics.append(
                 _skipped(f"requirement {number} ({reqid or 'no id'}) has no text", source)
             )
             continue
-        project = _text(record.get("project"))
+        project = text_of(record.get("project"))
         wanted = _id(reqid or f"requirement-{number}")
         id = _unique(wanted, project, taken)
         if id != wanted:
@@ -164,7 +151,7 @@ def _requirements(
         ids[project, reqid] = id
         entries.append((id, fulltext, record))
     for id, fulltext, record in entries:
-        project = _text(record.get("project"))
+        project = text_of(record.get("project"))
         yield ImportedRequirement(id, _unfenced(fulltext), _header(id, record, ids), project)
         diagnostics.extend(_unread(id, fulltext))
 
@@ -178,23 +165,25 @@ def _header(
     id: str, record: Mapping[str, Any], ids: Mapping[tuple[str, str], str]
 ) -> dict[str, Any]:
     """The `.fret` header; fields that fretc does not use go below `fret`."""
-    fret = {key: _text(record.get(key)) for key in _FRET_FIELDS}
+    fret = {key: text_of(record.get(key)) for key in _FRET_FIELDS}
     if fret["reqid"] == id:
         del fret["reqid"]
-    parent_text = _text(record.get("parent_reqid"))
+    parent_text = text_of(record.get("parent_reqid"))
     names = [part.strip() for part in parent_text.split(",") if part.strip()]
     parents = [ids.get((fret["project"], name), name) for name in names]
     if ", ".join(parents) != parent_text:
         fret["parent_reqid"] = parent_text
     own = record.get(OWN)
     own_texts = (
-        {name: _text(own.get(name)) for name in ("title", "text")} if isinstance(own, dict) else {}
+        {name: text_of(own.get(name)) for name in ("title", "text")}
+        if isinstance(own, dict)
+        else {}
     )
     header: dict[str, Any] = {
         "id": id,
         **own_texts,
         "parents": parents,
-        "rationale": _text(record.get("rationale")),
+        "rationale": text_of(record.get("rationale")),
         "status": STATUSES.get(fret["status"], "draft"),
         "fret": {key: value for key, value in fret.items() if value},
     }
@@ -226,12 +215,6 @@ def _unique(id: str, project: str, taken: set[str]) -> str:
     return free
 
 
-def _text(value: Any) -> str:
-    """The value as text; empty for the list or null that FRET writes for no text."""
-    text = value if isinstance(value, str) else "" if value in (None, [], {}) else str(value)
-    return text.encode("utf-8", "replace").decode()  # half of a character is none
-
-
 def _documents(requirements: Sequence[ImportedRequirement]) -> Iterator[Artifact]:
     """One `.fret` file for each project."""
     by_project: dict[str, list[ImportedRequirement]] = {}
@@ -246,187 +229,6 @@ def _documents(requirements: Sequence[ImportedRequirement]) -> Iterator[Artifact
 
 def _pair(requirement: ImportedRequirement) -> str:
     return f"+++\n{tomli_w.dumps(requirement.header)}+++\n{requirement.fulltext}\n"
-
-
-# Variables -------------------------------------------------------------------------------------
-
-
-def _variables(
-    records: Iterable[Mapping[str, Any]],
-    source: Source,
-    diagnostics: list[Diagnostic],
-    kept: list[Mapping[str, Any]],
-) -> dict[str, dict[str, Any]]:
-    """The tables `[variable.NAME]`; names belong to the folder, not to a project.
-
-    The meaning of a name for another component is a table `of` that component. Of several variables
-    with the same name and component the first is read; F530 names the differences of the others.
-
-    Args:
-        records: the records of the export.
-        source: the export.
-        diagnostics: the list that receives diagnostics.
-        kept: the list that receives records that are not read: FRET's models, and further records
-            of a variable.
-    """
-    tables: dict[str, dict[str, Any]] = {}
-    components: dict[str, dict[str, dict[str, Any]]] = {}
-    for record in records:
-        name = unquoted(_text(record.get("variable_name")))
-        if not name or record.get("modeldoc") is True:
-            kept.append(_record(record))
-            continue
-        table = _variable(record)
-        component = table.get("component", "")
-        first = tables.setdefault(name, table)
-        if component and component != first.get("component", ""):
-            own = {key: value for key, value in table.items() if key != "component"}
-            first, table = components.setdefault(name, {}).setdefault(component, own), own
-        if first != table:
-            kept.append(_record(record))
-            diagnostics.append(_merged(name, first, table, source))
-    for component in ("", *dict.fromkeys(chain.from_iterable(components.values()))):
-        own = {name: components.get(name, {}).get(component, tables[name]) for name in tables}
-        diagnostics.extend(_without_circles(own, source))
-    return {
-        name: {**table, "of": components[name]} if name in components else table
-        for name, table in tables.items()
-    }
-
-
-def unquoted(name: str) -> str:
-    """The name without the quotes that FRET keeps; in a sentence `"T"` is `T`."""
-    return name[1:-1] if re.fullmatch(r'"[^"\n]+"', name) else name
-
-
-def _without_circles(tables: Mapping[str, dict[str, Any]], source: Source) -> Iterator[Diagnostic]:
-    """F342 for variables with circular assignments; each keeps its assignment as text."""
-    values: dict[str, e.Expression] = {}
-    for name, table in tables.items():
-        value = parse_value(Source(name, table.get("value", "")).span())
-        if not isinstance(value, Diagnostic):
-            values[name] = value
-    while names := find_cycle(values):
-        for name in dict.fromkeys(names):
-            table = tables[name]
-            kept = {assignment_field(table["role"]): lustre(values.pop(name)) or ""}
-            table["fret"] = kept | table.get("fret", {})
-            del table["value"]
-        place = Source(source.name, "").span()
-        yield diagnostic("circular_assignments", place, names=" -> ".join(names[:12]))
-
-
-def _variable(record: Mapping[str, Any]) -> dict[str, Any]:
-    """The `[variable.NAME]` table of one record."""
-    role = _text(record.get("idType")).lower()
-    written = _text(record.get(assignment_field(role)))
-    value = _value(record, written)
-    fret = {
-        key: _plain(value)
-        for key, value in sorted(record.items())
-        if key not in _VARIABLE_FIELDS | _IGNORED_FIELDS and value not in ("", None, [], {}, False)
-    }
-    if value is not None and (lustre(value) or "") == written:
-        fret.pop(assignment_field(role), None)
-    table = {
-        "component": _text(record.get("component_name")),
-        "type": _text(record.get("dataType")),
-        "role": role,
-        "text": _text(record.get("description")),
-        "value": "" if value is None else expression(value),
-        "fret": {**fret, **_id_of_variable(record), **_of_project(record)},
-    }
-    return {key: value for key, value in table.items() if value}
-
-
-def _id_of_variable(record: Mapping[str, Any]) -> dict[str, str]:
-    """The `_id`, unless FRET derives it from the names of project, component and variable."""
-    names = ("project", "component_name", "variable_name")
-    id = _text(record.get("_id"))
-    return {"_id": id} if id not in ("", "".join(_text(record.get(n)) for n in names)) else {}
-
-
-def _record(record: Mapping[str, Any]) -> dict[str, Any]:
-    """FRET's record of a variable as TOML values."""
-    ignored = {"_rev", OWN}
-    return {k: _plain(v) for k, v in record.items() if k not in ignored and v is not None}
-
-
-def assignment_field(role: str) -> str:
-    """The field of FRET for the assignment of a variable; modes have a different one."""
-    return "modeRequirement" if role == Role.MODE else "assignment"
-
-
-def _value(record: Mapping[str, Any], written: str) -> e.Expression | None:
-    """The assignment of a variable, as fretc wrote it if FRET's copy still agrees.
-
-    None if it has no assignment, as inputs and outputs, or the assignment has no equivalent in
-    FRETish.
-    """
-    defines = _text(record.get("idType")).lower() in (Role.INTERNAL, Role.MODE)
-    if not defines or record.get("variable_name") == "FTP":  # FRETish's own name of the first tick
-        return None
-    own = record.get(OWN)
-    text = _text(own.get("value")) if isinstance(own, dict) else ""
-    value = parse_value(Source(f"{OWN}.value", text).span()) if text else None
-    if isinstance(value, Diagnostic) or value is None or (lustre(value) or "") != written:
-        return fretish(written)
-    return value
-
-
-def _merged(
-    name: str, first: Mapping[str, Any], second: Mapping[str, Any], source: Source
-) -> Diagnostic:
-    lost = [
-        key
-        for key in ("component", "type", "role", "text", "value")
-        if first.get(key) != second.get(key)
-    ]
-    fields, second_fields = first.get("fret", {}), second.get("fret", {})
-    lost += sorted(
-        key
-        for key in {*fields, *second_fields} - {"_id"}
-        if fields.get(key) != second_fields.get(key)
-    )
-    differences = ", ".join(
-        f"{key} `{second.get(key, second_fields.get(key, ''))}`" for key in lost
-    )
-    place = Source(source.name, "").span()
-    return diagnostic("merged_variable", place, name=name, differences=differences)
-
-
-def _plain(value: Any) -> Any:
-    """The value in TOML's types; other values become JSON text."""
-    if isinstance(value, str):
-        return _text(value)
-    if isinstance(value, int | float):
-        return value
-    if isinstance(value, list) and None not in value:
-        return [_plain(item) for item in value]
-    if isinstance(value, dict) and None not in value.values():
-        return {key: _plain(item) for key, item in value.items()}
-    return json.dumps(value)
-
-
-def _of_project(record: Mapping[str, Any]) -> dict[str, str]:
-    project = _text(record.get("project"))
-    return {"project": project} if project else {}
-
-
-def _glossary(
-    tables: Mapping[str, Mapping[str, Any]], kept: Sequence[Mapping[str, Any]]
-) -> Iterator[Artifact]:
-    if tables or kept:
-        content: dict[str, Any] = {"variable": {name: dict(t) for name, t in tables.items()}}
-        content |= {"fret": {KEPT: [dict(record) for record in kept]}} if kept else {}
-        text = (
-            "# The variables of the requirements, as FRET's glossary has them. To audit logs,\n"
-            "# declare a [clock], and bind each variable by a [proposition.NAME] over signals.\n\n"
-        )
-        yield Artifact(
-            PurePosixPath("bindings.toml"),
-            text + tomli_w.dumps(content),
-        )
 
 
 # CSV -------------------------------------------------------------------------------------------
@@ -507,7 +309,7 @@ def _columns(
 
 def _row(row: Mapping[str | None, Any], chosen: Mapping[str, str]) -> dict[str, Any]:
     """The row as a FRET record; text that is not FRETish is quoted, and kept as free text."""
-    text = _text(row.get(chosen["text"])).strip()
+    text = text_of(row.get(chosen["text"])).strip()
     if text and isinstance(parse(Source("row", text).span()), Diagnostic):
         text = '"' + text.replace('"', "'") + '"'
     chosen_names = set(chosen.values())

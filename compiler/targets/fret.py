@@ -15,7 +15,8 @@ from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
 from compiler.logic.spelling.reserved_words import FRET
-from compiler.project.fret_import import OWN, STATUSES, assignment_field, unquoted
+from compiler.project.fret_import import STATUSES
+from compiler.project.fret_variables import OWN, assignment_field, unquoted
 from compiler.project.lustre import fretish, lustre
 from compiler.targets.target import DEFAULT, Target, TargetOptions, not_expressible
 from fretish import expressions as e

@@ -47,7 +47,7 @@ _AUDIT = {
 @click.command(
     cls=CommandWithHeadings,
     headings=_AUDIT,
-    epilog=extras({**LOG_EXTRAS, "fleet": "--engine dask"}),
+    epilog=extras({**LOG_EXTRAS, "fleet": "--engine dask", "parquet": "--parquet"}),
 )
 @click.argument("paths", nargs=-1, required=True, type=PATH, metavar="LOG...")
 @requirements_option

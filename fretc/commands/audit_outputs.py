@@ -87,6 +87,11 @@ def check(target: EvidencePath, parquet: str | None) -> None:
 
 
 def _check_table(parquet: str, evidence: Path) -> None:
+    from fretc.audit.outputs.table import no_parquet
+
+    absent = no_parquet()
+    if absent is not None:
+        fail(absent)
     if parquet == "-":
         fail(not_written(parquet, "a Parquet table cannot be printed"))
     if os.path.exists(parquet) and not os.path.isfile(parquet):
@@ -99,7 +104,7 @@ def table(outcome: CommandOutcome) -> bytes:
     """The content of a Parquet file with a row for each result."""
     from fretc.audit.outputs import table as tables
 
-    return tables.parquet(tables.table(outcome.source))
+    return tables.parquet(tables.rows(outcome.source))
 
 
 def remove_other(target: EvidencePath) -> None:

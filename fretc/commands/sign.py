@@ -228,10 +228,9 @@ def _as_error(wrong: Diagnostic) -> Diagnostic:
 
 def _evidence(audited: EvidenceSource, proofs: Proofs | None) -> Signable:
     from fretc.attestation import statement as attestation
-    from fretc.audit.store.manifest import FILE as MANIFEST
 
-    place = Path(audited.file)
-    _same_bytes(str(place / MANIFEST if place.is_dir() else place), audited.sha256)
+    if not os.path.isdir(audited.file):
+        _same_bytes(audited.file, audited.sha256)
     if next(audited.briefs(), None) is None:
         fail(_usage(f"`{audited.file}` contains no run", "audit a log: `fretc audit LOG...`"))
     statement = attestation.evidence(audited, proofs)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
 from typing import Any, NoReturn
 
 import click
@@ -36,12 +37,14 @@ def print_summary(paths: Sequence[str], query: str | None, output_format: str) -
     """Print a summary of evidence, or the result of a query; exit with the status of the audit."""
     if output_format not in ("text", "json"):
         fail(diagnostic("unknown_summary_format", output_format=output_format))
-    table = or_fail(read(paths))
+    table = or_fail(read(paths, query))
     if query is not None:
-        answer = or_fail(run_query(table, query))
+        with closing(table):
+            answer = or_fail(run_query(table, query))
         click.echo(_json(answer.records) if output_format == "json" else _listed(answer), nl=False)
         raise SystemExit(EXIT_OK)
-    summary = summarize(table)
+    with closing(table):
+        summary = summarize(table)
     print_diagnostics(summary.remarks)
     click.echo(_json(summary.as_record) if output_format == "json" else _text(summary), nl=False)
     raise SystemExit(

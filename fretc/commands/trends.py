@@ -56,7 +56,7 @@ def trends(
     Example: fretc trends nights/*.json --html build/trends.html
     """
     from fretc.audit.store.anywhere import required_source
-    from fretc.audit.store.errors import StoreError
+    from fretc.audit.store.container import StoreError
     from fretc.trends.trends import trends as trends_of
 
     if html is not None:

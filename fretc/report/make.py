@@ -14,7 +14,7 @@ from compiler.project.project import Project
 from fretc.analysis.evidence import read as read_analysis
 from fretc.attestation.signatures import read_signatures
 from fretc.audit.store.anywhere import source
-from fretc.audit.store.errors import StoreError
+from fretc.audit.store.container import StoreError
 from fretc.report.assembly import report
 from fretc.report.forms.json_text import json_pieces
 from fretc.report.model.assessments import Inputs

@@ -10,14 +10,12 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
 import pytest
 import tomli_w
 
 from compiler.files import settings
 from compiler.project import hazards
-from fretc.audit.store import tables
-from fretc.audit.store.register import types
+from fretc.audit.outputs import table as tables
 from fretc.traceability import lock, texts, waivers
 from fretc.traceability.chain import ChainItem
 from fretish.bindings import declarations as d
@@ -86,28 +84,15 @@ def table(name: str) -> str:
 
 ROWS_OF_STORES = {
     "results": "run and requirement",
-    "events": "run and requirement",
     "violations": "stretch of violated ticks",
-    "samples": "violation with samples",
     "runs": "run",
-    "register": "run",
 }
 
 
 def store_rows() -> Iterator[str]:
-    schemas = [*((str(name), tables.schema(name)) for name in tables.TABLES), ("register", types())]
-    for name, schema in schemas:
-        columns = ", ".join(f"`{column.name}` {kind(column.type)}" for column in schema)
-        yield f"| `{name}` | {ROWS_OF_STORES[name]} | {columns} |"
-
-
-def kind(of: pa.DataType) -> str:
-    """A type in few words."""
-    if pa.types.is_list(of):
-        return f"list of {kind(of.value_type)}"
-    if pa.types.is_map(of):
-        return f"map to {kind(of.item_type)}"
-    return "struct" if pa.types.is_struct(of) else str(of)
+    for name, columns in tables.TABLES.items():
+        words = ", ".join(f"`{column.replace(chr(34), '')}`" for column in columns)
+        yield f"| `{name}` | {ROWS_OF_STORES[name]} | {words} |"
 
 
 def test_the_page_is_current(request: pytest.FixtureRequest) -> None:

@@ -17,7 +17,6 @@ ALWAYS = {
     "asyncio",
     "cyclonedds",
     "dask",
-    "duckdb",
     "importlib.metadata",
     "matplotlib",
     "mujoco",

@@ -19,8 +19,8 @@ from compiler.logic.spelling.reserved_words import C_LIBRARY, C, ReservedWords
 from compiler.program.rails import Ring
 from compiler.signals.functions import Functions, functions
 from compiler.targets.c import signals
+from compiler.targets.c.fixed_memory import input_names, inputs, rail_of, too_large
 from compiler.targets.c.printer import CPrinter
-from compiler.targets.fixed_memory import input_names, inputs, rail_of, too_large
 from compiler.targets.python.monitor import description, refusal, remark
 from compiler.targets.python.names import module, prefixes_of
 from compiler.targets.target import DEFAULT, Target, TargetOptions, stem

@@ -13,7 +13,7 @@ from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.spelling.reserved_words import RUST
-from compiler.targets.fixed_memory import input_names, inputs, rail_of, too_large
+from compiler.targets.c.fixed_memory import input_names, inputs, rail_of, too_large
 from compiler.targets.python.monitor import description, refusal, remark
 from compiler.targets.python.names import module
 from compiler.targets.rust import signals

@@ -163,7 +163,7 @@ class Propositions:
         """Variables whose atoms order alone cannot separate."""
         readers: defaultdict[str, list[str]] = defaultdict(list)
         for name, read in self._read.items():
-            for each in read:
+            for each in sorted(read):  # the order of a set changes from process to process
                 readers[each].append(name)
         glossary = {
             name: each

@@ -6,25 +6,38 @@ sorts them reads briefs, and asks for the few results that it shows in full.
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from operator import attrgetter
 from statistics import median
 from typing import Any, Protocol
 
-from compiler.files.records import UnsetType
+from compiler.files.checked_json import GREATEST, LEAST
+from compiler.files.records import (
+    UNSET,
+    Count,
+    Name,
+    Raw,
+    Record,
+    Seconds,
+    UnsetType,
+    Whole,
+)
+from compiler.files.records import field as record_field
 from fretc.audit.evidence.basis import KINDS
-from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.probabilities import Estimated, Outcomes
 from fretc.audit.evidence.schema import (
     BindingsRecord,
     Hashes,
     Health,
+    Labels,
     RequirementRecord,
     Result,
     Selection,
     Situations,
     ThresholdRecord,
+    Verdict,
+    trials_of,
 )
 from fretc.audit.measurements.trials import Trials
 from fretish.bindings.canonical import digest
@@ -106,26 +119,6 @@ class RunFacts:
     """Of all its results, each once."""
     labels: Mapping[str, str] = field(default_factory=dict)
     """What is known of the run beside its messages: version, scenario and others."""
-
-
-Span = tuple[float, float]
-"""Start and end, in seconds from the first tick of a run."""
-
-
-@dataclass(frozen=True, slots=True)
-class Stretches:
-    """The intervals of one run at which a requirement was violated, unknown or open.
-
-    A tick lasts until the next one. Where the clock ticks by message, ends of ticks of which the
-    evidence has no time lie evenly between those of which it has one.
-    """
-
-    length: float
-    """Seconds from the first tick to the end of the last one."""
-    violations: tuple[Span, ...]
-    unknown: tuple[Span, ...]
-    open: tuple[float, ...]
-    """The triggers whose demand is open at the end."""
 
 
 class Head(Protocol):
@@ -297,7 +290,63 @@ _COMMON = tuple(
 _prints, _values = attrgetter(*_PRINTS), attrgetter(*_FIELDS)
 
 
-def brief(result: Result) -> ResultSummary:
+class PartialRecord(Record, frozen=True, forbid_unknown_fields=False):
+    """Some fields of a record of evidence; the others are skipped when it is read."""
+
+
+class _Tick(PartialRecord, frozen=True):
+    tick: Count
+
+
+class _Violation(PartialRecord, frozen=True):
+    first_tick: Count
+    last_tick: Count
+    start_ns: Whole
+    start_s: Seconds
+
+
+_NO_HEALTH = Health(False, None, None, (), (), {})
+
+
+class CountedResult(PartialRecord, frozen=True, kw_only=True):
+    """What is counted of a result; its events are not decoded.
+
+    The facts of its run are read once for all its results, and put in afterwards.
+    """
+
+    run: str = ""
+    health: Health = _NO_HEALTH
+    labels: Labels | UnsetType = UNSET
+    requirement: Name
+    verdict: Verdict
+    finite: bool | None
+    reason: str
+    clock: str
+    ticks: Count
+    start_ns: Whole | None
+    end_ns: Whole | None
+    triggers: tuple[Raw, ...]
+    violations: tuple[_Violation, ...]
+    unknown: tuple[tuple[Count, Count], ...]
+    open: tuple[_Tick, ...]
+    latencies: tuple[Seconds, ...] = record_field(name="latencies_s")
+    fingerprints: Hashes = record_field(name="hashes")
+    assumptions: tuple[str, ...]
+    outcomes: Outcomes | UnsetType = record_field(name="trials", default=UNSET)
+
+    def __post_init__(self) -> None:
+        """Raise ValueError if a time has more than 64 bits."""
+        times = (self.start_ns, self.end_ns, *(each.start_ns for each in self.violations))
+        if not all(time is None or LEAST <= time <= GREATEST for time in times):
+            raise ValueError("Expected a time of 64 bits")
+
+    @property
+    def trials(self) -> Trials | None:
+        """The trials; None: no probability is required, or the log could not be read."""
+        return trials_of(self.outcomes)
+
+
+def brief(result: Result | CountedResult) -> ResultSummary:
     """The summary of a result."""
     violations, latencies = result.violations, result.latencies
     first = violations[0] if violations else None
@@ -329,7 +378,7 @@ def brief(result: Result) -> ResultSummary:
     )
 
 
-def judgement(result: Result) -> str:
+def judgement(result: Result | CountedResult) -> str:
     """SHA-256 of the verdict and its ticks."""
     return judgement_of(
         result.verdict,
@@ -367,7 +416,7 @@ def judgement_of(
     )
 
 
-def run_facts(results: Sequence[Result]) -> RunFacts:
+def run_facts(results: Sequence[Result | CountedResult]) -> RunFacts:
     """The facts of a run.
 
     Args:
@@ -387,63 +436,6 @@ def run_facts(results: Sequence[Result]) -> RunFacts:
         assumptions=tuple(assumptions),
         labels=first.labels or {},
     )
-
-
-def stretches(result: Result) -> Stretches:
-    """The intervals at which a result is violated, unknown or open."""
-    if not (result.violations or result.unknown or result.open):
-        return Stretches(_length(result), (), (), ())
-    at = _seconds(result)
-    return Stretches(
-        length=at(result.ticks),
-        violations=tuple(
-            (v.start_s, max(v.start_s, at(v.last_tick + 1))) for v in result.violations
-        ),
-        unknown=tuple((at(first), at(last + 1)) for first, last in result.unknown),
-        open=tuple(moment.seconds for moment in result.open),
-    )
-
-
-def _seconds(result: Result) -> Callable[[int], float]:
-    """The time at which a tick begins; for an index after the last tick, the end of that tick."""
-    moments = [*result.triggers, *result.open, *(v.first for v in result.violations)]
-    moments += [v.last for v in result.violations]
-    times = {0: 0.0} | {moment.tick: moment.seconds for moment in moments}
-    times |= {state.tick: state.seconds for state in result.states}
-    times |= {answer.tick: answer.seconds for answer in result.answers}
-    known_ticks = sorted(times)
-    rate = times[known_ticks[-1]] / known_ticks[-1] if known_ticks[-1] else _mean_tick(result)
-
-    def at(tick: int) -> float:
-        index = bisect_right(known_ticks, tick) - 1
-        before = known_ticks[index]
-        if before == tick:
-            return times[tick]
-        if index + 1 == len(known_ticks):
-            return round(times[before] + (tick - before) * rate, 9)
-        after = known_ticks[index + 1]
-        share = (tick - before) / (after - before)
-        return round(times[before] + (times[after] - times[before]) * share, 9)
-
-    return at
-
-
-def _length(result: Result) -> float:
-    """The end of the last tick, for a result without intervals."""
-    last = [events[-1] for events in (result.triggers, result.states, result.answers) if events]
-    last_event = max(last, key=lambda event: event.tick, default=None)
-    if last_event is None or not last_event.tick:
-        return round(result.ticks * _mean_tick(result), 9)
-    return round(
-        last_event.seconds
-        + (result.ticks - last_event.tick) * (last_event.seconds / last_event.tick),
-        9,
-    )
-
-
-def _mean_tick(result: Result) -> float:
-    """The mean length of a tick in seconds, if only the length of the run is known."""
-    return (audited_s(result) or 0.0) / result.ticks if result.ticks else 0.0
 
 
 def audited_s(run: RunFacts | Result) -> float | None:

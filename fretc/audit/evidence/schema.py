@@ -49,6 +49,7 @@ Verdict = Literal["satisfied", "violated", "inconclusive", "vacuous", "no data"]
 LabelName = Annotated[str, Meta(min_length=1, max_length=50)]
 LabelText = Annotated[str, Meta(min_length=1, max_length=200)]
 """Texts of an untrusted log: they are escaped when they are shown."""
+Labels = Annotated[dict[LabelName, LabelText], Meta(min_length=1, max_length=32)]
 StateWord = Literal["idle", "open", "violated", "unknown"]
 Comparison = Literal["true", "false", "crossed"]
 Part = Annotated[
@@ -469,7 +470,7 @@ class Result(Record, frozen=True, kw_only=True):
         ),
     ] = UNSET
     labels: Annotated[
-        Annotated[dict[LabelName, LabelText], Meta(min_length=1, max_length=32)] | UnsetType,
+        Labels | UnsetType,
         about(
             "labels of the run, such as robot, version, commit, scenario and date, from "
             "`[run.label]` of the bindings or `--label`; no verdict depends on them. Absent: "
@@ -491,13 +492,17 @@ class Result(Record, frozen=True, kw_only=True):
     @property
     def trials(self) -> Trials | None:
         """The trials; None: no probability is required, or the log could not be read."""
-        outcomes = self.outcomes
-        return Trials(outcomes.answered, outcomes.failed, outcomes.open) if outcomes else None
+        return trials_of(self.outcomes)
 
     @property
     def content(self) -> str:
         """Hash of the content of the log, to detect copies of it."""
         return self.fingerprints.log or self.fingerprints.log_summary or self.run
+
+
+def trials_of(outcomes: Outcomes | UnsetType) -> Trials | None:
+    """The trials of a result; None: it has no outcomes."""
+    return Trials(outcomes.answered, outcomes.failed, outcomes.open) if outcomes else None
 
 
 # The file --------------------------------------------------------------------------------------

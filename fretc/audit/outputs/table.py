@@ -2,22 +2,33 @@
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+import sqlite3
+from collections.abc import Iterable, Iterator, Sequence
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
 
+from compiler.files.checked_json import LARGEST_COUNT, LEAST
+from compiler.files.records import plain
 from compiler.files.text_files import open_regular, unreadable
-from fretc.audit.evidence.result_summaries import EvidenceSource
-from fretc.audit.evidence.schema import Result
+from fretc.audit.evidence.result_summaries import (
+    CountedResult,
+    EvidenceSource,
+    RunFacts,
+    brief,
+)
+from fretc.audit.evidence.schema import Health, Result, Violation
 from fretc.audit.store.anywhere import required_source
+from fretc.audit.store.container import StoreError
+from fretc.audit.store.reader import Store
 from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.extras import unless_installed
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 
 if TYPE_CHECKING:
-    import pyarrow
-    from pyarrow import Table as Table
+    from pyarrow import Schema, Table
 
 SCHEMA, OLDER = "fretc-table-2", "fretc-table-1"
 """The versions of the table that can be read; the older one lacks the last column."""
@@ -53,54 +64,51 @@ _TYPES = {
     "log_summary_sha256": "string",
 }
 """Column → its type. The meaning of each is in `docs/audit.md`."""
+_TIMES = ("start_ns", "end_ns", "first_violation_ns")
+_OF_LOG = ("clock", "size", "gaps", "findings", "fretc")
+_HASHED = ("log", "sentence", "bindings", "monitor", "log_summary")
+_SHAS = tuple(f"{name}_sha256" for name in _HASHED)
+_COUNTED = tuple(name for name in _TYPES if name not in (*_TIMES, *_OF_LOG, *_SHAS))
+_counted, _times, _hashes = attrgetter(*_COUNTED), attrgetter(*_TIMES), attrgetter(*_HASHED)
+ROW = (*_COUNTED, *_TIMES, *_OF_LOG, *_SHAS)
+"""The columns of `row_of`, in its order."""
+_SQL = {"string": "TEXT", "bool": "INTEGER", "int64": "INTEGER", "float64": "REAL"}
+_VIOLATION = tuple(name for name in Violation.__struct_fields__ if name != "surroundings")
+_RUN = tuple(name for name in RunFacts.__dataclass_fields__ if name not in ("health", "labels"))
+_HEALTH = Health.__struct_fields__
+TABLES = {
+    "results": tuple(f'"{name}" {_SQL[kind]}' for name, kind in _TYPES.items()),
+    "violations": ("run", "requirement", *(f'"{name}"' for name in _VIOLATION)),
+    "runs": (*_RUN, *_HEALTH, "labels"),
+}
+"""Table → its columns. Lists and objects are JSON."""
 
 
-@dataclass(frozen=True, slots=True)
-class EvidenceTables:
-    """Tables for queries, of results; from stores and evidence also of violations and runs."""
-
-    results: Table
-    violations: Table
-    runs: Table
-
-
-def parquet(results: Table) -> bytes:
-    """The content of a Parquet file: equal rows give equal bytes."""
-    import pyarrow
-    from pyarrow.parquet import write_table
-
-    stream = pyarrow.BufferOutputStream()
-    write_table(results.combine_chunks(), stream, compression="zstd")
-    return bytes(stream.getvalue())
-
-
-def table(source: EvidenceSource) -> Table:
-    """A row for each result of evidence, in memory or in a store."""
-    return _known(source).results
-
-
-def read(paths: Sequence[str]) -> EvidenceTables | Diagnostic:
-    """The rows of all the files; a row that several files contain comes once for each.
+def read(paths: Sequence[str], query: str | None = None) -> sqlite3.Connection | Diagnostic:
+    """The tables of all the files; a row that several files contain is there once.
 
     Args:
         paths: stores, evidence files, and tables that `--parquet` wrote.
+        query: only the tables that it names are filled; None: only `results`.
     """
-    import pyarrow
-
-    tables = []
+    names = [name for name in TABLES if name == "results" or name in (query or "").lower()]
+    connection = sqlite3.connect("", isolation_level=None)  # beyond some size it is on the disk
+    connection.execute("PRAGMA journal_mode=OFF")
+    for name, columns in TABLES.items():
+        connection.execute(f"CREATE TABLE {name} ({', '.join(columns)})")
+    connection.execute("CREATE TABLE given AS SELECT * FROM results")
     for path in paths:
-        tables_of_path = _read(path)
-        if isinstance(tables_of_path, Diagnostic):
-            return tables_of_path
-        tables.append(tables_of_path)
-    return EvidenceTables(
-        pyarrow.concat_tables([tables_of_path.results for tables_of_path in tables]),
-        pyarrow.concat_tables([tables_of_path.violations for tables_of_path in tables]),
-        pyarrow.concat_tables([tables_of_path.runs for tables_of_path in tables]),
-    )
+        wrong = _add(connection, path, names)
+        if wrong is not None:
+            connection.close()
+            return wrong
+    order = ", ".join(f"{n}" for n, _ in enumerate(_TYPES, 1))
+    connection.execute(f"INSERT INTO results SELECT DISTINCT * FROM given ORDER BY {order}")
+    connection.execute("DROP TABLE given")
+    return connection
 
 
-def _read(path: str) -> EvidenceTables | Diagnostic:
+def _add(connection: sqlite3.Connection, path: str, names: Sequence[str]) -> Diagnostic | None:
     if not os.path.isdir(path):
         try:
             with open_regular(path) as file:
@@ -108,47 +116,113 @@ def _read(path: str) -> EvidenceTables | Diagnostic:
         except OSError as error:
             return unreadable(path, error)
         if start.startswith(b"PAR1"):
-            rows = _read_parquet(path)
-            return rows if isinstance(rows, Diagnostic) else _alone(rows)
+            found = _read_parquet(path)
+            if isinstance(found, Diagnostic):
+                return found
+            _insert(connection, "given", (tuple(map(row.get, ROW)) for row in found.to_pylist()))
+            return None
         if not start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
             return diagnostic("neither_table_nor_evidence", Source(path, "").span(), path=path)
-    evidence = required_source(path)
-    return evidence if isinstance(evidence, Diagnostic) else _known(evidence)
+    source = required_source(path)
+    if isinstance(source, Diagnostic):
+        return source
+    try:
+        _insert(connection, "given", rows(source))
+        if "violations" in names:
+            _insert(connection, "violations", _violations(source))
+        if "runs" in names:
+            _insert(connection, "runs", map(_run, source.runs()))
+    except StoreError as error:
+        return error.diagnostic
+    return None
 
 
-def _alone(results: Table) -> EvidenceTables:
-    from fretc.audit.store.tables import RUNS, VIOLATIONS, schema
+def _insert(connection: sqlite3.Connection, table: str, found: Iterable[tuple[Any, ...]]) -> None:
+    columns = ROW if table == "given" else TABLES[table]
+    marks = ",".join("?" * len(columns))
+    connection.execute("BEGIN")
+    connection.executemany(f"INSERT INTO {table} ({','.join(columns)}) VALUES ({marks})", found)
+    connection.execute("COMMIT")
 
-    return EvidenceTables(results, schema(VIOLATIONS).empty_table(), schema(RUNS).empty_table())
 
-
-def _known(source: EvidenceSource) -> EvidenceTables:
-    from fretc.audit.store.reader import Store
-    from fretc.audit.store.tables import RESULTS, RUNS, VIOLATIONS, Tables, to_tables
-
-    of_name: Tables
+def rows(source: EvidenceSource) -> Iterator[tuple[Any, ...]]:
+    """The row of each result in the table `results`."""
+    found: Iterable[Result | CountedResult]
     if isinstance(source, Store):
-        of_name = {name: source.whole(name) for name in (RESULTS, VIOLATIONS, RUNS)}
+        found = source.counted()
     else:
-        places = [place for place, _ in source.briefs()]
-        of_name = to_tables([result for _, result in source.details(places)], source.fretc)
-    rows = of_name[RESULTS].select([*_TYPES]).cast(_schema())
-    return EvidenceTables(rows, of_name[VIOLATIONS], of_name[RUNS])
+        found = (result for _, result in source.details([n for n, _ in source.briefs()]))
+    return (row_of(result, source.fretc) for result in found)
 
 
-def rows(results: Sequence[Result], fretc: str) -> Table:
-    """A row for each result.
+def row_of(result: Result | CountedResult, fretc: str) -> tuple[Any, ...]:
+    """The row of a result, with the columns of `ROW`.
 
     Args:
-        results: records of evidence.
-        fretc: the version of fretc that wrote the results.
+        result: a record of evidence.
+        fretc: the version of fretc that wrote the result.
     """
-    from fretc.audit.store.tables import RESULTS, to_tables
+    summary, health = brief(result), result.health
+    prints = summary.fingerprints
+    return (
+        *_counted(summary),
+        *map(_held, _times(summary)),
+        *(result.clock, health.size, len(health.gaps), len(health.findings), fretc),
+        *(each or None for each in _hashes(prints)),
+    )
 
-    return to_tables(results, fretc)[RESULTS].select([*_TYPES]).cast(_schema())
+
+def _held(value: object) -> Any:
+    """A value as a column holds it: an integer beyond 64 bits is null, what is composed is JSON."""
+    if isinstance(value, int) and not LEAST <= value <= LARGEST_COUNT:
+        return None
+    return value if value is None or isinstance(value, int | float | str) else json.dumps(value)
+
+
+def _violations(source: EvidenceSource) -> Iterator[tuple[Any, ...]]:
+    found: Iterable[tuple[str, str, Sequence[Violation]]]
+    if isinstance(source, Store):
+        found = source.violations()
+    else:
+        results = (result for _, result in source.details([n for n, _ in source.briefs()]))
+        found = ((each.run, each.requirement, each.violations) for each in results)
+    for run, requirement, violations in found:
+        for violation in violations:
+            values = (plain(getattr(violation, name)) for name in _VIOLATION)
+            yield run, requirement, *map(_held, values)
+
+
+def _run(facts: RunFacts) -> tuple[Any, ...]:
+    own = (getattr(facts, name) for name in _RUN)
+    of_log = (plain(getattr(facts.health, name)) for name in _HEALTH)
+    return *map(_held, own), *map(_held, of_log), json.dumps(dict(facts.labels))
+
+
+# Parquet -----------------------------------------------------------------------------------------
+
+
+def no_parquet() -> Diagnostic | None:
+    """F908 if the extra is not installed."""
+    return unless_installed("a Parquet table needs", ["pyarrow"], "parquet")
+
+
+def parquet(found: Iterable[tuple[Any, ...]]) -> bytes:
+    """The content of a Parquet file: equal rows give equal bytes."""
+    import pyarrow
+    from pyarrow.parquet import write_table
+
+    schema = _schema()
+    columns = dict(zip(ROW, [*zip(*found, strict=True)] or [()] * len(ROW), strict=True))
+    arrays = [pyarrow.array(columns[field.name], field.type) for field in schema]
+    stream = pyarrow.BufferOutputStream()
+    write_table(pyarrow.Table.from_arrays(arrays, schema=schema), stream, compression="zstd")
+    return bytes(stream.getvalue())
 
 
 def _read_parquet(path: str) -> Table | Diagnostic:
+    absent = no_parquet()
+    if absent is not None:
+        return absent
     import pyarrow
     from pyarrow.parquet import ParquetFile
 
@@ -171,7 +245,7 @@ def _no_table(path: str, what: str) -> Diagnostic:
     return diagnostic("bad_table", Source(path, "").span(), path=path, what=what)
 
 
-def _schema() -> pyarrow.Schema:
+def _schema() -> Schema:
     import pyarrow
 
     fields = [(name, pyarrow.type_for_alias(kind)) for name, kind in _TYPES.items()]

@@ -1,8 +1,8 @@
 """The register of a store: what each of its logs was, so that an unchanged one is known.
 
-Verdicts are taken from a store without reading their logs again. So a file beside its manifest has
-a check that only the user's key can make (`compiler.files.user_key`), for this place, this plan and
-the manifest: a store that came with somebody's files is not believed.
+Verdicts are taken from a store without reading their logs again. So each run has a mark that only
+the user's key can make (`compiler.files.user_key`), for this place, this plan, and the record and
+the entry of the run: a store that came with somebody's files is not believed.
 """
 
 from __future__ import annotations
@@ -10,18 +10,17 @@ from __future__ import annotations
 import hmac
 import json
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import astuple
+from collections.abc import Iterator, Mapping
+from dataclasses import astuple, dataclass
 from pathlib import Path
+from sqlite3 import Connection
 from typing import Annotated, Any
 
-import pyarrow as pa
-
 from compiler.files.checked_json import SchemaError
+from compiler.files.checked_json import plain as parsed
 from compiler.files.records import Record, Whole, about, decoded
 from compiler.files.text_files import Stamp, file_sha256, stamp
-from compiler.files.text_files import read as read_text
-from fretc.audit.store.columns import fields_of, objects
+from fretc.audit.store.container import Row, check_record, record_of, rows
 from fretc.audit.store.recordings import KnownBy
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
@@ -80,76 +79,54 @@ def marks(before: Stamp | None) -> dict[str, Any]:
     return dict(zip(names, astuple(before) if before else (None,) * 5, strict=True))
 
 
-def table(entries: Sequence[Entry]) -> pa.Table:
-    """The entries as a table, in the order of the runs."""
-    fields = fields_of(Entry)
-    arrays = [field.array(entries, exact=False) for field in fields]
-    return pa.Table.from_arrays(arrays, names=[field.name for field in fields])
-
-
-def types() -> pa.Schema:
-    """The types of the columns."""
-    return pa.schema([pa.field(field.name, field.column.type) for field in fields_of(Entry)])
-
-
-def entries(found: pa.Table) -> list[Entry]:
-    """The entries of a table.
-
-    Raises:
-        SchemaError: the table has no valid entries.
-    """
-    fields = fields_of(Entry)
-    arrays = [pa.concat_arrays(found[field.name].chunks) for field in fields] if len(found) else []
-    return decoded(objects(fields, arrays), list[Entry]) if arrays else []
-
-
 # Authentication ----------------------------------------------------------------------------------
 
 
-def vouched(
-    folder: Path,
-    plan: str,
-    claims: Mapping[str, str],
-    labels: Mapping[str, str],
-    manifest: str,
-    key: bytes,
-) -> str:
-    """The text of the file that authenticates a store.
+class StoredPlan(Record, frozen=True):
+    """The plan of an audit, as far as a later one must know it to reuse results."""
 
-    Args:
-        folder: the folder of the store.
-        plan: the key of the plan of the audit.
-        claims: the key of each audited requirement.
-        labels: the labels that all runs were given.
-        manifest: the SHA-256 of the manifest.
-        key: the key of the user.
-    """
-    content = {
-        "plan": plan,
-        "claims": dict(claims),
-        "labels": dict(labels),
-        "manifest": manifest,
-    }
-    return f"{json.dumps({**content, 'check': _check(folder, content, key)})}\n"
+    plan: Annotated[str, about("the key of the plan")]
+    claims: Annotated[dict[str, str], about("the key of each audited requirement")]
+    labels: Annotated[dict[str, str], about("the labels that all runs were given")]
 
 
-def vouches(folder: Path, name: str, manifest: str, key: bytes) -> Mapping[str, Any] | None:
-    """The content of a file that authenticates a store; None: it is not valid for this path."""
-    source = read_text(str(folder / name))
-    if isinstance(source, Diagnostic):
-        return None
-    try:
-        content = json.loads(source.text)
-        check = content.pop("check")
-        right = hmac.compare_digest(str(check), _check(folder, content, key))
-    except (ValueError, TypeError, AttributeError, KeyError, RecursionError):
-        return None
-    return content if right and content.get("manifest") == manifest else None
+@dataclass(frozen=True, slots=True)
+class Authenticity:
+    """The marks that authenticate the runs of one audit, in one place, for one user."""
 
+    folder: Path
+    plan: str
+    """The JSON of the plan."""
+    key: bytes
 
-def _check(folder: Path, content: Mapping[str, Any], key: bytes) -> str:
-    text = json.dumps({"place": os.path.realpath(folder), **content}, sort_keys=True)
-    return hmac.digest(key, text.encode(), "sha256").hex()
+    def mark(self, row: Row, entry: str) -> str:
+        """What only the user's key can make of a run."""
+        place = os.path.realpath(self.folder)
+        hashes = (row.sha256, row.packed_sha256)
+        text = json.dumps([place, self.plan, row.results, row.size, *hashes, entry])
+        return hmac.digest(self.key, text.encode(), "sha256").hex()
+
+    def entries(self, connection: Connection) -> Iterator[tuple[Row, Entry | None]]:
+        """Each run with its entry; None: the entry or its record is not authentic.
+
+        Raises:
+            SchemaError: the file is damaged.
+        """
+        for row in rows(connection):
+            found = connection.execute(
+                "SELECT entry, mark FROM runs WHERE place = ?", (row.place,)
+            ).fetchone()
+            entry, mark = map(str, found)
+            yield row, self._entry(row, entry, mark, record_of(connection, row.place))
+
+    def _entry(self, row: Row, entry: str, mark: str, record: bytes) -> Entry | None:
+        if not hmac.compare_digest(mark.encode(), self.mark(row, entry).encode()):
+            return None
+        try:
+            check_record(row, record)
+            return decoded(parsed(entry), Entry)
+        except SchemaError:
+            return None
 
 
 # Diagnostics -------------------------------------------------------------------------------------

@@ -1,162 +1,172 @@
-"""The writer of a store: part by part, each file complete or absent, the manifest last."""
+"""The writer of a store: run by run, and the file gets its name when it is complete."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Iterator, Sequence
+import json
+import os
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
+from sqlite3 import Error as SqliteError
 
-from compiler.files.checked_json import SchemaError
-from compiler.files.text_files import open_regular, sha256, write
-from fretc.audit.evidence.schema import EvidenceDocument
-from fretc.audit.store import register
-from fretc.audit.store.files import content, encoded
-from fretc.audit.store.manifest import (
+from compiler.files.records import UNSET, replace
+from compiler.files.text_files import destination
+from fretc.audit.evidence.schema import EvidenceDocument, Result
+from fretc.audit.evidence.writer import text
+from fretc.audit.store import earlier_store
+from fretc.audit.store.container import (
     FILE,
-    REGISTER,
-    REUSE,
-    SCHEMA,
-    UNFINISHED,
-    Part,
-    StoreManifest,
-    TableFile,
-    place,
-    text,
+    Row,
+    closed,
+    identity,
+    is_container,
+    next_unfinished,
+    packed,
+    remove_file,
+    rows,
+    unfinished,
+    written,
 )
-from fretc.audit.store.parts import parts
-from fretc.audit.store.register import Entry
-from fretc.audit.store.tables import RESULTS, RUNS, TABLES, Tables, runs_of, to_tables
-from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 
-def write_part(folder: Path, tables: Tables) -> Part | Diagnostic:
-    """Write the tables of some runs.
+class StoreFile:
+    """A file of a store that is being written; whatever ends the process, its runs stay."""
+
+    def __init__(self, path: Path, plan: str | None = None) -> None:
+        """Make the file.
+
+        Args:
+            path: where it is written.
+            plan: what a later audit must know to reuse the results.
+
+        Raises:
+            SqliteError: the file cannot be written.
+        """
+        self.path, self.runs = path, 0
+        self.connection = written(path, new=True)
+        self.connection.execute("UPDATE about SET plan = ?", (plan,))
+        self.is_open = True
+
+    def put(
+        self, row: Row, record: bytes, entry: str | None = None, mark: str | None = None
+    ) -> None:
+        """Write a run.
+
+        Args:
+            row: its row.
+            record: its record.
+            entry: its entry in the register, as JSON.
+            mark: what authenticates both (`fretc.audit.store.register`).
+        """
+        names = Row.__struct_fields__
+        values = (*(getattr(row, name) for name in names), entry, mark, record)
+        columns = ", ".join((*names, "entry", "mark", "record"))
+        self.connection.execute(f"INSERT INTO runs ({columns}) VALUES (?,?,?,?,?,?,?,?)", values)
+        self.runs += 1
+
+    def reusable(self) -> int:
+        """The number of runs that a later audit can reuse."""
+        entries = self.connection.execute("SELECT entry FROM runs WHERE mark IS NOT NULL")
+        return sum(json.loads(entry)["size"] is not None for (entry,) in entries)
+
+    def close(self) -> list[Row]:
+        """Close the file; gives the row of each run."""
+        found = rows(self.connection)
+        self.discard()
+        return found
+
+    def discard(self) -> None:
+        """Close the file if it is open."""
+        if self.is_open:
+            self.is_open = False
+            closed(self.connection)
+
+
+def complete(path: Path, document: EvidenceDocument, found: Sequence[Row]) -> str:
+    """Write the head of a file that was closed; gives the SHA-256 of the evidence.
 
     Args:
-        folder: the folder of the store.
-        tables: the tables of whole runs.
-
-    Returns:
-        What the manifest says of them; or why they cannot be written.
+        path: of the file.
+        document: the evidence; its results are not written.
+        found: the row of each run.
     """
-    encoded_tables = {name: encoded(table) for name, table in tables.items()}
-    wrong = write(
-        {
-            folder / place(name, file): data
-            for name, (data, file) in encoded_tables.items()
-            if not _is_there(folder / place(name, file), file)
-        }
-    )
-    if wrong is not None:
-        return wrong
-    files_of_tables = {name: file for name, (_, file) in encoded_tables.items()}
-    return Part(files_of_tables[RUNS].rows, files_of_tables[RESULTS].rows, files_of_tables)
-
-
-def _is_there(path: Path, file: TableFile) -> bool:
+    head = text(replace(document, results=()))
+    sha256 = identity(head, found)
+    connection = written(path)
     try:
-        content(path, file)
-    except (OSError, SchemaError):
-        return False
-    return True
+        connection.execute("UPDATE about SET head = ?, sha256 = ?", (head, sha256))
+    finally:
+        closed(connection)
+    return sha256
 
 
-def write_register(folder: Path, entries: Sequence[Entry]) -> TableFile | Diagnostic:
-    """Write the register of the logs."""
-    data, file = encoded(register.table(entries))
-    return write({folder / place(REGISTER, file): data}) or file
-
-
-def write_manifest(folder: Path, manifest: StoreManifest, name: str = FILE) -> str | Diagnostic:
-    """Write a manifest; gives its SHA-256."""
-    content = text(manifest)
-    return write({folder / name: content}) or sha256(content)
-
-
-def files(folder: Path) -> set[Path]:
-    """All table files in a folder, also those that no manifest lists."""
-    own = (folder / table for table in (*TABLES, REGISTER) if not (folder / table).is_symlink())
-    paths = (path for table in own for path in table.glob("*"))
-    return {path for path in paths if _OURS.fullmatch(path.name)}
-
-
-def remove_others(
-    folder: Path, *manifests: StoreManifest, kept: Collection[Path] = frozenset()
-) -> None:
-    """Remove the tables that none of the manifests lists.
-
-    Args:
-        folder: the folder of the store.
-        manifests: the manifests whose tables stay.
-        kept: other files that stay.
-    """
-    named = {folder / path for manifest in manifests for path in _files(manifest)}
-    for path in files(folder) - named - {*kept}:
-        path.unlink(missing_ok=True)
-    for table in (*TABLES, REGISTER):
-        with suppress(OSError):  # the folder is in use, or not empty
-            (folder / table).rmdir()
-
-
-_OURS = re.compile(r"[0-9a-f]{32}\.parquet|\.[0-9a-f]{32}\.parquet\.[0-9a-f]{8}\.tmp")
-
-
-def _files(manifest: StoreManifest) -> Iterator[Path]:
-    for part in manifest.parts:
-        for name, file in part.tables.items():
-            yield Path(place(name, file))
-    if manifest.register:
-        yield Path(place(REGISTER, manifest.register))
+def publish(path: Path) -> Path:
+    """Give a complete file its name in one step; gives its new path."""
+    with path.open("rb") as file:
+        os.fsync(file.fileno())
+    return path.replace(path.with_name(FILE))
 
 
 def is_store(folder: Path) -> bool:
     """Whether fretc has written into a folder, which is a condition for removing files from it."""
-    if any((folder / table).is_symlink() for table in (*TABLES, REGISTER)):
-        return False  # a link leads out of this folder
-    return any(_is_manifest(folder / name) for name in (FILE, UNFINISHED))
-
-
-def _is_manifest(path: Path) -> bool:
-    try:
-        with open_regular(path) as file:
-            return SCHEMA.encode() in file.read(200)
-    except OSError:
-        return False
+    own = any(is_container(path) for path in (folder / FILE, *unfinished(folder)))
+    return own or earlier_store.is_store(folder)
 
 
 def remove(folder: Path) -> None:
     """Remove a store, and its folder if it is empty then."""
-    for name in (FILE, UNFINISHED, *REUSE.values()):
-        (folder / name).unlink(missing_ok=True)
-    remove_others(folder)
+    for path in (folder / FILE, *unfinished(folder)):
+        remove_file(path)
+    earlier_store.remove_tables(folder)
     with suppress(OSError):
         folder.rmdir()
 
 
-def write_document(
-    folder: Path, document: EvidenceDocument, confidence: float | None = None
-) -> str | Diagnostic:
-    """Write evidence that is in memory as a store; gives the SHA-256 of its manifest."""
-    runs = runs_of(document.results)
-    written: list[Part] = []
-    for places in parts([run[0].run for run in runs]):
-        results = [result for place in places for result in runs[place]]
-        part = write_part(folder, to_tables(results, document.fretc))
-        if isinstance(part, Diagnostic):
-            return part
-        written.append(part)
-    manifest = StoreManifest(
-        schema=SCHEMA,
-        fretc=document.fretc,
-        bindings=document.bindings,
-        requirements=document.requirements,
-        confidence=confidence,
-        parts=tuple(written),
-        probabilities=document.probabilities,
-        selection=document.selection,
+def runs_of(results: Iterable[Result]) -> list[list[Result]]:
+    """The results of each run: adjoining results that share the facts of a run.
+
+    A result with plot data is the first of its run.
+    """
+    runs: list[list[Result]] = []
+    ids: set[str] = set()
+    for result in results:
+        is_first = not runs or result.requirement in ids or result.course is not UNSET
+        if is_first or _shared(result) != _shared(runs[-1][0]):
+            runs.append([])
+            ids = set()
+        runs[-1].append(result)
+        ids.add(result.requirement)
+    return runs
+
+
+def _shared(result: Result) -> tuple[object, ...]:
+    return result.run, result.health, result.labels
+
+
+def write_document(folder: Path, document: EvidenceDocument) -> str | Diagnostic:
+    """Write evidence that is in memory as a store; gives the SHA-256 of the evidence."""
+    try:
+        destination(folder / FILE)
+        folder.mkdir(parents=True, exist_ok=True)
+        file = StoreFile(next_unfinished(folder))
+        file.connection.execute("BEGIN")
+        for place, run in enumerate(runs_of(document.results)):
+            file.put(*packed(place, run))
+        file.connection.execute("COMMIT")
+        sha256 = complete(file.path, document, file.close())
+        publish(file.path)
+    except (OSError, SqliteError) as error:
+        return not_written(folder, error)
+    earlier_store.remove_tables(folder)
+    return sha256
+
+
+def not_written(folder: Path, error: Exception) -> Diagnostic:
+    """F905."""
+    why = error.strerror if isinstance(error, OSError) else None
+    return Diagnostic(
+        Code.NOT_WRITTEN,
+        f"`{folder / FILE}` cannot be written: {why or error}",
+        help="write to another path, or fix this one",
     )
-    digest = write_manifest(folder, manifest)
-    if isinstance(digest, str):
-        remove_others(folder, manifest)
-    return digest

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from math import inf
 
-from fretc.audit.evidence.result_summaries import ResultSummary, stretches
+from fretc.audit.evidence.result_summaries import ResultSummary
 from fretc.audit.evidence.schema import Result
 from fretc.report.across.lanes import (
     Known,
@@ -19,6 +19,7 @@ from fretc.report.across.lanes import (
     worst_runs,
 )
 from fretc.report.across.maps import MOST_MAPS, MapResult, run_map
+from fretc.report.across.stretches import stretches
 from fretc.report.across.uses import RunThresholds, uses
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment

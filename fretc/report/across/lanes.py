@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from math import inf
 from types import MappingProxyType
 
-from fretc.audit.evidence.result_summaries import Stretches
+from fretc.report.across.stretches import Stretches
 from fretc.report.model import phrases
 from fretc.report.model.marks import Mark
 from fretc.report.model.pictures import LaneMark, Lanes, RunLane, WordLane

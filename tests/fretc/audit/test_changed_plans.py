@@ -12,8 +12,7 @@ from fretc.audit import many_logs as auditing
 from fretc.audit import one_log
 from fretc.audit.many_logs import local_executor
 from fretc.audit.plan import Plan
-from fretc.audit.store import parts
-from tests.fretc.audit.test_into_store import session, tables
+from tests.fretc.audit.test_into_store import content, session
 from tests.fretc.audit.test_results_taken_over import CHANGES, PROJECT, changed, plan, sent
 from tests.fretc.logs.logs import write
 
@@ -35,7 +34,6 @@ def judged(
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
     monkeypatch.setattr(auditing, "audit", audit)
     monkeypatch.setattr(text_files, "_COARSEST", -1)
-    monkeypatch.setattr(parts, "AVERAGE", 2)
     monkeypatch.chdir(tmp_path)
     for place, log in enumerate(LOGS):
         write(Path(log), [*sent(late=place == 1)])
@@ -65,7 +63,7 @@ def test_after_a_change_the_store_is_the_one_made_from_nothing(
     stored(before, "store")
     judged.clear()
     stored(now, "store")
-    assert tables(Path("store")) == tables(Path("nothing"))
+    assert content(Path("store")) == content(Path("nothing"))
     assert {*judged} == {(log, id) for log in LOGS for id in expected if id in texts}
 
 
@@ -85,7 +83,7 @@ def test_a_new_log_is_judged_by_all_and_an_old_one_by_what_has_changed(
         *(("b.mcap", f"R{number}") for number in (1, 2, 3, 4)),
         ("c.mcap", "R2"),
     ]
-    assert tables(Path("store")) == tables(Path("nothing"))
+    assert content(Path("store")) == content(Path("nothing"))
 
 
 @pytest.mark.slow
@@ -110,4 +108,4 @@ def test_processes_take_over_the_same(tmp_path: Path, judged: list[tuple[str, st
     stored(now, "nothing")
     with session(LOGS, now, Path("store")) as one:
         one.run(local_executor(2, None, one.earlier.results), lambda _: None)
-    assert tables(Path("store")) == tables(Path("nothing"))
+    assert content(Path("store")) == content(Path("nothing"))

@@ -27,6 +27,7 @@ from tests.command import Fretc, untimed
 from tests.effort import FULL
 from tests.fretc.audit import deadly
 from tests.fretc.audit.plans import plan
+from tests.fretc.audit.test_into_store import content, written
 from tests.traces import MISSION, part
 
 ROOT = Path(__file__).parents[3]
@@ -72,12 +73,6 @@ def fretc(fretc: Fretc) -> Fretc:
     return fretc
 
 
-def tables() -> dict[Path, bytes]:
-    """The bytes of all tables of the store, but for the register."""
-    found = Path("build/evidence").glob("*/*.parquet")
-    return {path: path.read_bytes() for path in found if path.parent.name != "register"}
-
-
 def engine(cluster: Any) -> Engine:
     result = dask_executor.engine(cluster.scheduler_address.replace("tcp", "dask"), 2)
     assert not isinstance(result, Diagnostic)
@@ -115,13 +110,13 @@ def test_a_worker_whose_own_folder_is_gone_finds_the_logs(tmp_path: Path) -> Non
 @pytest.mark.slow
 def test_the_command_gives_the_same_on_a_fleet(fretc: Fretc, cluster: Any) -> None:
     here = fretc("audit", *LOGS)
-    evidence = tables()
+    evidence = content()
     shutil.rmtree("build")
     address = cluster.scheduler_address.replace("tcp", "dask")
     there = fretc("audit", *LOGS, "--engine", address)
     assert (there.status, there.err) == (here.status, here.err)
     assert untimed(there.out) == untimed(here.out)
-    assert tables() == evidence
+    assert content() == evidence
 
 
 @pytest.mark.slow
@@ -248,13 +243,9 @@ def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
     for log in logs[1:]:
         os.link(logs[0], log)
     fretc("audit", *logs)
-    evidence = tables()
+    evidence = content()
     shutil.rmtree("build")
-    code = (
-        "import fretc.audit.into_store as s; s._PATIENCE = 0; s._SHARE = 0\n"
-        "from fretc.cli import main; main()"
-    )
-    command = [sys.executable, "-c", code, "audit", *logs]
+    command = [sys.executable, "-c", "from fretc.cli import main; main()", "audit", *logs]
     run = subprocess.Popen(
         [*command, "--engine", "dask", "--jobs", "2" if FULL else "1"],
         env={**os.environ, "PYTHONPATH": str(ROOT)},
@@ -263,7 +254,7 @@ def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
         start_new_session=True,
     )
     deadline = time.monotonic() + LONG
-    while not any(Path("build/evidence/results").glob("*.parquet")):
+    while written() < 16_000:
         assert time.monotonic() < deadline
         time.sleep(0.01)
     os.killpg(run.pid, signal.SIGINT)  # as Ctrl-C does: all processes of the terminal
@@ -271,7 +262,7 @@ def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
     (count,) = re.findall(r"^stopped: (\d+) of 12 logs are saved; run the same command", errors)
     assert run.returncode == 130
     assert fretc("audit", *logs).err.startswith(f"{count} of 12 logs are unchanged")
-    assert tables() == evidence
+    assert content() == evidence
 
 
 @pytest.fixture(scope="module")

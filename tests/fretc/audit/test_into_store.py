@@ -11,6 +11,8 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from sqlite3 import OperationalError
+from typing import Any
 
 import pytest
 
@@ -26,13 +28,16 @@ from fretc.audit.many_logs import (
     local_executor,
 )
 from fretc.audit.plan import Plan
-from fretc.audit.store import parts
+from fretc.audit.store import container
+from fretc.audit.store.container import Row
 from fretc.audit.store.reader import Store, evidence, opened
+from fretc.audit.store.writer import StoreFile
 from fretc.logs.signals.integrity import Integrity
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc, untimed
 from tests.effort import some
 from tests.fretc.audit.plans import plan
+from tests.fretc.audit.store.test_hostile import edit
 from tests.traces import part
 
 ROOT = Path(__file__).parents[3]
@@ -75,13 +80,21 @@ def stored(
 def known(logs: Sequence[str] = LOGS, *, rehash: bool = False) -> dict[str, str]:
     """Which of the logs need not be read again, and by what they are known."""
     with session(logs, rehash=rehash) as one:
-        return {log: found.by for log, found in one.known.items()}
+        return {log: by for log, (_, by) in one.known.items()}
 
 
-def tables(folder: Path = STORE) -> dict[str, bytes]:
-    """The bytes of all tables, but for the register."""
-    found = {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*.parquet")}
-    return {name: data for name, data in found.items() if not name.startswith("register")}
+def content(folder: Path = STORE) -> tuple[str, list[Row]]:
+    """The SHA-256 of the evidence, and the row of each run."""
+    store = opened(str(folder))
+    assert isinstance(store, Store), store
+    return store.sha256, [*store.rows]
+
+
+def known_by(folder: Path = STORE) -> list[str]:
+    """How each log was identified."""
+    with container.opened(folder / container.FILE) as connection:
+        entries = connection.execute("SELECT entry FROM runs ORDER BY place").fetchall()
+    return [json.loads(entry)["known_by"] for (entry,) in entries]
 
 
 def damage(log: str) -> None:
@@ -123,27 +136,16 @@ def stop_after(logs: int) -> None:
 def test_a_store_depends_on_no_engine_and_no_order(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(parts, "AVERAGE", 2)
     damage("b.mcap")
     whole = audit_logs(plan(), [*LOGS, "none.mcap"])
     assert not isinstance(whole, Diagnostic)
     first, _ = stored([*LOGS, "none.mcap"])
     assert evidence(first.source).document == whole.document
     assert (first.diagnostics, first.read) == (whole.diagnostics, whole.read)
-    manifest = (STORE / "manifest.json").read_bytes()
     for number, engine in enumerate((backwards, local_executor(2))):
         folder = Path(f"store{number}")
         stored([*LOGS, "none.mcap"], engine=engine, folder=folder)
-        assert tables(folder) == tables()
-        assert (folder / "manifest.json").read_bytes() == manifest
-
-
-@pytest.mark.slow
-def test_heavy_logs_give_the_same_tables(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:
-    stored()
-    monkeypatch.setattr("fretc.audit.into_store._HEAVY", -1)
-    stored(folder=Path("other"))
-    assert tables(Path("other")) == tables()
+        assert content(folder) == content()
 
 
 @pytest.mark.slow
@@ -151,7 +153,6 @@ def test_what_is_taken_over_is_what_would_be_made_from_nothing(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whatever is added, changed, gone, or called otherwise."""
-    monkeypatch.setattr(parts, "AVERAGE", 2)
     stored()
     shutil.copy("a.mcap", "d.mcap")
     changes: list[tuple[list[str], list[str]]] = [
@@ -164,10 +165,9 @@ def test_what_is_taken_over_is_what_would_be_made_from_nothing(
         found, names = stored(logs)
         assert names == read
         anew, _ = stored(logs, folder=Path(f"anew{number}"))
-        assert tables() == tables(Path(f"anew{number}"))
+        assert content() == content(Path(f"anew{number}"))
         assert found.diagnostics == anew.diagnostics
-        by = [each.known_by for each in found.source.register()]
-        assert by == ["read" if log in read else "stamp" for log in logs]
+        assert known_by() == ["read" if log in read else "stamp" for log in logs]
 
 
 @pytest.mark.slow
@@ -176,6 +176,18 @@ def test_labels_of_the_command_are_those_of_the_last_one(fretc: Fretc) -> None:
     found, names = stored(own=replace(plan(), labels={"version": "2"}))
     assert names == []
     assert {str(one.labels) for one in found.source.runs()} == {"{'version': '2'}"}
+
+
+@pytest.mark.slow
+def test_other_labels_keep_the_results_of_requirements_that_are_not_judged(fretc: Fretc) -> None:
+    Path("requirements/r2.fret").write_text('+++\nid = "R2"\n+++\nthe robot shall')
+    for version in "12":
+        assert fretc("audit", *LOGS, "--label", f"version={version}").status == 2
+        store = opened(str(STORE))
+        assert isinstance(store, Store)
+        labelled = {(one.requirement, str(one.labels)) for one in store.results()}
+        assert labelled == {(id, f"{{'version': '{version}'}}") for id in ("R1", "R2")}
+    assert known_by() == ["stamp"] * 3
 
 
 @pytest.mark.slow
@@ -276,21 +288,29 @@ def test_another_fretc_or_integrity_makes_all_of_it_new(
 def test_an_audit_that_goes_on_gives_the_store_of_one_that_was_not_stopped(fretc: Fretc) -> None:
     whole, _ = stored(folder=Path("whole"))
     stop_after(2)
-    assert not (STORE / "manifest.json").exists()
+    assert os.listdir(STORE) == ["unfinished-1.sqlite"]
     again, names = stored()
     assert names == ["c.mcap"]
-    assert tables() == tables(Path("whole"))
+    assert content() == content(Path("whole"))
     assert again.diagnostics == whole.diagnostics
     assert sorted(os.listdir(STORE)) == sorted(os.listdir("whole"))
 
 
 @pytest.mark.slow
 def test_only_what_is_written_counts_as_kept(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:
-    wrong = Diagnostic(Code.NOT_WRITTEN, "the disk is full")
-    monkeypatch.setattr("fretc.audit.into_store.write_part", lambda *_: wrong)
+    put, full = StoreFile.put, OperationalError("database or disk is full")
+
+    def put_two(file: StoreFile, *values: Any) -> None:
+        if file.runs == 2:
+            raise full
+        put(file, *values)
+
+    monkeypatch.setattr(StoreFile, "put", put_two)
     with session() as one:
-        assert one.run(SEQUENTIAL, lambda _: None) == wrong
-    assert one.kept == len(known()) == 0
+        wrong = one.run(SEQUENTIAL, lambda _: None)
+    assert isinstance(wrong, Diagnostic)
+    assert wrong.message == f"`{STORE}/evidence.sqlite` cannot be written: database or disk is full"
+    assert one.kept == len(known()) == 2
 
 
 @pytest.mark.slow
@@ -307,10 +327,9 @@ def test_an_audit_that_is_stopped_leaves_the_store_of_the_last_one(fretc: Fretc)
 
 NEVER_DONE = """
 import os, time
-from fretc.audit import into_store, many_logs
+from fretc.audit import many_logs
 from fretc.cli import main
 
-into_store._PATIENCE = into_store._SHARE = 0
 judge, process = many_logs.audit_log, os.getpid()
 
 def audit_log(plan, log, *more):
@@ -322,6 +341,12 @@ many_logs.audit_log = audit_log
 main()
 """
 """`fretc` whose processes wait at some logs as long as it lives."""
+
+
+def written() -> int:
+    """The bytes of the transactions of an audit that is in progress."""
+    path = STORE / "unfinished-1.sqlite-wal"
+    return path.stat().st_size if path.exists() else 0
 
 
 @pytest.mark.slow
@@ -338,21 +363,23 @@ def test_a_command_is_stopped_and_goes_on(fretc: Fretc, stop: signal.Signals) ->
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler) and None,
     )
     deadline = time.monotonic() + 60
-    while len([*(STORE / "results").glob("*.parquet")]) < 2 and time.monotonic() < deadline:
+    changes = STORE / "unfinished-1.sqlite-wal"
+    while time.monotonic() < deadline and not (
+        changes.exists() and changes.stat().st_size > 16_000
+    ):
         time.sleep(0.01)
     run.send_signal(stop)
     _, errors = run.communicate(timeout=60)
-    assert not (STORE / "manifest.json").exists()
+    assert not (STORE / "evidence.sqlite").exists()
     count = len(known(logs))
-    assert count <= 3, "it was stopped before the last three"
+    assert 0 < count <= 3, "it was stopped before the last three"
     if stop is not signal.SIGKILL:
         words = f"stopped: {count} of 6 logs are saved; run the same command again to continue\n"
         assert (run.returncode, errors) == (130, words)
     resumed = fretc("audit", *logs)
     assert resumed.status == 0
-    if count:  # what a killed one has written counts only where it came to say so
-        told = f"{count} of 6 logs are unchanged: their earlier results are reused\n"
-        assert resumed.err.startswith(told)
+    told = f"{count} of 6 logs are unchanged: their earlier results are reused\n"
+    assert resumed.err.startswith(told)
     store = opened(str(STORE))
     assert isinstance(store, Store)
     assert [facts.run for facts in store.runs()] == logs
@@ -397,32 +424,49 @@ def test_a_store_is_believed_in_its_place_only(fretc: Fretc) -> None:
 
 
 @pytest.mark.slow
-def test_a_store_with_another_byte_is_not_believed(fretc: Fretc) -> None:
+def test_a_run_of_which_something_is_another_is_not_believed(fretc: Fretc) -> None:
+    """Its log is read again; other runs are believed."""
     stored()
-    for path in sorted(STORE.rglob("*.*")):
-        if path.is_dir():
-            continue
-        data = path.read_bytes()
-        middle = len(data) // 2
-        path.write_bytes(data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :])
-        with session() as one:
-            assert one.known == {}, path
-            for other in STORE.rglob("*.parquet"):  # what no manifest names may be removed
-                assert other.exists()
-        path.write_bytes(data)
+    path = STORE / "evidence.sqlite"
+    sound = path.read_bytes()
+    for change in (
+        "record = x'00'",
+        "sha256 = packed_sha256",
+        "packed_sha256 = sha256",
+        "size = 1",
+        "results = 2",
+        "entry = replace(entry, 'read', 'stamp')",
+        "entry = NULL",
+        "mark = NULL",
+        "mark = ''",
+    ):
+        path.write_bytes(sound)
+        edit(STORE, f"UPDATE runs SET {change} WHERE place = 1")
+        assert known() == {"a.mcap": "stamp", "c.mcap": "stamp"}, change
+    path.write_bytes(sound)
+    edit(STORE, "UPDATE runs SET place = 9 WHERE place = 0")
     assert known() == dict.fromkeys(LOGS, "stamp")
 
 
 @pytest.mark.slow
-def test_what_vouches_for_another_manifest_or_plan_does_not_count(fretc: Fretc) -> None:
+def test_a_store_with_another_byte_gives_no_other_results(fretc: Fretc) -> None:
     stored()
-    reuse = STORE / "reuse.json"
-    content = json.loads(reuse.read_text())
-    for change in ({"plan": "x"}, {"manifest": "0" * 64}, {"labels": {"a": "b"}}, {"check": ""}):
-        reuse.write_text(json.dumps(content | change))
-        assert known() == {}
-    for text in ("", "[]", "1", "{", '{"check": 1}', "\0"):
-        reuse.write_text(text)
+    before, data = content(), (STORE / "evidence.sqlite").read_bytes()
+    for place in some(range(0, len(data), 101), 7):
+        changed = data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :]
+        (STORE / "evidence.sqlite").write_bytes(changed)
+        stored()
+        assert content() == before
+
+
+@pytest.mark.slow
+def test_another_plan_in_a_store_does_not_count(fretc: Fretc) -> None:
+    stored()
+    path = STORE / "evidence.sqlite"
+    sound = path.read_bytes()
+    for other in ("''", "'{}'", "'['", "1", "NULL", "replace(plan, '}', ' }')", "x'ff'"):
+        path.write_bytes(sound)
+        edit(STORE, f"UPDATE about SET plan = {other}")
         assert known() == {}
 
 
@@ -500,11 +544,12 @@ def test_nothing_of_the_user_s_is_replaced_or_removed(fretc: Fretc) -> None:
 @pytest.mark.slow
 def test_a_mistyped_name_does_not_cost_the_evidence_of_the_last_audit(fretc: Fretc) -> None:
     stored()
-    before = {**tables(), "": (STORE / "manifest.json").read_bytes()}
+    before = (STORE / "evidence.sqlite").read_bytes()
     run = fretc("audit", "no.mcap", "none.mcap", "-o", str(STORE))
     assert run.status == 2
     assert f"no log could be read: `{STORE}` is unchanged\n" in run.err
-    assert before == {**tables(), "": (STORE / "manifest.json").read_bytes()}
+    assert before == (STORE / "evidence.sqlite").read_bytes()
+    assert os.listdir(STORE) == ["evidence.sqlite"]
     assert fretc("audit", "no.mcap", "none.mcap", "-o", "new").status == 2
     assert not Path("new").exists()
 

@@ -73,11 +73,11 @@ def test_since_takes_the_later_logs_and_evidence_says_so(robot: Fretc) -> None:
 
 def test_where_no_log_is_left_nothing_is_shown_and_evidence_stays(robot: Fretc) -> None:
     robot("audit", "runs")
-    before = Path("build/evidence/manifest.json").read_bytes()
+    before = Path("build/evidence/evidence.sqlite").read_bytes()
     run = robot("audit", "runs", "--since", "2030-01-01")
     assert run.status == 3
     assert "no log is audited" in run.err
-    assert Path("build/evidence/manifest.json").read_bytes() == before
+    assert Path("build/evidence/evidence.sqlite").read_bytes() == before
 
 
 @pytest.mark.slow
@@ -228,4 +228,4 @@ def test_a_command_that_fails_is_told_and_changes_nothing(
     run = robot("audit", "runs", "--format", "json", "--notify", command)
     assert (run.status, run.out) == (plain.status, plain.out)
     assert f"F922 warning: `{command}` {how}: the summary was not delivered" in run.err
-    assert os.path.exists("build/evidence/manifest.json")
+    assert os.path.exists("build/evidence/evidence.sqlite")

@@ -1,21 +1,20 @@
 """Evidence that cannot be read, or contradicts itself, is refused by each command that reads it."""
 
 import shutil
+import sqlite3
 from collections.abc import Callable, Mapping
+from contextlib import closing
 from pathlib import Path
 
-import pyarrow as pa
 import pytest
 
 from compiler.project.folder import load
 from fretc.api.refusal import Refusal
 from fretc.api.reports import make_report
-from fretc.audit.store.reader import Store, opened
-from fretc.audit.store.tables import RESULTS, VIOLATIONS
 from tests import keys
 from tests.command import Fretc, made_once, write
 from tests.effort import some
-from tests.fretc.audit.store.test_hostile import changed, with_table
+from tests.fretc.audit.store.test_hostile import edit, seal, with_record
 from tests.fretc.commands.test_verify_evidence import BINDINGS, R1, log
 
 BY = ("--reviewer", "Ada", "--role", "engineer", "--comment", "c")
@@ -35,40 +34,25 @@ COMMANDS: Mapping[str, tuple[str, ...]] = {
 FILE, STORE = "build/e.json", "build/e"
 
 
-def _of_table(name: str) -> Path:
-    (path,) = Path(STORE, name).iterdir()
-    return path
+CONTAINER = Path(STORE, "evidence.sqlite")
 
 
-def _truncated(name: str) -> None:
-    path = _of_table(name)
-    path.write_bytes(path.read_bytes()[:-9])
+def _edited(statement: str) -> None:
+    edit(Path(STORE), statement)
+    seal(Path(STORE))
 
 
 def _satisfied() -> None:
-    """The verdict is changed, and the manifest has the new hash."""
-    table = _tables().whole(RESULTS)
-    verdicts = pa.array(["satisfied"] * len(table), pa.string())
-    place = table.schema.get_field_index("verdict")
-    with_table(Path(STORE), RESULTS, table.set_column(place, table.field(place), verdicts))
-
-
-def _without_violations() -> None:
-    with_table(Path(STORE), VIOLATIONS, _tables().whole(VIOLATIONS).slice(0, 0))
+    """The verdict is changed, and the hash is not."""
+    with closing(sqlite3.connect(CONTAINER)) as connection:
+        (digest,) = connection.execute("SELECT sha256 FROM about").fetchone()
+    with_record(Path(STORE), lambda run: run["results"][0].update(verdict="satisfied"))
+    edit(Path(STORE), f"UPDATE about SET sha256 = '{digest}'")
 
 
 def _named_otherwise() -> None:
-    """The results of one requirement are said to be of another one."""
-    table = _tables().whole(RESULTS)
-    names = pa.array(["other"] * len(table), pa.string())
-    place = table.schema.get_field_index("requirement")
-    with_table(Path(STORE), RESULTS, table.set_column(place, table.field(place), names))
-
-
-def _tables() -> Store:
-    store = opened(STORE)
-    assert isinstance(store, Store)
-    return store
+    """One of the results is said to be of another run."""
+    with_record(Path(STORE), lambda run: run["results"][0].update(run="other"))
 
 
 def _emptied() -> None:
@@ -83,22 +67,25 @@ def _cut() -> None:
 FAULTS: Mapping[str, tuple[str, Callable[[], object]]] = {
     "nothing is there": (STORE, lambda: shutil.rmtree(STORE)),
     "an empty folder": (STORE, _emptied),
-    "a manifest that is cut": (STORE, lambda: Path(STORE, "manifest.json").write_text('{"sch')),
-    "a manifest that is not text": (
-        STORE,
-        lambda: Path(STORE, "manifest.json").write_bytes(b"\xff"),
-    ),
-    "no manifest": (STORE, lambda: Path(STORE, "manifest.json").unlink()),
+    "a file that is cut": (STORE, lambda: CONTAINER.write_bytes(CONTAINER.read_bytes()[:-9])),
+    "a file that is text": (STORE, lambda: CONTAINER.write_text("text")),
+    "no file": (STORE, CONTAINER.unlink),
     "an audit that was stopped": (
         STORE,
-        lambda: Path(STORE, "manifest.json").rename(Path(STORE, "unfinished.json")),
+        lambda: CONTAINER.rename(CONTAINER.with_name("unfinished-1.sqlite")),
     ),
-    "a field too many": (STORE, lambda: changed(Path(STORE), lambda m: m.update(more=1))),
-    "a table that is missing": (STORE, lambda: _of_table("violations").unlink()),
-    "a table that is cut": (STORE, lambda: _truncated("events")),
-    "a verdict with a new hash": (STORE, _satisfied),
-    "no violations, with a new hash": (STORE, _without_violations),
-    "another requirement, with a new hash": (STORE, _named_otherwise),
+    "a head of something else": (STORE, lambda: _edited("UPDATE about SET head = '{}'")),
+    "a run that is missing": (STORE, lambda: edit(Path(STORE), "DELETE FROM runs")),
+    "a record that is another": (
+        STORE,
+        lambda: edit(Path(STORE), "UPDATE runs SET record = x'00'"),
+    ),
+    "a verdict without a new hash": (STORE, _satisfied),
+    "no violations, with a new hash": (
+        STORE,
+        lambda: with_record(Path(STORE), lambda run: run["results"][0].pop("violations")),
+    ),
+    "another run, with a new hash": (STORE, _named_otherwise),
     "JSON that is cut": (FILE, _cut),
     "an empty file": (FILE, lambda: Path(FILE).write_text("")),
     "JSON of something else": (FILE, lambda: Path(FILE).write_text('{"schema": "x"}')),

@@ -3,11 +3,12 @@
 import base64
 import json
 import re
-from hashlib import sha256
 from pathlib import Path
 
 import pytest
 
+from fretc.audit.store.anywhere import source
+from fretish.diagnostics.diagnostic import Diagnostic
 from tests import keys
 from tests.command import Fretc, Run, made_once, write
 from tests.fretc.commands.test_verify_evidence import BINDINGS, R1, log
@@ -41,7 +42,7 @@ def audited(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> Fretc:
         log("logs/bad.mcap", 0, 1.5, 0, 0, 0, 0)
         for path in (FILE, STORE):
             assert fretc("audit", "logs", "-o", path).status == 1
-        assert Path(STORE, "manifest.json").is_file()
+        assert Path(STORE, "evidence.sqlite").is_file()
 
     made_once("a file and a store", make)
     return fretc
@@ -69,8 +70,9 @@ def _bare(text: str, path: str) -> str:
     """Without what a file and a store must differ in; of an envelope what it says."""
     if text.startswith('{"payload'):
         text = base64.b64decode(json.loads(text)["payload"]).decode()
-    hashed = Path(path, "manifest.json") if Path(path).is_dir() else Path(path)
+    known = source(path)
+    assert not isinstance(known, Diagnostic)
     name = re.escape(path.rstrip("/"))
-    text = text.replace(sha256(hashed.read_bytes()).hexdigest(), "SHA")
+    text = text.replace(known.sha256, "SHA")
     text = text.replace(f'"evidence:{Path(path).name}"', '"evidence:EVIDENCE"')
     return re.sub(rf"\b{name}(?!\w)/?", "EVIDENCE", text)

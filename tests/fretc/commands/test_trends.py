@@ -93,8 +93,8 @@ def test_a_store_says_what_a_file_says_and_a_broken_one_says_nothing(fretc: Fret
     stores = fretc("trends", "0", "1", "--format", "json", "--html", "stores.html")
     assert json.loads(stores.out)["items"] == json.loads(files.out)["items"]
     assert json.loads(stores.out)["comparisons"] == json.loads(files.out)["comparisons"]
-    table = next(Path("1").rglob("*.parquet"))
-    table.write_bytes(table.read_bytes()[:-1])
+    table = Path("1/evidence.sqlite")
+    table.write_bytes(table.read_bytes()[:-4096])
     broken = fretc("trends", "0", "1", "--html", "broken.html")
     assert broken.status == 2
     assert broken.err.startswith("F516 ")

@@ -243,7 +243,7 @@ def test_evidence_is_not_lost_to_an_annotation(fretc: Fretc) -> None:
     run = fretc("audit", "run.mcap", "--annotations", "x", "-o", "x/run.fretc.mcap")
     assert run.status == 2
     assert run.err.startswith("F905 `x/run.fretc.mcap` cannot be written: ")
-    assert Path("x/run.fretc.mcap/manifest.json").exists()
+    assert Path("x/run.fretc.mcap/evidence.sqlite").exists()
 
 
 @pytest.mark.slow

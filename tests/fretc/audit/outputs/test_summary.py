@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from fretc.audit.outputs.table import parquet, rows
+from fretc.audit.outputs.table import parquet, row_of
 from tests.command import Fretc, Run
 from tests.effort import FULL
 from tests.fretc.audit.results import result as record
@@ -18,7 +18,7 @@ R2 = requirement("R2", "whenever near the robot shall within 3 ticks satisfy sto
 
 
 def table(results: list[dict[str, Any]], fretc: str) -> bytes:
-    return parquet(rows([record(**one) for one in results], fretc))
+    return parquet(row_of(record(**one), fretc) for one in results)
 
 
 @pytest.fixture
@@ -217,7 +217,7 @@ def test_two_versions_of_a_requirement_are_not_counted_as_one_in_silence(
 def test_a_query_is_answered_for_a_person_and_for_a_program(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
-    query = "SELECT verdict, count(*) AS n FROM results GROUP BY ALL ORDER BY n DESC, verdict"
+    query = "SELECT verdict, count(*) AS n FROM results GROUP BY verdict ORDER BY n DESC, verdict"
     assert fretc("audit", "runs.parquet", "--query", query) == Run(
         0,
         "  verdict    n\n  satisfied  3\n  no data    1\n  vacuous    1\n  violated   1\n",
@@ -240,9 +240,9 @@ def test_the_rows_of_a_table_are_in_the_order_of_runs_and_requirements(
 def test_what_json_has_no_word_for_is_null_or_text(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
-    query = "SELECT 'nan'::DOUBLE AS a, ['inf'::DOUBLE] AS b, DATE '2026-01-02' AS c"
+    query = "SELECT 9e999 AS a, -9e999 AS b, date('2026-01-02') AS c, x'00ff' AS d"
     run = fretc("audit", "runs.parquet", "--query", query, "--format", "json")
-    assert json.loads(run.out) == [{"a": None, "b": [None], "c": "2026-01-02"}]
+    assert json.loads(run.out) == [{"a": None, "b": None, "c": "2026-01-02", "d": "b'\\x00\\xff'"}]
 
 
 @pytest.mark.slow
@@ -252,12 +252,19 @@ def test_what_json_has_no_word_for_is_null_or_text(
         "",
         "SELEC 1",
         "SELECT nothing FROM results",
+        "-- nothing",
         "SELECT * FROM 'evidence.json'",
-        "COPY results TO 'out.csv'",
-        "ATTACH 'x.db'",
-        "SET enable_external_access = true",
-        "INSTALL httpfs",
-        "SELECT verdict::INT FROM results",
+        "SELECT 1; SELECT 2",
+        "ATTACH 'x.db' AS x",
+        "VACUUM INTO 'x.db'",
+        "PRAGMA journal_mode=WAL",
+        "SELECT load_extension('x')",
+        "CREATE TABLE more (x)",
+        "INSERT INTO results SELECT * FROM results",
+        "DELETE FROM results",
+        "SELECT '\ud800'",
+        "SELECT 1\0",
+        "SELECT zeroblob(1 << 40)",
     ],
 )
 def test_a_query_that_cannot_be_answered_is_told_and_touches_no_file(
@@ -283,3 +290,13 @@ def test_a_run_cannot_write_to_the_terminal(fretc: Fretc, results: list[dict[str
     run = fretc("audit", "--summary", "odd.parquet")
     assert "\x1b" not in run.out
     assert run.out.count(".mcap") == 1
+
+
+def test_a_query_without_an_end_is_stopped(
+    fretc: Fretc, results: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("fretc.audit.outputs.summary._MOST_SECONDS", 0)
+    endless = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT sum(x) FROM n"
+    run = fretc("audit", "runs.parquet", "--query", endless)
+    assert (run.status, run.out) == (2, "")
+    assert run.err.startswith("F913 the query fails: interrupted\n")

@@ -1,6 +1,9 @@
 """Runs as rows: what a table says of them, and what is taken for a table."""
 
 import json
+import sqlite3
+from collections.abc import Iterable
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -8,8 +11,11 @@ import pyarrow
 import pytest
 from pyarrow import parquet as files
 
-from fretc.audit.outputs.table import parquet, read
-from fretc.audit.outputs.table import rows as rows_of
+from fretc.audit.evidence.reader import EvidenceFile
+from fretc.audit.evidence.reader import read as read_evidence
+from fretc.audit.outputs.summary import run_query
+from fretc.audit.outputs.table import parquet, read, row_of
+from fretc.audit.store.writer import write_document
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.fretc.audit.results import result as record
 from tests.fretc.report.cases import LOG, evidence, moment, project, result, violation
@@ -20,12 +26,23 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
+def table(results: Iterable[dict[str, Any]], fretc: str) -> bytes:
+    return parquet(row_of(record(**one), fretc) for one in results)
+
+
+def read_rows(*paths: str) -> list[dict[str, Any]]:
+    """The table of results in these files."""
+    found = read(paths)
+    assert not isinstance(found, Diagnostic), found.message
+    with closing(found):
+        found.row_factory = sqlite3.Row
+        return [dict(row) for row in found.execute("SELECT * FROM results")]
+
+
 def rows(*results: dict[str, Any]) -> list[dict[str, Any]]:
     """What is read of a table with these results."""
-    Path("runs.parquet").write_bytes(parquet(rows_of([record(**one) for one in results], "1.2.3")))
-    known = read(["runs.parquet"])
-    assert not isinstance(known, Diagnostic), known.message
-    return [dict(row) for row in known.results.to_pylist()]
+    Path("runs.parquet").write_bytes(table(results, "1.2.3"))
+    return read_rows("runs.parquet")
 
 
 def code(*paths: str) -> tuple[str, str]:
@@ -93,7 +110,7 @@ def test_what_a_run_does_not_have_is_null() -> None:
         "log_sha256",
         "log_summary_sha256",
     }  # fmt: skip
-    assert row["intact"] is False
+    assert row["intact"] == 0
 
 
 def test_a_time_beyond_a_column_is_null_and_no_failure() -> None:
@@ -109,9 +126,8 @@ def test_a_table_without_the_last_column_is_read_as_well() -> None:
     older = whole.drop_columns(["log_summary_sha256"])
     older = older.replace_schema_metadata({"schema": "fretc-table-1"})
     files.write_table(older, "older.parquet")
-    tables = read(["older.parquet", "runs.parquet"])
-    assert not isinstance(tables, Diagnostic), tables.message
-    assert tables.results.to_pylist() == [{**row, "log_summary_sha256": None}, row]
+    older_row = {**row, "log_summary_sha256": None}
+    assert read_rows("older.parquet", "runs.parquet") == [older_row, row]
     files.write_table(older.replace_schema_metadata({"schema": "fretc-table-2"}), "odd.parquet")
     assert code("odd.parquet")[0] == "F503"
 
@@ -122,8 +138,8 @@ def test_no_run_is_a_table_too() -> None:
 
 def test_the_same_results_give_the_same_bytes() -> None:
     own_project = result(project(Path("known")), "satisfied")
-    results = [record(**own_project | {"run": f"{i}.mcap"}) for i in range(50)]
-    assert parquet(rows_of(results, "1")) == parquet(rows_of(results, "1"))
+    results = [own_project | {"run": f"{i}.mcap"} for i in range(50)]
+    assert table(results, "1") == table(results, "1")
 
 
 def test_evidence_is_read_as_the_table_of_it() -> None:
@@ -131,16 +147,44 @@ def test_evidence_is_read_as_the_table_of_it() -> None:
     results = [result(own_project, "satisfied"), result(own_project, "violated", run="b.mcap")]
     content = evidence(own_project, *results)
     Path("evidence.json").write_text(json.dumps(content), "utf-8")
-    Path("runs.parquet").write_bytes(
-        parquet(rows_of([record(**one) for one in results], content["fretc"]))
-    )
-    own, other = read(["evidence.json"]), read(["runs.parquet"])
-    assert not isinstance(own, Diagnostic)
-    assert not isinstance(other, Diagnostic)
-    assert own.results.equals(other.results)
-    both = read(["evidence.json", "runs.parquet"])
-    assert not isinstance(both, Diagnostic)
-    assert both.results.num_rows == 4
+    Path("runs.parquet").write_bytes(table(results, content["fretc"]))
+    evidence_file = read_evidence("evidence.json")
+    assert isinstance(evidence_file, EvidenceFile)
+    assert isinstance(write_document(Path("store"), evidence_file.document), str)
+    rows = read_rows("evidence.json")
+    assert len(rows) == 2
+    for paths in (["runs.parquet"], ["store"], ["evidence.json", "store", "runs.parquet"]):
+        assert read_rows(*paths) == rows
+
+
+def test_violations_and_runs_are_tables_if_a_query_names_them() -> None:
+    own_project = project(Path("known"))
+    found = [
+        result(own_project, "violated", violations=[violation(41, 44, 40), violation(60, 60)]),
+        result(own_project, "satisfied", run="b.mcap", labels={"version": "1"}),
+    ]
+    Path("evidence.json").write_text(json.dumps(evidence(own_project, *found)), "utf-8")
+    document = read_evidence("evidence.json")
+    assert isinstance(document, EvidenceFile)
+    assert isinstance(write_document(Path("store"), document.document), str)
+    for path in ("evidence.json", "store"):
+        query = "SELECT run, first_tick, last_tick, \"trigger\" ->> 'tick' AS at FROM violations"
+        assert answered(path, query) == [("logs/a.mcap", 41, 44, 40), ("logs/a.mcap", 60, 60, None)]
+        query = "SELECT run, labels ->> 'version', size, json_array_length(gaps) FROM runs"
+        assert answered(path, query) == [
+            ("logs/a.mcap", None, 1234567, 0),
+            ("b.mcap", "1", 1234567, 0),
+        ]
+        assert answered(path, "SELECT * FROM results WHERE verdict = 'unknown'") == []
+
+
+def answered(path: str, query: str) -> list[tuple[Any, ...]]:
+    tables = read([path], query)
+    assert not isinstance(tables, Diagnostic), tables.message
+    with closing(tables):
+        answer = run_query(tables, query)
+        assert not isinstance(answer, Diagnostic), answer.message
+        return [*answer.rows]
 
 
 def test_what_is_no_table_is_told() -> None:
@@ -156,7 +200,7 @@ def test_what_is_no_table_is_told() -> None:
 
 
 def test_a_damaged_or_foreign_parquet_file_is_told() -> None:
-    good = parquet(rows_of([record(**result(project(Path("known")), "satisfied"))], "1"))
+    good = table([result(project(Path("known")), "satisfied")], "1")
     for part in (4, 100, len(good) - 1):
         Path("cut.parquet").write_bytes(good[:part])
         assert code("cut.parquet")[0] == "F503"

@@ -1,21 +1,21 @@
 """Evidence is the same in a file and in a store, exactly."""
 
 import json
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from pyarrow.parquet import ParquetFile
 
 from compiler.files.records import UNSET, decoded, replace, types
 from fretc.audit.evidence.result_summaries import brief, run_facts
 from fretc.audit.evidence.schema import EvidenceDocument, Result
 from fretc.audit.evidence.writer import text
+from fretc.audit.store.container import record_text
 from fretc.audit.store.reader import Store, evidence, opened
-from fretc.audit.store.tables import runs_of
-from fretc.audit.store.writer import write_document
+from fretc.audit.store.writer import runs_of, write_document
 from tests.effort import FULL
 from tests.fretc.audit.results import SHA, result
 
@@ -127,11 +127,11 @@ def documents(draw: st.DrawFn) -> EvidenceDocument:
 
 
 def stored(folder: Path, document: EvidenceDocument) -> Store:
-    sha256 = write_document(folder, document, 0.95)
-    assert isinstance(sha256, str), sha256
+    digest = write_document(folder, document)
+    assert isinstance(digest, str), digest
     store = opened(str(folder))
-    assert isinstance(store, Store), store.message
-    assert store.sha256 == sha256
+    assert isinstance(store, Store), store
+    assert store.sha256 == digest
     return store
 
 
@@ -147,18 +147,30 @@ def document(*results: Result) -> EvidenceDocument:
 
 
 def test_times_of_a_damaged_log_are_kept(tmp_path: Path) -> None:
-    """In the columns as far as these hold them."""
     late = result(start_ns=0, end_ns=2**64 - 1, verdict="no data")
     good = result(run="b.mcap", verdict="satisfied")
     store = stored(tmp_path, document(late, good))
     assert evidence(store).results == (late, good)
-    (main,) = (tmp_path / "results").iterdir()
-    rows = ParquetFile(main).read().to_pylist()
-    assert [(row["run"], row["verdict"], row["end_ns"]) for row in rows] == [
-        ("a.mcap", "no data", None),
-        ("b.mcap", "satisfied", None),
+    assert [(one.run, one.end_ns) for _, one in store.briefs()] == [
+        ("a.mcap", 2**64 - 1),
+        ("b.mcap", None),
     ]
-    assert [json.loads(row["exact"])["end_ns"] for row in rows if row["exact"]] == [2**64 - 1]
+
+
+def test_equal_evidence_has_one_identity_whatever_its_file(tmp_path: Path) -> None:
+    """It is the SHA-256 of the head and of the results of each run, as JSON."""
+    results = [result(run=name, reason=name * 300) for name in "abc"]
+    first, other = (
+        stored(tmp_path / name, document(*some)) for name, some in (("a", results), ("b", results))
+    )
+    lines = [text(first.document), *(row.sha256 for row in first.rows)]
+    assert first.sha256 == other.sha256 == sha256("\n".join(lines).encode()).hexdigest()
+    texts = [record_text([each]) for each in results]
+    assert [row.sha256 for row in first.rows] == [sha256(text).hexdigest() for text in texts]
+    run = json.loads(texts[0])
+    (own,) = run.pop("results")
+    assert own | run == json.loads(text(document(*results)))["results"][0]
+    assert stored(tmp_path / "c", document(*results[:2])).sha256 != first.sha256
 
 
 @pytest.mark.slow

@@ -102,7 +102,7 @@ def numbers(value: Any, at: Place = ()) -> Iterator[Place]:
             yield at
 
 
-def put(value: Any, at: Place, number: int) -> None:
+def put(value: Any, at: Place, number: Any) -> None:
     """Put a number there; a stretch of time has no length then."""
     for step in at[:-1]:
         value = value[step]
@@ -168,7 +168,7 @@ def test_every_number_that_is_read_comes_back_from_a_store(tmp_path: Path) -> No
         assert accepted(evidence(*group), tmp_path / "e.json")
         before = read(str(tmp_path / "e.json"))
         assert isinstance(before, EvidenceFile)
-        assert isinstance(write_document(tmp_path / "store", before.document, 0.95), str)
+        assert isinstance(write_document(tmp_path / "store", before.document), str)
         after = read_anywhere(str(tmp_path / "store"))
         assert not isinstance(after, Diagnostic), after.message
         assert text(after.document) == text(before.document)

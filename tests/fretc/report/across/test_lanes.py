@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.audit.evidence.result_summaries import Stretches
 from fretc.report.across.lanes import MOST_LANES, plan
+from fretc.report.across.stretches import Stretches
 from fretc.report.model.pictures import LaneMark, Lanes
 from fretc.report.model.results import ResultRow
 from tests.effort import examples

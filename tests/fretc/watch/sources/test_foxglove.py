@@ -49,7 +49,7 @@ LOG = ROOT / "traces/mission-seed15.mcap"
 
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(foxglove, "PATIENCE", 1.0)
+    monkeypatch.setattr(foxglove, "PATIENCE", 3.0)
     monkeypatch.setattr(foxglove, "_PING", 0.05)
 
 
