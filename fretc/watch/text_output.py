@@ -12,8 +12,8 @@ from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, StateCha
 from fretc.watch.session import Session
 from fretc.watch.sources.source import ConnectionLost, Missed, Opened, Reconnected
 from fretish.bindings.amounts import duration, seconds
-from monitors.guard import State
 from monitors.kernel.verdicts import Truth
+from monitors.stop_supervisor import State
 
 _S = 10**9
 _OBLIGATION: Mapping[Truth, str] = {

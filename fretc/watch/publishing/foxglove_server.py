@@ -15,8 +15,8 @@ from fretc.watch.sources.source import Arrival, Channel
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import install_help
 from fretish.diagnostics.messages import diagnostic
-from monitors.guard import State, Status
 from monitors.kernel.verdicts import Truth
+from monitors.stop_supervisor import State, Status
 
 if TYPE_CHECKING:
     import foxglove

@@ -82,7 +82,7 @@ def module(setting: Setting) -> tuple[Any, Any]:
 def judging(setting: Setting, some: Sequence[Sent], idle: int) -> tuple[Any, list[bool | None]]:
     """A node to which the messages have come, and what it said last."""
     live, monitors = module(setting)
-    node = live.Judging(monitors.MONITOR, live.SETTING)
+    node = live.OnlineEvaluator(monitors.MONITOR, live.SETTING)
     for each in sorted(some, key=lambda each: each.arrival.log_time):
         arrival = each.arrival.log_time
         time = arrival if setting.time == "log_time" else START + each.at * MS

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from fretc.watch.publishing.statuses import SOURCES, statuses
 from fretc.watch.session import Session
-from monitors.guard import ERROR, OK, STALE, WARN, State, Status, status_of
 from monitors.kernel.verdicts import Truth
+from monitors.stop_supervisor import ERROR, OK, STALE, WARN, State, Status, status_of
 from tests.fretc.watch.sent import Sent, Setting, plan_of
 
 VERDICTS = ("satisfied", "violated", "inconclusive", "vacuous", "no data")

@@ -30,7 +30,7 @@ from fretc.watch.sources.source import Arrival, Diagnosing, Opened, Problem, Rec
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import install_help
 from fretish.diagnostics.rendering import render
-from monitors.guard import Status
+from monitors.stop_supervisor import Status
 from tests.dds import domain, environment
 from tests.programs import needs_package
 from tests.ros1 import until

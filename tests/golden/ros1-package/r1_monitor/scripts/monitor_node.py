@@ -16,7 +16,13 @@ if sys.version_info < (3, 10):
     sys.exit(f"monitor_node.py: it needs Python 3.10 or later, not {sys.version.split()[0]}")
 
 from r1_monitor.monitor import MONITOR
-from r1_monitor.perception import SETTING, Channels, Guard, Voice, single_signals
+from r1_monitor.perception import (
+    SETTING,
+    Channels,
+    StatusPublisher,
+    StopSupervisor,
+    single_signals,
+)
 
 HELP = """\
 usage: monitor_node.py [ROS ARGUMENTS]
@@ -80,7 +86,7 @@ class Node:
         from roslib.message import get_message_class
 
         parameter = rospy.get_param
-        guard = Guard(
+        supervisor = StopSupervisor(
             MONITOR,
             SETTING,
             identifiers(parameter("~stop_for", list(STOP_FOR))),
@@ -111,10 +117,10 @@ class Node:
             report,
             lambda: rospy.get_rostime().to_nsec(),
         )
-        voice = Voice(guard, channels, parameter("~heartbeat", HEARTBEAT))
+        publisher = StatusPublisher(supervisor, channels, parameter("~heartbeat", HEARTBEAT))
 
         def close() -> None:
-            voice.close()
+            publisher.close()
             time.sleep(FLUSH)
 
         rospy.on_shutdown(close)
@@ -125,15 +131,15 @@ class Node:
             if message is None:
                 raise ImportError(f"there is no message {kind}")
             singles = single_signals(SETTING, topic, message(), types)
-            hear = partial(voice.hear, topic, singles=singles)
-            rospy.Subscriber(topic, message, hear, queue_size=10)
+            on_message = partial(publisher.on_message, topic, singles=singles)
+            rospy.Subscriber(topic, message, on_message, queue_size=10)
         # A steady clock: simulated or corrected time must not stop the watchdogs. A tick that is
         # late is not made up for: ticks in a bunch would end a hold too early.
         due = time.monotonic()
         while not rospy.is_shutdown():
-            due = max(due + voice.heartbeat, time.monotonic())
+            due = max(due + publisher.heartbeat, time.monotonic())
             time.sleep(max(0.0, due - time.monotonic()))
-            voice.beat()
+            publisher.on_heartbeat()
 
     def _shut_down(self, reason: str) -> None:
         self.reason = reason

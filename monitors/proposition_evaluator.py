@@ -13,7 +13,7 @@ from monitors.kernel.readings import Reading
 from monitors.kernel.verdicts import Truth
 
 
-class Meaning(NamedTuple):
+class PropositionSpec(NamedTuple):
     """The definition of a proposition: its truth at an instant, and its aggregation at a tick."""
 
     name: str
@@ -109,22 +109,22 @@ class _Persistence:
         return truth in self.ends and time < self.ends[truth] + self.duration
 
 
-class Course:
+class PropositionEvaluator:
     """Evaluates one proposition over time, step by step."""
 
-    def __init__(self, meaning: Meaning, series: Mapping[str, Series], start: int) -> None:
+    def __init__(self, meaning: PropositionSpec, series: Mapping[str, Series], start: int) -> None:
         """Start before the first step, which is at `start`."""
         self._meaning = meaning
         self._series = {name: series[name] for name in meaning.signals}
         self._start, self._done = start, start - 1
         self._held = [_Persistence(duration) for _, duration in meaning.held]
         self._truth: Truth = None
-        self._ahead: tuple[Course, list[tuple[int, Truth]]] | None = None
+        self._ahead: tuple[PropositionEvaluator, list[tuple[int, Truth]]] | None = None
         """A copy that was evaluated ahead, and its steps; None if there is none."""
 
-    def copy(self) -> "Course":
+    def copy(self) -> "PropositionEvaluator":
         """An independent copy in the same state."""
-        other = Course(self._meaning, self._series, self._start)
+        other = PropositionEvaluator(self._meaning, self._series, self._start)
         other._done, other._truth = self._done, self._truth
         other._held = [each.copy() for each in self._held]
         return other
@@ -139,7 +139,7 @@ class Course:
         self._done = max(self._done, until)
         return found
 
-    def sight(self, tick: int, first: tuple[int, int | None] | None = None) -> Truth:
+    def value_at_tick(self, tick: int, first: tuple[int, int | None] | None = None) -> Truth:
         """The truth at a tick; ticks must be given in increasing order.
 
         `first` is given for the first tick of the run: the start of the log, and the time from
@@ -156,7 +156,7 @@ class Course:
             steps = steps[told[0] if told else -1 :]
         return self._seen(steps, before)
 
-    def glance(self, ticks: Sequence[int]) -> list[Truth]:
+    def peek(self, ticks: Sequence[int]) -> list[Truth]:
         """The truth at later ticks if no more samples arrive, without advancing."""
         if self._ahead is None:
             self._ahead = self.copy(), []
@@ -170,7 +170,7 @@ class Course:
             begin = end
         return found
 
-    def notice(self, time: int) -> None:
+    def invalidate_lookahead(self, time: int) -> None:
         """Discard results ahead of a new sample of one of its signals."""
         if self._ahead is not None and time <= self._ahead[0]._done:
             self._ahead = None

@@ -17,7 +17,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from monitors.kernel.verdicts import Truth
-from monitors.perception import Judging, Setting
+from monitors.perception import BindingConfig, OnlineEvaluator
 
 OK, WARN, ERROR, STALE = range(4)
 """The levels of diagnostic_msgs/DiagnosticStatus."""
@@ -50,13 +50,13 @@ class Status(NamedTuple):
     values: tuple[tuple[str, str], ...]
 
 
-class Guard:
+class StopSupervisor:
     """Supervises one monitor and its topics, and decides whether the robot must stop."""
 
     def __init__(
         self,
         monitor: Callable[[], Any],
-        setting: Setting,
+        setting: BindingConfig,
         deciding: Collection[str] = (),
         source_timeout: float = 0.0,
     ) -> None:
@@ -78,7 +78,7 @@ class Guard:
         if unknown:
             raise ValueError(f"unknown requirement {unknown[0]}: there are {', '.join(self._ids)}")
         bounded("source_timeout", source_timeout, 0.0, LONGEST)
-        self._judging = Judging(monitor, setting)
+        self._evaluator = OnlineEvaluator(monitor, setting)
         self._setting, self._timeout = setting, source_timeout
         self._deciding = [i for i, id in enumerate(self._ids) if not deciding or id in deciding]
         self._needed = [
@@ -108,7 +108,7 @@ class Guard:
         time = now if time is None else time
         self._counts[topic] += 1
         try:
-            self._judge(lambda: self._judging.arrive(topic, time, now, message, singles), now)
+            self._judge(lambda: self._evaluator.arrive(topic, time, now, message, singles), now)
         except (AttributeError, TypeError, ValueError) as error:
             self._unreadable[topic] = f"{type(error).__name__}: {error}"
         else:
@@ -117,26 +117,26 @@ class Guard:
 
     def pass_to(self, now: int) -> None:
         """Advance to `now`: all messages received earlier have been processed."""
-        self._judge(lambda: self._judging.pass_to(now), now)
+        self._judge(lambda: self._evaluator.pass_to(now), now)
 
     def _judge(self, step: Callable[[], None], now: int) -> None:
         """Run a step; keep the violations if it begins a new run."""
-        monitor, resets = self._judging.monitor, self._judging.resets
+        monitor, resets = self._evaluator.monitor, self._evaluator.resets
         try:
             step()
         finally:
-            if self._judging.resets != resets:
+            if self._evaluator.resets != resets:
                 standings = monitor.standings()
                 self._violated |= {s.requirement for s in standings if s.verdict == "violated"}
             self._now = now
-            self._obligation_pending = self._judging.obligation_pending()
+            self._obligation_pending = self._evaluator.obligation_pending()
 
     # Output
 
     @property
     def ticks(self) -> int:
         """The number of ticks evaluated in the present run."""
-        return len(self._judging.ledger)
+        return len(self._evaluator.ledger)
 
     def stop(self, steady: float) -> bool:
         """Whether the robot must stop now."""
@@ -156,7 +156,7 @@ class Guard:
 
     def states(self) -> tuple[State, ...]:
         """The status of each requirement; `obligation_pending` counts messages since the tick."""
-        monitor = self._judging.monitor
+        monitor = self._evaluator.monitor
         read = zip(monitor.standings(), self._obligation_pending, monitor.must.marks(), strict=True)
         return tuple(
             State(
@@ -181,7 +181,7 @@ class Guard:
         ]
 
     def _time(self, tick: int | None) -> int | None:
-        origin = self._judging.perception.origin
+        origin = self._evaluator.perception.origin
         if tick is None or origin is None:
             return None
         return origin + self._setting.phase + tick * self._setting.period
@@ -190,7 +190,7 @@ class Guard:
         """A status of the sources, and one of each requirement."""
         faults = {topic: self.fault(topic, steady) for topic in self._setting.topics}
         wrong = [fault for fault in faults.values() if fault]
-        judging = self._judging
+        judging = self._evaluator
         values = {f"messages of {topic}": count for topic, count in self._counts.items()}
         values |= {
             "ticks": self.ticks,
@@ -270,7 +270,7 @@ def stamp(message: Any) -> int | None:
 
 
 def single_signals(
-    setting: Setting, topic: str, message: Any, types: Callable[[Any], Mapping[str, str]]
+    setting: BindingConfig, topic: str, message: Any, types: Callable[[Any], Mapping[str, str]]
 ) -> tuple[str, ...]:
     """The signals of a topic that are read from 32-bit floats.
 
