@@ -22,18 +22,18 @@ MOST_TICKS = 10_000
 class BindingConfig(NamedTuple):
     """The configuration of a node, from the bindings."""
 
-    policies: tuple[Policy, ...]
-    meanings: tuple[PropositionSpec, ...]
+    policies: "tuple[Policy, ...]"
+    meanings: "tuple[PropositionSpec, ...]"
     period: int
     phase: int = 0
     lateness: int = 0
     stamped: bool = False
     """Whether the time of a message is the stamp of its header."""
-    reads: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    reads: "tuple[tuple[str, tuple[str, ...]], ...]" = ()
     """Id of each requirement, and the topics that it reads."""
 
     @property
-    def topics(self) -> tuple[str, ...]:
+    def topics(self) -> "tuple[str, ...]":
         """All topics that are read."""
         return tuple(dict.fromkeys(policy.topic for policy in self.policies))
 
@@ -55,13 +55,13 @@ class Perception:
         """The propositions that must be evaluated again because of a late message."""
 
     @property
-    def origin(self) -> int | None:
+    def origin(self) -> "int | None":
         """The time at which the grid of ticks begins; None until it is fixed."""
         return self._ticking.origin
 
     def arrive(
-        self, topic: str, time: int, arrival: int, values: Mapping[str, Reading]
-    ) -> tuple[int, int, tuple[str, ...]] | None:
+        self, topic: str, time: int, arrival: int, values: "Mapping[str, Reading]"
+    ) -> "tuple[int, int, tuple[str, ...]] | None":
         """Process a message, given as a sample of each signal of its topic.
 
         Returns:
@@ -90,7 +90,7 @@ class Perception:
     def _reads(self, meaning: PropositionSpec, topic: str) -> bool:
         return any(self._topic[name] == topic for name in meaning.signals)
 
-    def until(self, passed: int) -> list[tuple[int, Mapping[str, Truth]]] | None:
+    def until(self, passed: int) -> "list[tuple[int, Mapping[str, Truth]]] | None":
         """Advance to `passed`: the newly evaluated ticks, as (time, row).
 
         Returns:
@@ -110,7 +110,7 @@ class Perception:
             spans[:] = [span for span in spans if span[1] > ticks[-1]]
         return rows
 
-    def peek(self, time: int) -> list[tuple[int, Mapping[str, Truth]]]:
+    def peek(self, time: int) -> "list[tuple[int, Mapping[str, Truth]]]":
         """The rows of the pending ticks and of an additional tick now, without advancing."""
         last, due = self._ticking.last, self._ticking.due(time)
         if last is None and not due:
@@ -132,7 +132,7 @@ class Perception:
     def _lookback(self) -> int:
         return max((each.lookback for each in self._setting.meanings), default=0)
 
-    def _live(self) -> Mapping[str, PropositionEvaluator]:
+    def _live(self) -> "Mapping[str, PropositionEvaluator]":
         """The evaluators of all propositions, up to date to the last tick."""
         start, last = self._start, self._ticking.last
         assert start is not None, "a tick needs a message"
@@ -149,26 +149,26 @@ class Perception:
         return self._evaluators
 
     def _rows(
-        self, ticks: Sequence[int], evaluators: Mapping[str, PropositionEvaluator], first: bool
-    ) -> list[tuple[int, Mapping[str, Truth]]]:
+        self, ticks: "Sequence[int]", evaluators: "Mapping[str, PropositionEvaluator]", first: bool
+    ) -> "list[tuple[int, Mapping[str, Truth]]]":
         rows: list[tuple[int, Mapping[str, Truth]]] = []
         for tick in ticks:
             begun = [self._beginning(each) if first else None for each in self._setting.meanings]
             truths_at_ticks = [
                 evaluators[each.name].value_at_tick(tick, start)
-                for each, start in zip(self._setting.meanings, begun, strict=True)
+                for each, start in zip(self._setting.meanings, begun)
             ]
             rows.append((tick, self._row(tick, truths_at_ticks)))
             first = False
         return rows
 
-    def _row(self, tick: int, truths_at_ticks: Sequence[Truth]) -> Mapping[str, Truth]:
+    def _row(self, tick: int, truths_at_ticks: "Sequence[Truth]") -> "Mapping[str, Truth]":
         return {
             each.name: None if self._is_late(each, tick) else truth
-            for each, truth in zip(self._setting.meanings, truths_at_ticks, strict=True)
+            for each, truth in zip(self._setting.meanings, truths_at_ticks)
         }
 
-    def _beginning(self, meaning: PropositionSpec) -> tuple[int, int | None]:
+    def _beginning(self, meaning: PropositionSpec) -> "tuple[int, int | None]":
         start = self._start or 0
         series = [self._series[name].times for name in meaning.signals]
         if not all(series):
@@ -192,7 +192,7 @@ class OnlineEvaluator:
     The robot must stop unless `obligation_pending` is False.
     """
 
-    def __init__(self, monitor: Callable[[], Any], setting: BindingConfig) -> None:
+    def __init__(self, monitor: "Callable[[], Any]", setting: BindingConfig) -> None:
         """Start before the first message.
 
         Args:
@@ -214,7 +214,7 @@ class OnlineEvaluator:
         """The last rows evaluated ahead of the ledger, and the open obligations after them."""
 
     def arrive(
-        self, topic: str, time: int, arrival: int, message: Any, singles: Collection[str] = ()
+        self, topic: str, time: int, arrival: int, message: Any, singles: "Collection[str]" = ()
     ) -> None:
         """Process a message.
 
@@ -259,7 +259,7 @@ class OnlineEvaluator:
             self.ledger.advance(time, row)
             self._ahead = None
 
-    def obligation_pending(self) -> tuple[Truth, ...]:
+    def obligation_pending(self) -> "tuple[Truth, ...]":
         """For each requirement, whether an obligation is open now; None: unknown.
 
         Messages since the last tick count as if there were a tick now.

@@ -16,11 +16,11 @@ from monitors.stop_supervisor import Status, StopSupervisor, bounded
 class Channels(NamedTuple):
     """The publishers and the clock of a node."""
 
-    stop: Callable[[bool], object]
-    verdict: Callable[[str], object]
+    stop: "Callable[[bool], object]"
+    verdict: "Callable[[str], object]"
     """Publishes a line of JSON."""
-    statuses: Callable[[Sequence[Status]], object]
-    now: Callable[[], int]
+    statuses: "Callable[[Sequence[Status]], object]"
+    now: "Callable[[], int]"
     """Nanoseconds on the middleware's clock, which may be simulated; 0 before it has started."""
 
 
@@ -32,7 +32,7 @@ class StatusPublisher:
         supervisor: StopSupervisor,
         channels: Channels,
         heartbeat: float,
-        steady: Callable[[], float] = time.monotonic,
+        steady: "Callable[[], float]" = time.monotonic,
     ) -> None:
         """Start before anything is published.
 
@@ -54,7 +54,7 @@ class StatusPublisher:
         self._closed = False
         self._lock = Lock()
 
-    def on_message(self, topic: str, message: Any, singles: Collection[str] = ()) -> None:
+    def on_message(self, topic: str, message: Any, singles: "Collection[str]" = ()) -> None:
         """Process a message; an exception stops the robot, and `on_heartbeat` raises it again."""
         with self._lock:
             try:

@@ -16,7 +16,7 @@ import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from monitors.kernel.verdicts import Truth
+from monitors.kernel.verdicts import Truth, same_length
 from monitors.perception import BindingConfig, OnlineEvaluator
 
 OK, WARN, ERROR, STALE = range(4)
@@ -31,13 +31,13 @@ class State(NamedTuple):
     """The verdict if the run ended now."""
     obligation_pending: Truth
     """Whether an obligation is open; None: unknown."""
-    triggered_ns: int | None
+    triggered_ns: "int | None"
     """The last tick that has certainly triggered the requirement."""
-    open_ns: int | None
+    open_ns: "int | None"
     """The trigger of the obligation that is certainly open."""
-    deadline_ns: int | None
+    deadline_ns: "int | None"
     """The last tick at which this obligation can be met."""
-    violated_ns: int | None
+    violated_ns: "int | None"
     """The first tick at which the requirement was certainly violated."""
 
 
@@ -47,7 +47,7 @@ class Status(NamedTuple):
     level: int
     name: str
     message: str
-    values: tuple[tuple[str, str], ...]
+    values: "tuple[tuple[str, str], ...]"
 
 
 class StopSupervisor:
@@ -55,9 +55,9 @@ class StopSupervisor:
 
     def __init__(
         self,
-        monitor: Callable[[], Any],
+        monitor: "Callable[[], Any]",
         setting: BindingConfig,
-        deciding: Collection[str] = (),
+        deciding: "Collection[str]" = (),
         source_timeout: float = 0.0,
     ) -> None:
         """Start before the first message.
@@ -101,7 +101,7 @@ class StopSupervisor:
     # Input
 
     def arrive(
-        self, topic: str, message: Any, now: int, steady: float, singles: Collection[str] = ()
+        self, topic: str, message: Any, now: int, steady: float, singles: "Collection[str]" = ()
     ) -> None:
         """Process a message with fields as attributes; `singles` is from `single_signals`."""
         time = stamp(message) if self._setting.stamped else None
@@ -119,7 +119,7 @@ class StopSupervisor:
         """Advance to `now`: all messages received earlier have been processed."""
         self._judge(lambda: self._evaluator.pass_to(now), now)
 
-    def _judge(self, step: Callable[[], None], now: int) -> None:
+    def _judge(self, step: "Callable[[], None]", now: int) -> None:
         """Run a step; keep the violations if it begins a new run."""
         monitor, resets = self._evaluator.monitor, self._evaluator.resets
         try:
@@ -154,10 +154,10 @@ class StopSupervisor:
             return f"{topic} is silent for {silence:.1f} s"
         return ""
 
-    def states(self) -> tuple[State, ...]:
+    def states(self) -> "tuple[State, ...]":
         """The status of each requirement; `obligation_pending` counts messages since the tick."""
         monitor = self._evaluator.monitor
-        read = zip(monitor.standings(), self._obligation_pending, monitor.must.marks(), strict=True)
+        read = zip(monitor.standings(), self._obligation_pending, monitor.must.marks())
         return tuple(
             State(
                 standing.requirement,
@@ -171,7 +171,7 @@ class StopSupervisor:
             for standing, pending, mark in read
         )
 
-    def news(self) -> list[dict[str, Any]]:
+    def news(self) -> "list[dict[str, Any]]":
         """The requirements whose status changed since the last call, as lines of a watch."""
         before, self._states = self._states, self.states()
         return [
@@ -180,33 +180,36 @@ class StopSupervisor:
             if state not in before
         ]
 
-    def _time(self, tick: int | None) -> int | None:
+    def _time(self, tick: "int | None") -> "int | None":
         origin = self._evaluator.perception.origin
         if tick is None or origin is None:
             return None
         return origin + self._setting.phase + tick * self._setting.period
 
-    def statuses(self, steady: float) -> list[Status]:
+    def statuses(self, steady: float) -> "list[Status]":
         """A status of the sources, and one of each requirement."""
         faults = {topic: self.fault(topic, steady) for topic in self._setting.topics}
         wrong = [fault for fault in faults.values() if fault]
-        judging = self._evaluator
+        evaluator = self._evaluator
         values = {f"messages of {topic}": count for topic, count in self._counts.items()}
-        values |= {
-            "ticks": self.ticks,
-            "ticks that became unknown": judging.ledger.late,
-            "clock was set": judging.resets,
-        }
+        values.update(
+            {
+                "ticks": self.ticks,
+                "ticks that became unknown": evaluator.ledger.late,
+                "clock was set": evaluator.resets,
+            }
+        )
         sources = status(STALE if wrong else OK, "sources", "; ".join(wrong) or "all come", values)
         own = [
             [faults[each] for each in topics if faults[each]] for _, topics in self._setting.reads
         ]
-        read = zip(self.states(), own, strict=True)
+        states = self.states()
+        same_length(states, own)
         return [
             sources,
             *(
                 status_of(state, "".join(some[:1]), violated=state.requirement in self._violated)
-                for state, some in read
+                for state, some in zip(states, own)
             ),
         ]
 
@@ -236,7 +239,7 @@ def status_of(state: State, fault: str, *, violated: bool = False) -> Status:
     return status(level, state.requirement, message, values)
 
 
-def status(level: int, name: str, message: str, values: Mapping[str, object]) -> Status:
+def status(level: int, name: str, message: str, values: "Mapping[str, object]") -> Status:
     """A status with its values converted to texts."""
     return Status(level, name, message, tuple((key, str(value)) for key, value in values.items()))
 
@@ -260,7 +263,7 @@ def bounded(name: str, value: float, least: float, most: float) -> float:
 # Messages of ROS 1 and ROS 2 ----------------------------------------------------------------------
 
 
-def stamp(message: Any) -> int | None:
+def stamp(message: Any) -> "int | None":
     """`header.stamp` in nanoseconds, in ROS 2 and in ROS 1; None for a message without one."""
     time = getattr(getattr(message, "header", None), "stamp", None)
     for seconds, nanoseconds in (("sec", "nanosec"), ("secs", "nsecs")):
@@ -270,8 +273,8 @@ def stamp(message: Any) -> int | None:
 
 
 def single_signals(
-    setting: BindingConfig, topic: str, message: Any, types: Callable[[Any], Mapping[str, str]]
-) -> tuple[str, ...]:
+    setting: BindingConfig, topic: str, message: Any, types: "Callable[[Any], Mapping[str, str]]"
+) -> "tuple[str, ...]":
     """The signals of a topic that are read from 32-bit floats.
 
     Args:
@@ -297,7 +300,7 @@ _SINGLE = re.compile(r"(sequence<)?float(32)?(?!\w)")
 
 
 def _type(
-    message: Any, fields: Sequence[str], topic: str, types: Callable[[Any], Mapping[str, str]]
+    message: Any, fields: "Sequence[str]", topic: str, types: "Callable[[Any], Mapping[str, str]]"
 ) -> str:
     name = type(message).__name__
     for place, field in enumerate(fields):

@@ -1,9 +1,10 @@
 """Three-valued truth, verdicts, and the signals of a requirement at each tick."""
 
+from collections.abc import Sized
 from enum import Enum
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, Optional, TypeVar
 
-Truth = bool | None
+Truth = Optional[bool]
 """True, False, or None: unknown."""
 
 
@@ -19,7 +20,7 @@ def boolean(value: object, name: str = "") -> bool:
     raise TypeError(f"{subject} is True, False or None (unknown), not {value!r}")
 
 
-class Verdict(str, Enum):  # Python 3.10 has no StrEnum
+class Verdict(str, Enum):  # Python 3.8 has no StrEnum
     """The judgement of a trace on a requirement.
 
     While it runs: satisfied or violated, whatever follows, or pending (LTL3). When it has ended:
@@ -65,7 +66,7 @@ class _Signals(NamedTuple):
 class Signals(_Signals, Generic[T]):
     """A monitor's signals of one requirement: truth values at a tick, or columns of them.
 
-    Each field is a `T`; a NamedTuple cannot be generic in Python 3.10.
+    Each field is a `T`; a NamedTuple cannot be generic in Python 3.8.
     """
 
     __slots__ = ()
@@ -78,8 +79,18 @@ class Requirement(NamedTuple):
     sentence: str
     fingerprint: str
     """SHA-256 of the canonical sentence."""
-    deadline_ticks: int | None
+    deadline_ticks: "int | None"
     """Ticks from a trigger to its deadline; None if there is no deadline."""
+
+
+def same_length(*parts: Sized) -> None:
+    """Check what `zip(strict=True)` checks, which Python 3.8 does not have.
+
+    Raises:
+        ValueError: a part has more or fewer items than another.
+    """
+    if len({*map(len, parts)}) > 1:
+        raise ValueError("there are more or fewer values than expected")
 
 
 def truth(must: bool, may: bool) -> Truth:

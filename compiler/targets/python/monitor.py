@@ -177,7 +177,7 @@ def text(*requirements: FormalizedRequirement) -> str:
         slots=_slots(code),
         requirements=code.requirements,
         marks=MARKS,
-        verdicts="Verdict" if len(requirements) == 1 else "tuple[Verdict, ...]",
+        verdicts="Verdict" if len(requirements) == 1 else '"tuple[Verdict, ...]"',
         imports=runtime.imports,
         kernel=runtime.text,
     )

@@ -88,7 +88,7 @@ def _check_module(module: ast.Module, *, by_variables: bool) -> None:
     require(monitor.name == f"{title}Monitor" and _is_plain(rail) and _is_plain(monitor), monitor)
     base = "VariableMonitor" if by_variables else "Monitor"
     require([ast.unparse(each) for each in (*rail.bases, *monitor.bases)] == [base], monitor)
-    require(is_one_of(binding, f"MONITOR: type[{base}] = {monitor.name}"), binding)
+    require(is_one_of(binding, f"MONITOR: 'type[{base}]' = {monitor.name}"), binding)
     _check_annotations(module, title)
     main = "main_by_variables" if by_variables else "main"
     require(is_one_of(run, f'if __name__ == "__main__":\n    sys.exit({main}(MONITOR))'), run)
@@ -105,8 +105,8 @@ def _check_module(module: ast.Module, *, by_variables: bool) -> None:
 
 
 def _check_annotations(module: ast.Module, title: str) -> None:
-    """Check annotations, which Python evaluates when it executes the text."""
-    allowed = {*_ANNOTATIONS, f"{title}Rail"}
+    """Check annotations: names, and texts, which Python 3.8 can only read so."""
+    allowed = {*_NAMES, *map(repr, _ANNOTATIONS), f"{title}Rail"}
     for node in ast.walk(module):
         match node:
             case ast.FunctionDef(returns=ast.expr() as annotation):
@@ -115,19 +115,22 @@ def _check_annotations(module: ast.Module, title: str) -> None:
                 require(ast.unparse(annotation) in allowed, annotation)
 
 
+_NAMES = (
+    *("None", "bool", "int", "Truth", "Verdict", "Number"),
+    *(f"ClassVar[{kept!r}]" for kept in ("tuple[str, ...]", "Mapping[str, str]")),
+    "ClassVar['Mapping[str, Variable]']",
+    "tuple[bool, ...]",  # Of an attribute in a function: Python does not evaluate it.
+)
 _ANNOTATIONS = frozenset(
     (
-        *("None", "bool", "int", "Truth", "Verdict", "tuple[Verdict, ...]", "type[Monitor]"),
-        "type[VariableMonitor]",
+        *("tuple[Verdict, ...]", "type[Monitor]", "type[VariableMonitor]"),
         *(
-            "tuple[bool, ...]",
             "tuple[Signals[bool], ...]",
             "tuple[Signals[int], ...]",
             "tuple[Marks, ...]",
         ),
-        *("ClassVar[tuple[str, ...]]", "ClassVar[Mapping[str, str]]"),
         *("Iterable[Sequence[Any]]", "Iterable[Row | Mapping[str, Truth]]"),
-        *("Number", "str | None", "tuple[Truth, ...]", "ClassVar[Mapping[str, Variable]]"),
+        *("str | None", "tuple[Truth, ...]"),
         "Iterable[Sequence[Value] | Mapping[str, Value]]",
     )
 )
@@ -239,7 +242,7 @@ def _monitor(
             (variables[1], step, run), declared, tuple(inputs.values()), len(names.prefixes)
         )
     else:
-        rows = "self, rows: Iterable[Row | Mapping[str, Truth]]"
+        rows = "self, rows: 'Iterable[Row | Mapping[str, Truth]]'"
         ran = f"self.advance(rows)\nreturn {_all_verdicts(names.prefixes)}"
         require(reads(body_of(run, "run", rows), ran), run)
     check_columns(columns, literal_names)

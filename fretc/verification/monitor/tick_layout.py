@@ -69,7 +69,7 @@ def check_advance(node: ast.stmt, rail: RailNames, inputs: Mapping[str, str]) ->
     Raises:
         UnexpectedCodeError: it does something else.
     """
-    body = body_of(node, "advance", "self, rows: Iterable[Sequence[Any]]")
+    body = body_of(node, "advance", "self, rows: 'Iterable[Sequence[Any]]'")
     place = next((i for i, part in enumerate(body) if isinstance(part, ast.For)), None)
     require(place is not None, node)
     assert place is not None

@@ -22,17 +22,19 @@ import itertools
 import json
 import os
 import re
+import typing
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
 from dataclasses import dataclass
 from enum import Enum
-from functools import cache, cached_property, total_ordering
+from functools import cached_property, lru_cache, total_ordering
 from operator import itemgetter
 from typing import (
     Any,
     ClassVar,
     Generic,
     NamedTuple,
+    Optional,
     Protocol,
     TextIO,
     TypeVar,
@@ -58,7 +60,7 @@ class R1Rail:
         "since_1",
         "tick",
     )
-    CELLS: ClassVar[tuple[str, ...]] = (
+    CELLS: ClassVar["tuple[str, ...]"] = (
         "since_1",
     )
 
@@ -74,7 +76,7 @@ class R1Rail:
         self.r1_open = -1
         self.r1_signals: tuple[bool, ...] = (False,) * 7
 
-    def advance(self, rows: Iterable[Sequence[Any]]) -> bool:
+    def advance(self, rows: "Iterable[Sequence[Any]]") -> bool:
         """Step every row; returns whether all values were known."""
         known = True
         doubt = self.doubt
@@ -115,13 +117,13 @@ class R1Rail:
         self.r1_open = r1_open
         return known
 
-    def signals(self) -> tuple[Signals[bool], ...]:
+    def signals(self) -> "tuple[Signals[bool], ...]":
         """The signals of the last tick, for each requirement."""
         return (
             Signals(*self.r1_signals),
         )
 
-    def marks(self) -> tuple[Marks, ...]:
+    def marks(self) -> "tuple[Marks, ...]":
         """The remembered ticks, for each requirement."""
         return (
             Marks(self.r1_broken, self.r1_violation_inevitable, self.r1_last, self.r1_open),
@@ -140,7 +142,7 @@ class R1Monitor(Monitor):
             None,
         ),
     )
-    PROPOSITIONS: ClassVar[Mapping[str, str]] = {
+    PROPOSITIONS: ClassVar["Mapping[str, str]"] = {
         "too_close": "too_close",
         "stopped": "stopped",
     }
@@ -181,12 +183,12 @@ class R1Monitor(Monitor):
             return VIOLATED
         return PENDING
 
-    def run(self, rows: Iterable[Row | Mapping[str, Truth]]) -> Verdict:
+    def run(self, rows: "Iterable[Row | Mapping[str, Truth]]") -> Verdict:
         """Many ticks at once: rows in the order of `PROPOSITIONS`, or by their names."""
         self.advance(rows)
         return self.verdicts()[0]
 
-    def verdicts(self) -> tuple[Verdict, ...]:
+    def verdicts(self) -> "tuple[Verdict, ...]":
         """For each requirement: satisfied or violated for every continuation; else pending."""
         must = self.must
         return (
@@ -196,7 +198,7 @@ class R1Monitor(Monitor):
         )
 
     @staticmethod
-    def columns(every: int, *, too_close: int, not_stopped: int, stopped: int) -> tuple[Signals[int], ...]:
+    def columns(every: int, *, too_close: int, not_stopped: int, stopped: int) -> "tuple[Signals[int], ...]":
         """The signals of whole traces: bit i is tick i; `every` has all bits of the trace."""
         # !stopped S (too_close & !stopped)
         since_1 = since(not_stopped, too_close & not_stopped)
@@ -213,7 +215,7 @@ class R1Monitor(Monitor):
         )
 
 
-MONITOR: type[Monitor] = R1Monitor
+MONITOR: "type[Monitor]" = R1Monitor
 
 if __name__ == "__main__":
     sys.exit(main(MONITOR))

@@ -651,7 +651,8 @@ def test_a_monitor_passes_a_strict_type_check(
 
 def test_a_monitor_passes_the_linter(programs: Path) -> None:
     files = sorted(map(str, programs.glob("*.py")))
-    done = tool(sys.executable, "-m", "ruff", "check", "--isolated", "--no-cache", *files)
+    arguments = ("check", "--isolated", "--no-cache", "--target-version=py38", *files)
+    done = tool(sys.executable, "-m", "ruff", *arguments)
     assert done.returncode == 0, done.stdout
 
 

@@ -278,7 +278,7 @@ def test_a_monitor_of_other_requirements_is_not_checked() -> None:
         ("return min(ticks, default=-1)", "return max(ticks, default=-1)"),
         ("import argparse\n", "import argparse\nimport random\n"),
         ("import argparse\n", "import argparse\nclass int(int): ...\n"),
-        ("Truth = bool | None\n", "Truth = bool | None\nsince = None\n"),
+        ("Truth = Optional[bool]\n", "Truth = Optional[bool]\nsince = None\n"),
         ("\n# The requirements ---", "from random import random\n# The requirements ---"),
     ],
 )
@@ -309,10 +309,10 @@ BREACH = "            if r1_broken < 0 and since_1:\n"
 SINCE = "            since_1 = oldest_1 >= 3\n"
 INIT = "        self.tick = -1\n"
 RAIL = "class R1Rail"
-CLASS = "    CELLS: ClassVar[tuple[str, ...]] = (\n"
+CLASS = '    CELLS: ClassVar["tuple[str, ...]"] = (\n'
 STEP = "        rail.tick = tick = rail.tick + 1\n"
 SIGNALS = "    def signals(self)"
-MONITOR = "MONITOR: type[Monitor] = R1Monitor\n"
+MONITOR = 'MONITOR: "type[Monitor]" = R1Monitor\n'
 UNKNOWN = "                    known = False\n                    p = doubt\n"
 
 Edits = list[tuple[str, str]]
@@ -382,7 +382,7 @@ HIDDEN: dict[str, Edits] = {
     "a global": [*before(RAIL, "SEEN = [0]\n\n\n"), *then(SINCE, "SEEN[0] += 1")],
     "a global statement": before(LOOP, logic("global R1Rail")),
     "a default argument": [
-        ("rows: Iterable[Sequence[Any]])", "rows: Iterable[Sequence[Any]], seen: list[int] = [])")
+        ('rows: "Iterable[Sequence[Any]]")', 'rows: "Iterable[Sequence[Any]]", seen: int = [])')
     ],
     "a function beside": before(
         RAIL, "def seen(counts=[0]):\n    counts[0] += 1\n    return counts[0] > 9\n\n\n"

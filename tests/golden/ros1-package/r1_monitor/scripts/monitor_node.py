@@ -12,8 +12,8 @@ from functools import partial
 from threading import Thread
 from typing import Any
 
-if sys.version_info < (3, 10):
-    sys.exit(f"monitor_node.py: it needs Python 3.10 or later, not {sys.version.split()[0]}")
+if sys.version_info < (3, 8):
+    sys.exit("monitor_node.py: it needs Python 3.8 or later, not " + sys.version.split()[0])
 
 from r1_monitor.monitor import MONITOR
 from r1_monitor.perception import (
@@ -51,12 +51,12 @@ def tell(what: str) -> None:
     print(f"monitor_node.py: {what}", file=sys.stderr, flush=True)
 
 
-def types(message: Any) -> dict[str, str]:
+def types(message: Any) -> "dict[str, str]":
     """The type of each field of a message."""
     return dict(zip(message.__slots__, message._slot_types))
 
 
-def identifiers(value: Any) -> list[str]:
+def identifiers(value: Any) -> "list[str]":
     """A parameter that is a list of ids."""
     if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
         raise ValueError(f"stop_for is a list of ids, not {value!r}")
@@ -73,7 +73,7 @@ class Node:
         """The reason why ROS has ended the node."""
         self.end: Callable[[], None] = lambda: None
 
-    def run(self, arguments: list[str]) -> None:
+    def run(self, arguments: "list[str]") -> None:
         """Subscribe and publish until ROS is shut down."""
         import rosgraph
         import rospy
@@ -148,7 +148,7 @@ class Node:
 class Worker(Thread):
     """The node, on a thread of its own."""
 
-    def __init__(self, node: Node, arguments: list[str]) -> None:
+    def __init__(self, node: Node, arguments: "list[str]") -> None:
         super().__init__(daemon=True)
         self._node, self._arguments = node, arguments
         self.error: Exception | None = None
@@ -161,7 +161,7 @@ class Worker(Thread):
             self.error = error
 
 
-def main(arguments: list[str]) -> int:
+def main(arguments: "list[str]") -> int:
     """Run the node; gives the exit status.
 
     A signal is only noted, and this thread shares no lock: whatever it interrupts, nothing waits.
